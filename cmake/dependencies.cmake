@@ -1,0 +1,27 @@
+# Everything the build uses comes from the distribution's packages; nothing is downloaded here.
+find_package(Threads REQUIRED)
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(nlohmann_json 3.9 REQUIRED)
+find_package(yaml-cpp REQUIRED)
+find_package(fmt REQUIRED)
+
+# Embree 3 (Debian 12, Ubuntu 22.04) and Embree 4 (newer) differ in the name of their package and header.
+find_package(embree 4 QUIET)
+if(embree_FOUND)
+  set(DYNAMIC_ICP_EMBREE_VERSION 4)
+else()
+  find_package(embree 3 REQUIRED)
+  set(DYNAMIC_ICP_EMBREE_VERSION 3)
+endif()
+
+if(DYNAMIC_ICP_BUILD_APPS)
+  find_package(CLI11 REQUIRED)
+endif()
+if(DYNAMIC_ICP_BUILD_TESTS)
+  find_package(GTest REQUIRED)
+endif()
+
+# Older yaml-cpp packages export a plain target name.
+if(NOT TARGET yaml-cpp::yaml-cpp)
+  add_library(yaml-cpp::yaml-cpp ALIAS yaml-cpp)
+endif()

@@ -1,0 +1,73 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/base/stamp.hpp"
+
+namespace dynamic_icp {
+
+/// A scan as a reader hands it over: columns of equal length, nothing checked yet.
+struct RawScan {
+  Stamp stamp;                              ///< when the scan begins
+  std::vector<Eigen::Vector3d> points;      ///< m, sensor frame
+  std::vector<double> doppler;              ///< m/s, range rate, positive away from the sensor
+  std::vector<double> times;                ///< s after `stamp`, per point; empty where the data has none
+  std::vector<Eigen::Vector3d> directions;  ///< lines of sight where they are not points/|points|; else empty
+};
+
+/// The set P_t of the paper, Eq. (1): points p_i, lines of sight u_i and Doppler velocities s_i of one scan, with the
+/// time each was measured and the record of the file it came from.
+///
+/// The columns belong together: a scan can only be made whole and only be reduced or reordered by whole rows, so no
+/// stage can separate a point from its measurement. Moving a point (`displace`) leaves line of sight and Doppler as
+/// they were measured, which is what the method needs of predicted points.
+///
+/// Guarantees: every value is finite; |u_i| = 1; all columns have `size()` rows (`times` may be empty instead).
+class Scan {
+ public:
+  /// Why records of a RawScan did not become rows of the Scan.
+  struct Dropped {
+    std::size_t non_finite = 0;  ///< NaN or infinity in a coordinate, the Doppler, the time or the direction
+    std::size_t zero_range = 0;  ///< at the sensor's origin: no line of sight
+  };
+
+  Scan() = default;
+
+  /// Takes over the records that are finite and away from the origin and counts the others in `dropped` (if given).
+  /// Throws std::invalid_argument when the columns differ in length.
+  static Scan from_raw(const RawScan& raw, Dropped* dropped = nullptr);
+
+  [[nodiscard]] std::size_t size() const { return points_.size(); }
+  [[nodiscard]] bool empty() const { return points_.empty(); }
+  [[nodiscard]] bool has_times() const { return !times_.empty(); }
+  [[nodiscard]] Stamp stamp() const { return stamp_; }
+
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& points() const { return points_; }          ///< m, sensor frame
+  [[nodiscard]] const std::vector<Eigen::Vector3d>& directions() const { return directions_; }  ///< unit, as measured
+  [[nodiscard]] const std::vector<double>& doppler() const { return doppler_; }                 ///< m/s, + away
+  [[nodiscard]] const std::vector<double>& times() const { return times_; }                     ///< s after stamp
+  [[nodiscard]] const std::vector<std::uint32_t>& records() const { return records_; }  ///< row of the scan as read
+
+  /// The rows named by `rows`, in that order.
+  [[nodiscard]] Scan select(std::span<const std::uint32_t> rows) const;
+
+  /// Moves the point of one row by `displacement` (m, sensor frame).
+  void displace(std::size_t row, const Eigen::Vector3d& displacement);
+
+ private:
+  Stamp stamp_;
+  std::vector<Eigen::Vector3d> points_;
+  std::vector<Eigen::Vector3d> directions_;
+  std::vector<double> doppler_;
+  std::vector<double> times_;
+  std::vector<std::uint32_t> records_;
+};
+
+}  // namespace dynamic_icp
