@@ -17,7 +17,7 @@ target_compile_options(dynamic_icp_build_flags INTERFACE
   -ffp-contract=off)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives inside Eigen's and the standard library's inlined code.
-  target_compile_options(dynamic_icp_build_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds)
+  target_compile_options(dynamic_icp_build_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-restrict)
 endif()
 if(DYNAMIC_ICP_SANITIZE)
   target_compile_options(dynamic_icp_build_flags INTERFACE
@@ -71,6 +71,8 @@ function(dynamic_icp_room room)
     foreach(other IN LISTS ROOM_TEST_DEPENDS)
       target_link_libraries(${target}_test PRIVATE dynamic_icp_${other})
     endforeach()
+    # Tests are built once and run once: time spent optimising them is lost.
+    target_compile_options(${target}_test PRIVATE -O1)
     gtest_discover_tests(${target}_test TEST_PREFIX ${room}. DISCOVERY_TIMEOUT 60)
   endif()
 endfunction()

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,6 +21,7 @@ struct RawScan {
   std::vector<double> doppler;              ///< m/s, range rate, positive away from the sensor
   std::vector<double> times;                ///< s after `stamp`, per point; empty where the data has none
   std::vector<Eigen::Vector3d> directions;  ///< lines of sight where they are not points/|points|; else empty
+  std::string warning;                      ///< what the reader found odd but could live with; empty: nothing
 };
 
 /// The set P_t of the paper, Eq. (1): points p_i, lines of sight u_i and Doppler velocities s_i of one scan, with the

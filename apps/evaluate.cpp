@@ -1,0 +1,127 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/evaluation/evaluation.hpp"
+#include "dynamic_icp/evaluation/evaluation_report.hpp"
+#include "dynamic_icp/formats/tum.hpp"
+
+#include "apps/commands.hpp"
+
+namespace dynamic_icp::apps {
+namespace {
+
+struct Options {
+  std::string estimate;
+  std::string reference;
+  std::string alignment = "se3";
+  std::optional<int> gap_frames;
+  std::optional<double> gap_seconds;
+  std::optional<double> gap_meters;
+  evaluation::AssociationConfig association;
+  bool json = false;
+};
+
+evaluation::Alignment alignment_of(const std::string& name) {
+  using evaluation::Alignment;
+  for (const Alignment alignment : {Alignment::kNone, Alignment::kFirst, Alignment::kSe3, Alignment::kSim3}) {
+    if (name == evaluation::alignment_name(alignment)) {
+      return alignment;
+    }
+  }
+  throw UsageError(fmt::format("--align is '{}', expected none, first, se3 or sim3", name));
+}
+
+evaluation::EvaluationConfig config_of(const Options& options) {
+  evaluation::EvaluationConfig config;
+  config.association = options.association;
+  config.alignment = alignment_of(options.alignment);
+  if (options.gap_frames) {
+    config.gap = {evaluation::GapUnit::kFrames, static_cast<double>(*options.gap_frames)};
+  } else if (options.gap_seconds) {
+    config.gap = {evaluation::GapUnit::kSeconds, *options.gap_seconds};
+  } else if (options.gap_meters) {
+    config.gap = {evaluation::GapUnit::kMeters, *options.gap_meters};
+  }
+  evaluation::check_config(config);
+  return config;
+}
+
+/// The evaluation of two files; errors that do not name a file yet get both.
+evaluation::Evaluation evaluate_files(const Options& options, const evaluation::EvaluationConfig& config,
+                                      const formats::TumFile& estimate, const formats::TumFile& reference) {
+  try {
+    return evaluation::evaluate(estimate.trajectory, reference.trajectory, config);
+  } catch (const DataError& error) {
+    throw DataError(fmt::format("{} against {}: {}", options.estimate, options.reference, error.what()));
+  }
+}
+
+int run_evaluate(const Options& options) {
+  const evaluation::EvaluationConfig config = config_of(options);  // wrong use is reported before a file is read
+  const formats::TumFile estimate = formats::read_tum(options.estimate);
+  const formats::TumFile reference = formats::read_tum(options.reference);
+  const evaluation::Evaluation evaluation = evaluate_files(options, config, estimate, reference);
+  const evaluation::EvaluationSource source = {options.estimate, options.reference, estimate.repeated_lines,
+                                               reference.repeated_lines};
+  const std::string text =
+      options.json ? evaluation::evaluation_json(evaluation, source) : evaluation::evaluation_table(evaluation, source);
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw DataError(fmt::format("standard output: cannot write: {}", std::strerror(errno)));
+  }
+  return 0;
+}
+
+void add_error_options(CLI::App& command, Options& options) {
+  command
+      .add_option("--align", options.alignment,
+                  fmt::format("what the estimate is moved by before absolute errors: none; first (first poses made "
+                              "equal); se3 (best rigid motion); sim3 (with scale); default {}",
+                              options.alignment))
+      ->type_name("KIND");
+  CLI::Option* frames = command
+                            .add_option("--gap-frames", options.gap_frames,
+                                        fmt::format("relative errors over so many matched poses; default {:g}",
+                                                    evaluation::RelativeGap{}.length))
+                            ->type_name("N");
+  CLI::Option* seconds =
+      command.add_option("--gap-seconds", options.gap_seconds, "relative errors over so many seconds instead")
+          ->type_name("S");
+  command
+      .add_option("--gap-meters", options.gap_meters, "relative errors over so many metres of the reference instead")
+      ->type_name("M")
+      ->excludes(frames)
+      ->excludes(seconds);
+  seconds->excludes(frames);
+  command
+      .add_option("--max-gap", options.association.max_gap_s,
+                  fmt::format("the reference is interpolated between poses at most so many seconds apart; default {:g}",
+                              options.association.max_gap_s))
+      ->type_name("S");
+}
+
+}  // namespace
+
+void add_evaluate_command(CLI::App& app, std::function<int()>& selected) {
+  auto options = std::make_shared<Options>();
+  CLI::App* command = app.add_subcommand("evaluate", "Compare an estimated trajectory with a reference");
+  command->add_option("ESTIMATE", options->estimate, "TUM file: timestamp tx ty tz qx qy qz qw (s, m, unit quaternion)")
+      ->required();
+  command->add_option("REFERENCE", options->reference, "TUM file of the true poses of the same sensor")->required();
+  add_error_options(*command, *options);
+  command->add_flag("--json", options->json, "print one JSON object with all numbers instead of the table");
+  command->callback([options, &selected] { selected = [options] { return run_evaluate(*options); }; });
+}
+
+}  // namespace dynamic_icp::apps

@@ -1,0 +1,54 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <cstdio>
+#include <functional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/base/version.hpp"
+
+#include "apps/command_line.hpp"
+#include "apps/commands.hpp"
+
+namespace {
+
+constexpr int kDataOrMachineFailed = 1;
+constexpr int kWrongUsage = 2;
+
+int report(const char* message, int status) {
+  fmt::print(stderr, "dynamic-icp: {}\n", message);
+  return status;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  using namespace dynamic_icp;
+  apps::remember_command_line(argc, argv);
+  CLI::App app{"Registration and odometry for FMCW LiDAR in scenes full of moving things", "dynamic-icp"};
+  app.set_version_flag("--version", std::string(version()));
+  app.require_subcommand(1);
+  std::function<int()> selected;
+  for (const auto add :
+       {apps::add_run_command, apps::add_register_command, apps::add_evaluate_command, apps::add_simulate_command,
+        apps::add_report_command, apps::add_plot_command, apps::add_info_command, apps::add_config_command}) {
+    add(app, selected);
+  }
+  try {
+    app.parse(argc, argv);
+    return selected();
+  } catch (const CLI::Success& help_or_version) {
+    return app.exit(help_or_version);
+  } catch (const CLI::ParseError& error) {
+    fmt::print(stderr, "dynamic-icp: {}\nRun 'dynamic-icp --help' or 'dynamic-icp COMMAND --help'.\n", error.what());
+    return kWrongUsage;
+  } catch (const UsageError& error) {
+    return report(error.what(), kWrongUsage);
+  } catch (const std::bad_alloc&) {
+    return report("the machine has no memory left", kDataOrMachineFailed);
+  } catch (const std::exception& error) {
+    return report(error.what(), kDataOrMachineFailed);
+  }
+}

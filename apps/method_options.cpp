@@ -1,0 +1,59 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "apps/method_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/formats/config_file.hpp"
+
+#include "apps/settings.hpp"
+
+namespace dynamic_icp::apps {
+
+void add_method_options(CLI::App& command, MethodOptions& options) {
+  command.add_option("--method", options.method, "Method: dynamic-icp (default dynamic-icp)")->type_name("NAME");
+  command
+      .add_option("--preset", options.preset,
+                  fmt::format("Configuration to start from: {} (default default; the two are the same so far)",
+                              fmt::join(odometry::preset_names(), ", ")))
+      ->type_name("NAME");
+  command
+      .add_option("--ablation", options.ablation,
+                  fmt::format("Part of the method to switch off: {} (default none)",
+                              fmt::join(odometry::ablation_names(), ", ")))
+      ->type_name("NAME");
+  command
+      .add_option("--config", options.config_file,
+                  "YAML file with configuration keys ('dynamic-icp config' prints them all)")
+      ->type_name("FILE");
+  command
+      .add_option("--set", options.settings,
+                  "Configuration key, e.g. preprocess.voxel.voxel_size_m=0.5 (m); repeatable, wins over --config")
+      ->type_name("KEY=VALUE")
+      ->expected(1)
+      ->take_all();
+  command
+      .add_option("--threads", options.threads,
+                  "Number of threads (default 0: all processors); results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+}
+
+odometry::Config make_config(const MethodOptions& options) {
+  if (options.method != "dynamic-icp") {
+    throw UsageError(fmt::format("unknown method '{}'; known are: dynamic-icp", options.method));
+  }
+  odometry::Config config = odometry::preset(options.preset);
+  const ConfigFields fields = odometry::fields(config);
+  if (!options.config_file.empty()) {
+    formats::load_config_file(options.config_file, fields);
+  }
+  apply_settings(fields, options.settings);
+  odometry::apply_ablation(config, options.ablation);
+  odometry::check(config);
+  return config;
+}
+
+}  // namespace dynamic_icp::apps

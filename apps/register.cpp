@@ -1,0 +1,68 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <cmath>
+#include <memory>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/formats/xyzd_bin.hpp"
+#include "dynamic_icp/odometry/dynamic_icp.hpp"
+#include "dynamic_icp/results/frame_json.hpp"
+
+#include "apps/commands.hpp"
+#include "apps/method_options.hpp"
+
+namespace dynamic_icp::apps {
+namespace {
+
+struct RegisterOptions {
+  std::string source;
+  std::string target;
+  double dt_s = 0.1;
+  MethodOptions method;
+};
+
+RawScan read_scan(const std::string& path, Stamp stamp) {
+  RawScan raw = formats::read_xyzd(path);
+  raw.stamp = stamp;
+  if (!raw.warning.empty()) {
+    fmt::print(stderr, "dynamic-icp: warning: {}\n", raw.warning);
+  }
+  return raw;
+}
+
+int register_pair(const RegisterOptions& options) {
+  const odometry::Config config = make_config(options.method);
+  if (!(options.dt_s >= 1e-9 && options.dt_s <= 3600.0)) {
+    throw UsageError(fmt::format("--dt is {}, expected 1e-9 to 3600 s", options.dt_s));
+  }
+  const RawScan source = read_scan(options.source, Stamp{0});
+  const RawScan target = read_scan(options.target, Stamp{std::llround(options.dt_s * 1e9)});
+  odometry::DynamicIcp odometry(config, options.method.threads);
+  const odometry::Frame first = odometry.process(source);
+  odometry::Frame second = odometry.process(target);
+  if (first.status != odometry::FrameStatus::kFirst) {
+    second.status = first.status;  // nothing to align from: the pair is no better than its source
+  }
+  fmt::print("{}\n", results::pair_document(first, second));
+  return 0;
+}
+
+}  // namespace
+
+void add_register_command(CLI::App& app, std::function<int()>& selected) {
+  const auto options = std::make_shared<RegisterOptions>();
+  CLI::App* command =
+      app.add_subcommand("register", "Align one pair of scans; prints transform, covariance and velocities as JSON");
+  command->add_option("SOURCE", options->source, "Earlier scan: float32 x, y, z (m), Doppler (m/s, positive away)")
+      ->required();
+  command->add_option("TARGET", options->target, "Later scan; T_target_source maps points of SOURCE into it")
+      ->required();
+  command->add_option("--dt", options->dt_s, "Time between the two scans in s (default 0.1)")->type_name("SECONDS");
+  add_method_options(*command, options->method);
+  command->callback([options, &selected] { selected = [options] { return register_pair(*options); }; });
+}
+
+}  // namespace dynamic_icp::apps

@@ -1,0 +1,219 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/base/version.hpp"
+#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/formats/output_folder.hpp"
+#include "dynamic_icp/formats/tum.hpp"
+#include "dynamic_icp/odometry/dynamic_icp.hpp"
+#include "dynamic_icp/results/run_writer.hpp"
+
+#include "apps/command_line.hpp"
+#include "apps/commands.hpp"
+#include "apps/method_options.hpp"
+#include "apps/progress.hpp"
+
+namespace dynamic_icp::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t kWarningsShown = 5;
+
+struct RunOptions {
+  std::string input;
+  std::string output;
+  std::string format = "auto";
+  std::string ground_truth;
+  std::size_t start = 0;
+  std::optional<std::size_t> max_frames;
+  bool save_labels = false;
+  bool report = false;
+  bool force = false;
+  bool quiet = false;
+  MethodOptions method;
+};
+
+/// The scans [begin, end) of the recording, checked before anything is computed.
+struct Selection {
+  std::size_t begin = 0;
+  std::size_t end = 0;
+};
+
+Selection select_scans(const datasets::Dataset& dataset, const RunOptions& options) {
+  if (options.start >= dataset.size()) {
+    throw UsageError(fmt::format("--start is {}, expected 0 to {}: the recording has {} scans", options.start,
+                                 dataset.size() - 1, dataset.size()));
+  }
+  const std::size_t rest = dataset.size() - options.start;
+  const Selection selection{options.start, options.start + std::min(rest, options.max_frames.value_or(rest))};
+  for (std::size_t i = selection.begin + 1; i < selection.end; ++i) {
+    if (dataset.stamp(i) <= dataset.stamp(i - 1)) {
+      throw DataError(fmt::format("{}: scan {} is at {} s, expected later than scan {} at {} s",
+                                  dataset.scan_file(i).string(), i, format_seconds(dataset.stamp(i)), i - 1,
+                                  format_seconds(dataset.stamp(i - 1))));
+    }
+  }
+  return selection;
+}
+
+nlohmann::ordered_json configuration_json(odometry::Config config) {
+  nlohmann::ordered_json json;
+  for (const ConfigField& field : odometry::fields(config)) {
+    std::visit([&](const auto* value) { json[field.key] = *value; }, field.value);
+  }
+  return json;
+}
+
+struct Warnings {
+  std::vector<std::string> texts;
+  bool quiet = false;
+
+  void add(const std::string& text) {
+    texts.push_back(text);
+    if (!quiet && texts.size() <= kWarningsShown) {
+      fmt::print(stderr, "dynamic-icp: warning: {}\n", text);
+    }
+    if (!quiet && texts.size() == kWarningsShown + 1) {
+      fmt::print(stderr, "dynamic-icp: more warnings are in run.json\n");
+    }
+  }
+};
+
+std::string run_json(const RunOptions& options, const datasets::Dataset& dataset, const odometry::Config& config,
+                     const fs::path& ground_truth, const Warnings& warnings) {
+  nlohmann::ordered_json json = {
+      {"version", version()},
+      {"command", command_line()},
+      {"input",
+       {{"path", fs::absolute(options.input).string()}, {"format", dataset.format()}, {"scans", dataset.size()}}},
+      {"method", options.method.method},
+      {"preset", options.method.preset},
+      {"ablation", options.method.ablation},
+      {"start", options.start},
+      {"threads", options.method.threads}};
+  json["max_frames"] = nullptr;
+  if (options.max_frames) {
+    json["max_frames"] = *options.max_frames;
+  }
+  json["ground_truth"] = nullptr;
+  if (!ground_truth.empty()) {
+    json["ground_truth"] = fs::absolute(ground_truth).string();
+  }
+  json["assumptions"] = dataset.assumptions();
+  json["warnings"] = warnings.texts;
+  json["configuration"] = configuration_json(config);
+  // File names need not be UTF-8.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string cell(const std::optional<double>& value, int decimals) {
+  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
+}
+
+std::string percent(const std::optional<double>& share) {
+  return share ? fmt::format("{:.1f} %", 100.0 * *share) : "-";
+}
+
+void print_summary(const results::RunSummary& summary, const std::string& output) {
+  const evaluation::RunAccuracy& accuracy = summary.accuracy;
+  fmt::print("scans        {}\n", summary.frames);
+  fmt::print("converged    {}   iterations {}\n", percent(summary.convergence_rate), cell(summary.mean_iterations, 1));
+  fmt::print("time         {} ms a scan (median {}, p95 {})\n", cell(summary.ms_mean, 1), cell(summary.ms_median, 1),
+             cell(summary.ms_p95, 1));
+  fmt::print("dynamic      {} of the points, {} of them clustered\n", percent(summary.dynamic_ratio_mean),
+             percent(summary.clustered_ratio_mean));
+  if (accuracy.matched > 0) {
+    fmt::print("RTE          {} m RMSE, {} m median (frame to frame)\n", cell(accuracy.rte_rmse_m, 4),
+               cell(accuracy.rte_median_m, 4));
+    fmt::print("RRE          {} deg RMSE, {} deg median\n", cell(accuracy.rre_rmse_deg, 4),
+               cell(accuracy.rre_median_deg, 4));
+    fmt::print("ATE          {} m RMSE over {} m (SE(3) aligned, {} of {} poses matched)\n",
+               cell(accuracy.ate_rmse_m, 3), cell(accuracy.path_length_m, 1), accuracy.matched, summary.frames);
+  }
+  for (const auto& [status, count] : summary.status_counts) {
+    if (status != "first" && status != "converged") {
+      fmt::print("note         {} scan{} with status {}\n", count, count == 1 ? "" : "s", status);
+    }
+  }
+  fmt::print("written to   {}\n", output);
+}
+
+int run(const RunOptions& options) {
+  const odometry::Config config = make_config(options.method);
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(options.input, options.format);
+  const Selection selection = select_scans(*dataset, options);
+  const bool own_truth = options.ground_truth.empty();
+  const fs::path truth_file = own_truth ? dataset->ground_truth_file() : fs::path(options.ground_truth);
+  const formats::Trajectory truth =
+      own_truth ? dataset->ground_truth() : formats::read_tum(options.ground_truth).trajectory;
+  formats::OutputFolder output(options.output, "run.json", options.force);
+
+  Warnings warnings{{}, options.quiet};
+  for (const std::string& assumption : dataset->assumptions()) {
+    warnings.add(assumption);
+  }
+  results::RunWriter writer(output.path(), options.save_labels);
+  odometry::DynamicIcp odometry(config, options.method.threads);
+  {
+    Progress progress("odometry", selection.end - selection.begin, options.quiet);
+    for (std::size_t i = selection.begin; i < selection.end; ++i) {
+      const RawScan scan = dataset->scan(i);
+      if (!scan.warning.empty()) {
+        warnings.add(scan.warning);
+      }
+      writer.add(i, odometry.process(scan));
+      progress.advance();
+    }
+  }
+  const results::RunSummary summary =
+      writer.finish(options.method.method, truth, run_json(options, *dataset, config, truth_file, warnings));
+  if (options.report) {
+    write_report(output.path(), output.path() / "report.html");
+  }
+  output.commit();
+  if (!options.quiet) {
+    print_summary(summary, options.output);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_run_command(CLI::App& app, std::function<int()>& selected) {
+  const auto options = std::make_shared<RunOptions>();
+  CLI::App* command = app.add_subcommand("run", "Odometry over a recording: trajectory, objects, statistics");
+  command->add_option("INPUT", options->input, "Folder of the recording")->required();
+  command->add_option("--output", options->output, "Folder for the results; must be new or empty")
+      ->required()
+      ->type_name("DIR");
+  command
+      ->add_option(
+          "--format", options->format,
+          fmt::format("Layout of the recording: auto, {} (default auto)", fmt::join(datasets::known_formats(), ", ")))
+      ->type_name("NAME");
+  command
+      ->add_option("--ground-truth", options->ground_truth,
+                   "TUM file to compare with (default: what the recording brings along)")
+      ->type_name("FILE");
+  command->add_option("--start", options->start, "First scan, counted from 0 (default 0)")->type_name("N");
+  command->add_option("--max-frames", options->max_frames, "Most scans to process, 1 or more (default: all)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--save-labels", options->save_labels, "Write labels/*.bin: static, object or unused per point");
+  command->add_flag("--report", options->report, "Write report.html into the results");
+  command->add_flag("--force", options->force, "Replace an earlier run in DIR");
+  command->add_flag("--quiet", options->quiet, "Print errors only");
+  add_method_options(*command, options->method);
+  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace dynamic_icp::apps

@@ -1,0 +1,15 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "dynamic_icp/base/config_field.hpp"
+
+namespace dynamic_icp::apps {
+
+/// Carries out the options --set key=value in their order. Throws UsageError naming the key and the valid range.
+void apply_settings(const ConfigFields& fields, const std::vector<std::string>& settings);
+
+}  // namespace dynamic_icp::apps

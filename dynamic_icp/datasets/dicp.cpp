@@ -1,0 +1,138 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/datasets/dicp.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/numbered_files.hpp"
+#include "dynamic_icp/formats/tum.hpp"
+#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/formats/xyzd_bin.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kAssumedPeriodNs = 100'000'000;
+constexpr int kSearchDepth = 3;
+
+/// T_vehicle_sensor. The file calls it T_V_to_S, but it is applied to points of the sensor to get points of the
+/// vehicle.
+Eigen::Isometry3d read_calibration(const fs::path& path) {
+  try {
+    const nlohmann::json calibration = nlohmann::json::parse(formats::read_whole_file(path)).at("T_V_to_S");
+    const nlohmann::json& t = calibration.at("translation");
+    const nlohmann::json& q = calibration.at("quaternion");
+    const Eigen::Quaterniond rotation(q.at("w").get<double>(), q.at("x").get<double>(), q.at("y").get<double>(),
+                                      q.at("z").get<double>());
+    if (std::abs(rotation.norm() - 1.0) > 1e-3) {
+      throw DataError(fmt::format("{}: quaternion has length {:.4f}, expected 1", path.string(), rotation.norm()));
+    }
+    return Eigen::Translation3d(t.at("x").get<double>(), t.at("y").get<double>(), t.at("z").get<double>()) *
+           rotation.normalized();
+  } catch (const nlohmann::json::exception& error) {
+    throw DataError(
+        fmt::format("{}: expected {{\"T_V_to_S\": {{\"translation\": {{x, y, z}}, \"quaternion\": "
+                    "{{w, x, y, z}}}}}}: {}",
+                    path.string(), error.what()));
+  }
+}
+
+class DicpDataset final : public Dataset {
+ public:
+  explicit DicpDataset(const fs::path& folder) : files_(numbered_files(folder / "point_clouds", ".bin")) {
+    if (files_.empty()) {
+      throw DataError(fmt::format("{}: holds no *.bin scans", (folder / "point_clouds").string()));
+    }
+    const fs::path poses = folder / "ref_poses.txt";
+    if (fs::exists(poses)) {
+      read_poses(poses, folder / "calibration.json");
+    } else {
+      for (std::size_t i = 0; i < files_.size(); ++i) {
+        stamps_.push_back(Stamp{static_cast<std::int64_t>(i) * kAssumedPeriodNs});
+      }
+      assumptions_.emplace_back("no ref_poses.txt: a scan period of 0.1 s is assumed");
+    }
+  }
+
+  [[nodiscard]] std::string_view format() const override { return "dicp"; }
+  [[nodiscard]] std::size_t size() const override { return files_.size(); }
+  [[nodiscard]] Stamp stamp(std::size_t index) const override { return stamps_.at(index); }
+  [[nodiscard]] fs::path scan_file(std::size_t index) const override { return files_.at(index); }
+  [[nodiscard]] const formats::Trajectory& ground_truth() const override { return ground_truth_; }
+  [[nodiscard]] fs::path ground_truth_file() const override { return ground_truth_file_; }
+  [[nodiscard]] const std::vector<std::string>& assumptions() const override { return assumptions_; }
+
+  [[nodiscard]] RawScan scan(std::size_t index) const override {
+    RawScan raw = formats::read_xyzd(files_.at(index));
+    raw.stamp = stamps_[index];
+    return raw;
+  }
+
+ private:
+  void read_poses(const fs::path& poses, const fs::path& calibration) {
+    const Eigen::Isometry3d T_vehicle_sensor =
+        fs::exists(calibration) ? read_calibration(calibration) : Eigen::Isometry3d::Identity();
+    ground_truth_ = formats::read_tum(poses).trajectory;
+    if (ground_truth_.size() != files_.size()) {
+      throw DataError(fmt::format("{}: {} poses for {} scans, expected one pose per scan (they carry the time stamps)",
+                                  poses.string(), ground_truth_.size(), files_.size()));
+    }
+    for (formats::StampedPose& pose : ground_truth_) {
+      pose.T_world_sensor = pose.T_world_sensor * T_vehicle_sensor;
+      stamps_.push_back(pose.stamp);
+    }
+    ground_truth_file_ = poses;
+  }
+
+  std::vector<fs::path> files_;
+  std::vector<Stamp> stamps_;
+  formats::Trajectory ground_truth_;
+  fs::path ground_truth_file_;
+  std::vector<std::string> assumptions_;
+};
+
+bool holds_scans(const fs::path& folder) {
+  return fs::is_directory(folder / "point_clouds") && !numbered_files(folder / "point_clouds", ".bin").empty();
+}
+
+}  // namespace
+
+fs::path find_dicp(const fs::path& input) {
+  // Given the folder of the scans itself, its parent is meant.
+  if (input.filename() == "point_clouds" && holds_scans(input.parent_path())) {
+    return input.parent_path();
+  }
+  if (holds_scans(input)) {
+    return input;
+  }
+  std::vector<fs::path> found;
+  std::error_code ignored;
+  for (auto entry = fs::recursive_directory_iterator(input, fs::directory_options::skip_permission_denied, ignored);
+       entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
+    if (entry.depth() + 1 >= kSearchDepth) {
+      entry.disable_recursion_pending();
+    }
+    if (entry->is_directory(ignored) && holds_scans(entry->path())) {
+      found.push_back(entry->path());
+    }
+  }
+  if (found.size() > 1) {
+    std::sort(found.begin(), found.end());
+    std::string names;
+    for (const fs::path& path : found) {
+      names += "\n  " + path.string();
+    }
+    throw DataError(fmt::format("{}: holds several recordings, name one of them:{}", input.string(), names));
+  }
+  return found.empty() ? fs::path() : found.front();
+}
+
+std::unique_ptr<Dataset> open_dicp(const fs::path& folder) { return std::make_unique<DicpDataset>(folder); }
+
+}  // namespace dynamic_icp::datasets

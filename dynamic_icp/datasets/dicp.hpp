@@ -1,0 +1,22 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "dynamic_icp/datasets/dataset.hpp"
+
+namespace dynamic_icp::datasets {
+
+/// Whether the folder (or one up to three levels below it) holds `point_clouds/*.bin`; the folder that does, or empty.
+std::filesystem::path find_dicp(const std::filesystem::path& input);
+
+/// The layout of the Doppler-ICP data, which is also the plain one for interchange:
+///   point_clouds/00001.bin ...  records of little-endian float32 x, y, z (m, sensor frame), Doppler (m/s, + away)
+///   ref_poses.txt               optional: TUM rows, one per scan; gives the time stamps too
+///   calibration.json            optional: pose of the sensor in the vehicle; ref_poses.txt then holds vehicle poses
+/// Scans are ordered by the number in their file name. Without ref_poses.txt a period of 0.1 s is assumed.
+std::unique_ptr<Dataset> open_dicp(const std::filesystem::path& folder);
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,16 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string_view>
+#include <vector>
+
+namespace dynamic_icp::datasets {
+
+/// The files of a folder with the given extension (".bin"), ordered by the number in their names, as an integer of any
+/// length: 2.bin comes before 10.bin. Files without a number are left out; hidden files too. Throws DataError when the
+/// folder cannot be read or two files carry the same number.
+std::vector<std::filesystem::path> numbered_files(const std::filesystem::path& folder, std::string_view extension);
+
+}  // namespace dynamic_icp::datasets

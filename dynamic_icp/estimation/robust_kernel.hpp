@@ -1,0 +1,24 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace dynamic_icp::estimation {
+
+// Robust kernels for residuals e with scale k, both in the same unit. For each kernel:
+//   loss   rho(e): what is minimised, e^2/2 near zero;
+//   weight w(e) = rho'(e) / e: what iteratively reweighted least squares multiplies e^2 with.
+// The weight depends on e/k alone, so changing the unit of both changes nothing.
+
+/// rho = e^2/2 for |e| <= k, k|e| - k^2/2 beyond: convex, every residual keeps some pull.
+double huber_loss(double e, double k);
+
+/// w = 1 for |e| <= k, k/|e| beyond.
+double huber_weight(double e, double k);
+
+/// rho = k^2/6 (1 - (1 - (e/k)^2)^3) for |e| <= k, k^2/6 beyond: residuals beyond k have no pull at all.
+double tukey_loss(double e, double k);
+
+/// w = (1 - (e/k)^2)^2 for |e| <= k, 0 beyond.
+double tukey_weight(double e, double k);
+
+}  // namespace dynamic_icp::estimation

@@ -1,0 +1,31 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/figures/svg.hpp"
+#include "dynamic_icp/figures/theme.hpp"
+
+namespace dynamic_icp::figures {
+
+/// The paths of a map, all in one world frame (m).
+struct PathMap {
+  std::vector<Eigen::Vector3d> estimate = {};
+  std::vector<Eigen::Vector3d> ground_truth = {};  ///< empty: none
+  std::string title = "Trajectory from above";
+};
+
+struct MapSize {
+  double width = 560.0;           ///< px
+  double largest_height = 520.0;  ///< px; a straight drive gets less
+};
+
+/// Top view (x to the right, y up) with equal scales: the estimate as a line on top of a broad line for the ground
+/// truth, a ring where the drive starts and a dot where it ends. Without positions the map is empty and says so.
+Svg trajectory_plot(const PathMap& paths, const Theme& theme, const MapSize& size = {});
+
+}  // namespace dynamic_icp::figures

@@ -1,0 +1,60 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/figures/trajectory_plot.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/figures/well_formed.hpp"
+
+namespace dynamic_icp::figures {
+namespace {
+
+std::string drawn(const PathMap& paths) {
+  const std::string document = trajectory_plot(paths, theme(Ground::kDark)).document();
+  EXPECT_EQ(WellFormed::fault_of(document), "");
+  EXPECT_FALSE(holds_non_finite(document));
+  return document;
+}
+
+TEST(TrajectoryPlot, DrawsNothingAndLittle) {
+  EXPECT_NE(drawn({}).find("no poses"), std::string::npos);
+  drawn({.estimate = {{1.0, 2.0, 3.0}}});
+  drawn({.estimate = {{1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}}});
+  drawn({.estimate = {}, .ground_truth = {{1.0, 2.0, 3.0}, {4.0, 2.0, 3.0}}});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  drawn({.estimate = {{1.0, 2.0, 3.0}, {nan, nan, nan}, {2.0, 2.0, 3.0}}});
+}
+
+TEST(TrajectoryPlot, SquareStaysASquareAndYPointsUp) {
+  const std::vector<Pixel> line =
+      polylines_of(drawn({.estimate = {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}, {0, 30, 0}}})).back();
+  ASSERT_EQ(line.size(), 4u);
+  const double side = line[1].x - line[0].x;
+  EXPECT_GT(side, 100.0);
+  EXPECT_NEAR(line[1].y, line[0].y, 0.02);
+  EXPECT_NEAR(line[1].y - line[2].y, side, 0.02);
+}
+
+TEST(TrajectoryPlot, LongDrivesStaySmall) {
+  PathMap paths;
+  for (int k = 0; k < 100'000; ++k) {
+    paths.estimate.emplace_back(0.1 * k, 5.0 * std::sin(0.001 * k), 0.0);
+  }
+  const std::string document = drawn(paths);
+  EXPECT_LT(document.size(), 60'000u);
+  const std::vector<Pixel> line = polylines_of(document).back();
+  EXPECT_NEAR(line.back().x - line.front().x, 468.0 / 1.1, 1.0) << "the end is drawn";
+}
+
+TEST(TrajectoryPlot, NamesGroundTruthOnlyWhereThereIsOne) {
+  PathMap paths{.estimate = {{0, 0, 0}, {1, 0, 0}}};
+  EXPECT_EQ(drawn(paths).find("ground truth"), std::string::npos);
+  paths.ground_truth = paths.estimate;
+  EXPECT_NE(drawn(paths).find("ground truth"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::figures

@@ -1,0 +1,117 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/formats/whole_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "dynamic_icp/base/error.hpp"
+
+namespace dynamic_icp::formats {
+namespace {
+
+[[noreturn]] void throw_error(const std::filesystem::path& path, const char* action) {
+  throw DataError(fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(errno)));
+}
+
+/// Closes a descriptor when it goes out of scope.
+struct Descriptor {
+  explicit Descriptor(int opened) : number(opened) {}
+  ~Descriptor() { ::close(number); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number;
+};
+
+}  // namespace
+
+OutputFile::OutputFile(const std::filesystem::path& path)
+    : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) {
+    fail("create");
+  }
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) {
+    ::close(descriptor_);
+  }
+}
+
+void OutputFile::fail(const char* action) const { throw_error(path_, action); }
+
+void OutputFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written < 0) {
+      fail("write");
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void OutputFile::close() {
+  const bool synchronised = ::fsync(descriptor_) == 0 || errno == EINVAL;  // EINVAL: a device that cannot, e.g. a pipe
+  const bool closed = ::close(descriptor_) == 0;
+  descriptor_ = -1;
+  if (!synchronised || !closed) {
+    fail("write");
+  }
+}
+
+void write_whole_file(const std::filesystem::path& path, std::string_view content) {
+  std::filesystem::path partial = path;
+  partial += fmt::format(".partial-{}", ::getpid());
+  try {
+    OutputFile file(partial);
+    file.write(content);
+    file.close();
+  } catch (const DataError&) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw;
+  }
+  std::error_code fault;
+  std::filesystem::rename(partial, path, fault);
+  if (fault) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw DataError(fmt::format("{}: cannot create: {}", path.string(), fault.message()));
+  }
+}
+
+std::string read_whole_file(const std::filesystem::path& path) {
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.number < 0) {
+    throw_error(path, "open");
+  }
+  std::error_code unknown_size;
+  const std::uintmax_t expected = std::filesystem::file_size(path, unknown_size);
+  std::string content;
+  std::size_t used = 0;
+  while (true) {
+    content.resize(used + std::max<std::size_t>(4096, unknown_size || used > 0 ? used : expected + 1));
+    const ssize_t got = ::read(file.number, content.data() + used, content.size() - used);
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got < 0) {
+      throw_error(path, "read");
+    }
+    used += static_cast<std::size_t>(got);
+    if (got == 0) {
+      content.resize(used);
+      return content;
+    }
+  }
+}
+
+}  // namespace dynamic_icp::formats

@@ -1,0 +1,39 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace dynamic_icp::formats {
+
+/// A file being written, with every failure of the machine (disk full, no permission, ...) reported as a DataError
+/// that names the file and the reason. What is not closed is incomplete: call close().
+class OutputFile {
+ public:
+  explicit OutputFile(const std::filesystem::path& path);
+  ~OutputFile();
+  OutputFile(const OutputFile&) = delete;
+  OutputFile& operator=(const OutputFile&) = delete;
+
+  void write(std::string_view bytes);
+
+  /// Waits until the bytes are on the device, so that a file that was renamed into place is whole.
+  void close();
+
+ private:
+  [[noreturn]] void fail(const char* action) const;
+
+  std::filesystem::path path_;
+  int descriptor_ = -1;
+};
+
+/// Writes a file whole or not at all: under a temporary name beside `path`, then renamed. An earlier file of that
+/// name stays untouched when anything fails.
+void write_whole_file(const std::filesystem::path& path, std::string_view content);
+
+/// The whole content of a file. Throws DataError naming the file and the reason.
+std::string read_whole_file(const std::filesystem::path& path);
+
+}  // namespace dynamic_icp::formats

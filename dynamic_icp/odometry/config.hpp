@@ -1,0 +1,66 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string_view>
+#include <vector>
+
+#include "dynamic_icp/base/config_field.hpp"
+#include "dynamic_icp/dynamics/hdbscan.hpp"
+#include "dynamic_icp/dynamics/object_velocity.hpp"
+#include "dynamic_icp/ego_motion/doppler_regression.hpp"
+#include "dynamic_icp/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/preprocess/normals.hpp"
+#include "dynamic_icp/preprocess/range_crop.hpp"
+#include "dynamic_icp/preprocess/voxel_grid.hpp"
+#include "dynamic_icp/registration/align.hpp"
+
+namespace dynamic_icp::odometry {
+
+struct PreprocessConfig {
+  preprocess::RangeCropConfig range;
+  preprocess::VoxelGridConfig voxel;
+  preprocess::NormalsConfig normals;
+};
+
+struct EgoMotionConfig {
+  ego_motion::DopplerRegressionConfig regression;
+  ego_motion::VelocityFilterConfig filter;
+};
+
+struct DynamicsConfig {
+  bool predict = true;  ///< off: moving points are left out instead of predicted (ablation "w/o DPP")
+  dynamics::HdbscanConfig clustering;
+  dynamics::ObjectVelocityConfig velocity;
+};
+
+/// Everything the odometry can be told, stage by stage.
+struct Config {
+  PreprocessConfig preprocess;
+  EgoMotionConfig ego_motion;
+  DynamicsConfig dynamics;
+  registration::AlignConfig registration;
+  double max_gap_s = 1.0;  ///< a longer time between two scans is bridged by the last motion, not by alignment
+  int min_points = 6;      ///< a scan with fewer points after preprocessing cannot be aligned
+};
+
+/// All fields with their keys, e.g. "preprocess.voxel.voxel_size_m".
+ConfigFields fields(Config& config);
+
+/// Throws UsageError naming the first value out of range, or values that do not go together.
+void check(const Config& config);
+
+/// A named configuration: "paper" is the paper's method with its published values and nothing added; "default" is the
+/// best this program can do (so far the same). Throws UsageError for other names.
+Config preset(std::string_view name);
+
+std::vector<std::string_view> preset_names();
+
+/// Switches parts off as the paper's ablation study does: "none"; "no-vf" (no velocity filter: all points count as
+/// static), "no-dpp" (no prediction: moving points are left out), "no-dr" (no Doppler residual). Throws UsageError for
+/// other names.
+void apply_ablation(Config& config, std::string_view name);
+
+std::vector<std::string_view> ablation_names();
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,200 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/odometry/dynamic_icp.hpp"
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/dynamics/prediction.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+using registration::AlignStatus;
+
+FrameStatus frame_status(AlignStatus status) {
+  switch (status) {
+    case AlignStatus::kConverged:
+      return FrameStatus::kConverged;
+    case AlignStatus::kIterationLimit:
+      return FrameStatus::kIterationLimit;
+    case AlignStatus::kTooFewCorrespondences:
+      return FrameStatus::kTooFewCorrespondences;
+    case AlignStatus::kDegenerate:
+      return FrameStatus::kDegenerate;
+    case AlignStatus::kNotRun:
+      break;
+  }
+  return FrameStatus::kNotRun;
+}
+
+bool aligned(FrameStatus status) { return status == FrameStatus::kConverged || status == FrameStatus::kIterationLimit; }
+
+void count_dynamics(Frame& frame, const std::vector<std::uint8_t>& is_dynamic,
+                    const std::vector<std::int32_t>& labels) {
+  for (std::size_t row = 0; row < is_dynamic.size(); ++row) {
+    frame.dynamic_candidates += is_dynamic[row];
+    frame.dynamic_clustered += labels[row] >= 0 ? 1 : 0;
+  }
+  for (const dynamics::ObjectEstimate& object : frame.clusters) {
+    frame.dynamic_refined += object.members.size();
+  }
+}
+
+void label_points(Frame& frame, const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) {
+  frame.labels.assign(frame.points, -1);
+  for (std::size_t row = 0; row < scan.size(); ++row) {
+    frame.labels[scan.records()[row]] = is_dynamic[row] != 0 ? -1 : 0;
+  }
+  std::int32_t id = 0;
+  for (const dynamics::ObjectEstimate& object : frame.clusters) {
+    id += object.verdict == dynamics::ClusterVerdict::kAccepted ? 1 : 0;
+    for (const std::uint32_t row : object.members) {
+      frame.labels[scan.records()[row]] = id;
+    }
+  }
+}
+
+}  // namespace
+
+/// What is kept of the last usable scan: the source of the next alignment.
+struct DynamicIcp::Reference {
+  Scan scan;
+  std::vector<std::uint8_t> is_dynamic;
+  std::vector<dynamics::ObjectEstimate> clusters;
+  Eigen::Vector3d velocity_sensor;  // m/s
+  Eigen::Isometry3d T_world_sensor;
+};
+
+DynamicIcp::DynamicIcp(const Config& config, int threads) : config_(config), workers_(threads) { check(config_); }
+DynamicIcp::~DynamicIcp() = default;
+DynamicIcp::DynamicIcp(DynamicIcp&&) noexcept = default;
+DynamicIcp& DynamicIcp::operator=(DynamicIcp&&) noexcept = default;
+
+// The system overview of the paper for one scan. Its four modules for the pair (last scan, this scan) are spread over
+// two calls: (i) ego motion and (ii) clustering of a scan run as soon as it is aligned, because the alignment gives the
+// prior of its velocity; (iii) prediction and (iv) matching run when the next scan is there and the time is known.
+Frame DynamicIcp::process(const RawScan& raw) {
+  if (last_stamp_ && raw.stamp <= *last_stamp_) {
+    throw DataError(fmt::format("the scan at {} s is not later than the one before, at {} s", format_seconds(raw.stamp),
+                                format_seconds(*last_stamp_)));
+  }
+  Frame frame;
+  StageClock clock(frame.times);
+  const Scan scan = preprocess(raw, frame);
+  clock.finish(Stage::kPreprocess);
+  last_stamp_ = raw.stamp;
+  if (scan.size() < static_cast<std::size_t>(config_.min_points)) {
+    continue_motion(frame, FrameStatus::kTooFewPoints);
+    return frame;
+  }
+  if (!last_) {
+    frame.status = FrameStatus::kFirst;
+  } else if (seconds_between(last_->scan.stamp(), raw.stamp) > config_.max_gap_s) {
+    continue_motion(frame, FrameStatus::kTimeGap);
+  } else {
+    align_to_last(scan, frame, clock);  // Eq. (9)-(14)
+  }
+
+  frame.ego = ego_motion::estimate_velocity(scan, velocity_prior(frame), config_.ego_motion.regression,
+                                            workers_);  // Eq. (3)
+  const std::vector<double> compensated = ego_motion::compensated_doppler(scan, frame.ego.velocity_sensor);
+  std::vector<std::uint8_t> is_dynamic =
+      ego_motion::dynamic_mask(scan, compensated, config_.ego_motion.filter);  // Eq. (4)
+  clock.finish(Stage::kEgoMotion);
+
+  const std::vector<std::int32_t> labels = cluster(scan, is_dynamic);
+  frame.clusters =
+      dynamics::reconstruct_velocities(scan, compensated, labels, config_.dynamics.velocity);  // Eq. (5)-(8)
+  count_dynamics(frame, is_dynamic, labels);
+  label_points(frame, scan, is_dynamic);
+  clock.finish(Stage::kDynamics);
+
+  last_ = std::make_unique<Reference>(
+      Reference{scan, std::move(is_dynamic), frame.clusters, frame.ego.velocity_sensor, frame.T_world_sensor});
+  return frame;
+}
+
+Scan DynamicIcp::preprocess(const RawScan& raw, Frame& frame) const {
+  const Scan measured = Scan::from_raw(raw, &frame.dropped);  // Eq. (1)
+  const Scan in_range = preprocess::crop_range(measured, config_.preprocess.range);
+  Scan scan = preprocess::voxel_grid(in_range, config_.preprocess.voxel);
+  frame.stamp = raw.stamp;
+  frame.points = raw.points.size();
+  frame.out_of_range = measured.size() - in_range.size();
+  frame.points_used = scan.size();
+  frame.labels.assign(frame.points, -1);
+  return scan;
+}
+
+void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const {
+  const spatial::KdTree tree(scan.points());
+  const preprocess::Normals normals =
+      preprocess::estimate_normals(scan.points(), tree, config_.preprocess.normals, workers_);
+  clock.finish(Stage::kNormals);
+
+  const double dt_s = seconds_between(last_->scan.stamp(), frame.stamp);
+  const Scan source = dynamics::predict(last_->scan, last_->is_dynamic, last_->clusters, dt_s);  // Eq. (9), (11)
+  const registration::Target target{scan, tree, normals.vectors, normals.valid};
+  frame.alignment = registration::align(source, target, predicted_motion(frame.stamp), config_.registration,
+                                        workers_);  // Eq. (12)-(14)
+  const FrameStatus status = frame_status(frame.alignment.status);
+  if (aligned(status)) {
+    frame.status = status;
+    frame.T_target_source = frame.alignment.T_target_source;
+    frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
+  } else {
+    continue_motion(frame, status);
+  }
+  clock.finish(Stage::kRegistration);
+}
+
+void DynamicIcp::continue_motion(Frame& frame, FrameStatus status) const {
+  frame.status = status;
+  if (last_) {
+    frame.T_target_source = predicted_motion(frame.stamp);
+    frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
+  }
+}
+
+/// The start of the alignment: no rotation, and the displacement of the sensor by its Doppler velocity, t = -v dt.
+Eigen::Isometry3d DynamicIcp::predicted_motion(Stamp stamp) const {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  T_target_source.translation() = -last_->velocity_sensor * seconds_between(last_->scan.stamp(), stamp);
+  return T_target_source;
+}
+
+/// v = -R^T t / dt from the alignment that ended at this scan; else the last velocity; zero at the start.
+Eigen::Vector3d DynamicIcp::velocity_prior(const Frame& frame) const {
+  if (!last_) {
+    return Eigen::Vector3d::Zero();
+  }
+  if (!aligned(frame.status)) {
+    return last_->velocity_sensor;
+  }
+  const Eigen::Isometry3d& T = frame.T_target_source;
+  return -T.linear().transpose() * T.translation() / seconds_between(last_->scan.stamp(), frame.stamp);
+}
+
+/// HDBSCAN over the positions of the moving points; -1 for static points, noise, and when nothing is to be predicted.
+std::vector<std::int32_t> DynamicIcp::cluster(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) const {
+  std::vector<std::int32_t> labels(scan.size(), -1);
+  if (!config_.dynamics.predict) {
+    return labels;
+  }
+  std::vector<std::uint32_t> rows;
+  std::vector<Eigen::Vector3d> moving;
+  for (std::uint32_t row = 0; row < scan.size(); ++row) {
+    if (is_dynamic[row] != 0) {
+      rows.push_back(row);
+      moving.push_back(scan.points()[row]);
+    }
+  }
+  const dynamics::HdbscanResult clusters = dynamics::hdbscan(moving, config_.dynamics.clustering, workers_);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    labels[rows[k]] = clusters.labels[k];
+  }
+  return labels;
+}
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,70 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/base/se3.hpp"
+#include "dynamic_icp/dynamics/object_velocity.hpp"
+#include "dynamic_icp/ego_motion/doppler_regression.hpp"
+#include "dynamic_icp/registration/align.hpp"
+
+namespace dynamic_icp::odometry {
+
+/// What the pose of a frame rests on.
+enum class FrameStatus {
+  kNotRun,
+  kFirst,                  ///< the first usable scan: its pose is the identity
+  kConverged,              ///< aligned
+  kIterationLimit,         ///< aligned, but still moving after the last iteration
+  kTooFewCorrespondences,  ///< not aligned: the predicted motion is kept
+  kDegenerate,             ///< not aligned: the predicted motion is kept
+  kTooFewPoints,           ///< not aligned: (almost) empty scan, the predicted motion is kept
+  kTimeGap,                ///< not aligned: too long after the last scan, the predicted motion is kept
+};
+
+std::string_view to_string(FrameStatus status);
+
+/// Whether the pose comes from an alignment that met its stopping rule.
+inline bool converged(FrameStatus status) { return status == FrameStatus::kConverged; }
+
+/// Where the time of a frame went.
+enum class Stage { kPreprocess, kNormals, kEgoMotion, kDynamics, kRegistration };
+inline constexpr std::size_t kStageCount = 5;
+std::string_view to_string(Stage stage);
+
+/// Milliseconds per stage; reading and writing of files is not part of it.
+struct StageTimes {
+  std::array<double, kStageCount> ms{};
+  double total_ms = 0.0;
+};
+
+/// All that the odometry says of one scan.
+struct Frame {
+  FrameStatus status = FrameStatus::kNotRun;
+  Stamp stamp;
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();  ///< from the last usable scan into this one
+  registration::Alignment alignment;                                  ///< of that pair; not run for the first scan
+
+  ego_motion::EgoVelocity ego;                     ///< of this scan
+  std::vector<dynamics::ObjectEstimate> clusters;  ///< of this scan, accepted and rejected
+  std::size_t dynamic_candidates = 0;              ///< points that the velocity filter flags
+  std::size_t dynamic_clustered = 0;               ///< of those, in a cluster
+  std::size_t dynamic_refined = 0;                 ///< of those, in an accepted object
+
+  std::size_t points = 0;       ///< as read
+  std::size_t points_used = 0;  ///< after range crop and voxel grid
+  Scan::Dropped dropped;
+  std::size_t out_of_range = 0;
+  /// Per point of the scan as read: -1 not used (dropped, not kept by the voxel grid, or moving without an object),
+  /// 0 static, k > 0 a member of the k-th accepted object.
+  std::vector<std::int32_t> labels;
+  StageTimes times;
+};
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,23 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "dynamic_icp/base/config_field.hpp"
+#include "dynamic_icp/base/scan.hpp"
+
+namespace dynamic_icp::preprocess {
+
+struct VoxelGridConfig {
+  double voxel_size_m = 0.3;  ///< 0 keeps every point
+};
+
+ConfigFields fields(VoxelGridConfig& config);
+
+/// One row per occupied cubic voxel: the first in scan order, whole and as measured. Averaging a voxel would mix the
+/// Doppler of a moving edge with that of the wall behind it into a velocity nobody measured.
+///
+/// A point p lies in the voxel floor(p / voxel_size_m), also below zero. Rows stay in scan order. Coordinates must be
+/// below 2^20 voxels in magnitude (300 km at 0.3 m); throws std::invalid_argument otherwise.
+Scan voxel_grid(const Scan& scan, const VoxelGridConfig& config);
+
+}  // namespace dynamic_icp::preprocess

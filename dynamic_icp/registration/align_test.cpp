@@ -1,0 +1,261 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/registration/align.hpp"
+
+#include <random>
+
+#include <Eigen/Dense>
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/estimation/robust_kernel.hpp"
+#include "dynamic_icp/registration/objective.hpp"
+
+namespace dynamic_icp::registration {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Points on the six faces of a room of 10 x 8 x 4 m around the sensor, with the exact normals of the faces.
+struct Room {
+  explicit Room(unsigned seed, std::size_t n, double noise_m = 0.0, bool floor_only = false) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    std::normal_distribution<double> normal;
+    RawScan raw;
+    for (std::size_t i = 0; i < n; ++i) {
+      const int axis = floor_only ? 2 : static_cast<int>(i % 3);
+      const double side = floor_only || (i / 3) % 2 == 0 ? -1.0 : 1.0;
+      Vector3d p = Vector3d(5.0 * uniform(random), 4.0 * uniform(random), 2.0 * uniform(random));
+      p[axis] = side * Vector3d(5.0, 4.0, 2.0)[axis] + noise_m * normal(random);
+      raw.points.push_back(p);
+      raw.doppler.push_back(-p.normalized().dot(velocity));
+      normals.push_back(-side * Vector3d::Unit(axis));
+    }
+    scan = Scan::from_raw(raw);
+    has_normal.assign(n, 1);
+    tree.emplace(scan.points());
+  }
+
+  [[nodiscard]] Target target() const { return {scan, *tree, normals, has_normal}; }
+
+  /// The same room seen after the motion, in the frame from which T leads back to the room.
+  [[nodiscard]] Scan moved(const Eigen::Isometry3d& T_room_source) const {
+    RawScan raw;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      raw.points.push_back(T_room_source.inverse() * scan.points()[i]);
+      raw.doppler.push_back(-raw.points.back().normalized().dot(velocity));
+    }
+    return Scan::from_raw(raw);
+  }
+
+  Vector3d velocity{3.0, 0.5, 0.0};
+  Scan scan;
+  std::vector<Vector3d> normals;
+  std::vector<std::uint8_t> has_normal;
+  std::optional<spatial::KdTree> tree;
+};
+
+Eigen::Isometry3d motion(double angle, double distance) {
+  Vector6d xi;
+  xi << angle * Vector3d(0.3, -0.5, 0.8).normalized(), distance * Vector3d(1.0, 0.4, -0.2).normalized();
+  return exp_se3(xi);
+}
+
+double translation_error(const Eigen::Isometry3d& A, const Eigen::Isometry3d& B) {
+  return (A.inverse() * B).translation().norm();
+}
+
+TEST(Align, RecoversAMotionExactlyWithoutNoise) {
+  const Room room(1, 6000);
+  const Eigen::Isometry3d T = motion(0.01, 0.1);
+  AlignConfig config;
+  config.doppler_weight = 0.0;
+  config.tolerance = 1e-9;
+  const Alignment result = align(room.moved(T), room.target(), Eigen::Isometry3d::Identity(), config, Workers(2));
+  EXPECT_EQ(result.status, AlignStatus::kConverged);
+  EXPECT_LT(translation_error(T, result.T_target_source), 1e-9);
+  EXPECT_LT(rotation_angle(T.linear().transpose() * result.T_target_source.linear()), 1e-9);
+  EXPECT_EQ(result.fitness, 1.0);
+  EXPECT_EQ(result.geometry.count, result.correspondences);
+  EXPECT_TRUE(result.degenerate.empty());
+  ASSERT_TRUE(result.covariance.has_value());
+}
+
+TEST(Align, TheDopplerTermHardlyDisturbsGoodGeometry) {
+  // Where the sensor turned between the scans, s_i R u_i and s_j u_j differ although nothing is wrong: the velocity is
+  // constant in the turning sensor frame, not in space. The term pulls a little.
+  const Room room(1, 6000);
+  const Eigen::Isometry3d T = motion(0.01, 0.1);
+  const Alignment result = align(room.moved(T), room.target(), Eigen::Isometry3d::Identity(), {}, Workers(2));
+  EXPECT_EQ(result.status, AlignStatus::kConverged);
+  EXPECT_EQ(result.doppler.count, result.correspondences);
+  EXPECT_LT(translation_error(T, result.T_target_source), 1e-4);
+  EXPECT_LT(rotation_angle(T.linear().transpose() * result.T_target_source.linear()), 1e-4);
+}
+
+TEST(Align, FirstStepIsTheWeightedLeastSquaresStep) {
+  // One Gauss-Newton step against the same rows stacked and solved by an orthogonal decomposition.
+  const Room room(2, 900, 0.05);
+  const Scan source = room.moved(motion(0.005, 0.05));
+  AlignConfig config;
+  config.max_iterations = 1;
+  const Eigen::Isometry3d T0 = Eigen::Isometry3d::Identity();
+  const Correspondences pairs = find_correspondences(source, room.target(), T0, 0.3, Workers(1));
+  Eigen::Matrix<double, Eigen::Dynamic, 6> A(2 * static_cast<Eigen::Index>(pairs.pairs.size()), 6);
+  Eigen::VectorXd b(A.rows());
+  Eigen::Index row = 0;
+  for (const Correspondence& pair : pairs.pairs) {
+    const Vector3d p = source.points()[pair.source];
+    const Vector3d n = room.normals[pair.target];
+    const double rg = n.dot(p - room.scan.points()[pair.target]);
+    const double wg = std::sqrt(0.8 * estimation::tukey_weight(rg, 0.5));
+    A.row(row) << wg * p.cross(n).transpose(), wg * n.transpose();
+    b[row++] = -wg * rg;
+    const Vector3d ray = source.doppler()[pair.source] * source.directions()[pair.source];
+    const Vector3d u = room.scan.directions()[pair.target];
+    const double rv = u.dot(ray) - room.scan.doppler()[pair.target];
+    const double wv = std::sqrt(0.2 * estimation::tukey_weight(rv, 0.3));
+    A.row(row) << wv * ray.cross(u).transpose(), 0.0, 0.0, 0.0;
+    b[row++] = -wv * rv;
+  }
+  const Vector6d xi = A.colPivHouseholderQr().solve(b);
+  const Alignment result = align(source, room.target(), T0, config, Workers(1));
+  EXPECT_EQ(result.iterations, 1);
+  EXPECT_LT((log_se3(result.T_target_source) - xi).norm(), 1e-10);
+}
+
+TEST(Align, CostDoesNotChangeWhenBothScansAreTurned) {
+  const Room room(3, 600, 0.03);
+  const Eigen::Isometry3d T = motion(0.02, 0.1);
+  const Scan source = room.moved(T);
+  const Correspondences pairs = find_correspondences(source, room.target(), T, 0.3, Workers(1));
+  const double expected = cost(source, room.target(), pairs, T, {});
+  const Eigen::Matrix3d Q = exp_so3({0.4, -1.1, 0.7});
+  const auto turned = [&](const Scan& scan) {
+    RawScan raw;
+    for (const Vector3d& p : scan.points()) {
+      raw.points.push_back(Q * p);
+    }
+    raw.doppler = scan.doppler();
+    return Scan::from_raw(raw);
+  };
+  const Scan turned_source = turned(source);
+  const Scan turned_scan = turned(room.scan);
+  const spatial::KdTree tree(turned_scan.points());
+  std::vector<Vector3d> normals = room.normals;
+  for (Vector3d& n : normals) {
+    n = Q * n;
+  }
+  Eigen::Isometry3d T_turned = Eigen::Isometry3d::Identity();
+  T_turned.linear() = Q * T.linear() * Q.transpose();
+  T_turned.translation() = Q * T.translation();
+  const Target target{turned_scan, tree, normals, room.has_normal};
+  EXPECT_NEAR(cost(turned_source, target, pairs, T_turned, {}), expected, 1e-10 * expected);
+}
+
+TEST(Align, NormalEquationsAreTheGradientOfTheCost) {
+  const Room room(4, 600, 0.05);
+  const Scan source = room.moved(motion(0.01, 0.1));
+  const Eigen::Isometry3d T = motion(0.012, 0.12);
+  const Correspondences pairs = find_correspondences(source, room.target(), T, 0.5, Workers(1));
+  const Linearisation linear = linearise(source, room.target(), pairs, T, {}, Workers(1));
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d step = 1e-6 * Vector6d::Unit(k);
+    const double slope = (cost(source, room.target(), pairs, exp_se3(step) * T, {}) -
+                          cost(source, room.target(), pairs, exp_se3(-step) * T, {})) /
+                         2e-6;
+    EXPECT_NEAR(linear.equations.b[k], slope, 1e-4 * (1.0 + std::abs(slope))) << "component " << k;
+  }
+}
+
+TEST(Align, WithoutDopplerWeightTheTermIsOff) {
+  const Room room(5, 600);
+  AlignConfig config;
+  config.doppler_weight = 0.0;
+  const Alignment result =
+      align(room.moved(motion(0.0, 0.05)), room.target(), Eigen::Isometry3d::Identity(), config, Workers(1));
+  EXPECT_EQ(result.doppler.count, 0u);
+  EXPECT_GT(result.geometry.count, 500u);
+}
+
+TEST(Align, OnePlaneIsReportedAsDegenerate) {
+  const Room room(6, 2000, 0.0, true);
+  AlignConfig config;
+  config.doppler_weight = 0.0;
+  const Alignment result = align(room.scan, room.target(), Eigen::Isometry3d::Identity(), config, Workers(1));
+  EXPECT_EQ(result.status, AlignStatus::kDegenerate);
+  ASSERT_EQ(result.degenerate.size(), 3u) << "two translations along the plane and the turn about its normal";
+  for (const estimation::DegenerateDirection& open : result.degenerate) {
+    EXPECT_NEAR(open.direction[0], 0.0, 1e-6);
+    EXPECT_NEAR(open.direction[1], 0.0, 1e-6);
+    EXPECT_NEAR(open.direction[5], 0.0, 1e-6);
+  }
+  EXPECT_FALSE(result.covariance.has_value());
+  EXPECT_TRUE(result.T_target_source.matrix().allFinite());
+}
+
+TEST(Align, NothingToAlignIsAStatus) {
+  const Room room(7, 300);
+  const Room nothing(8, 0);
+  const Eigen::Isometry3d far = motion(0.0, 500.0);
+  for (const Alignment& result :
+       {align(Scan{}, room.target(), far, {}, Workers(1)), align(room.scan, nothing.target(), far, {}, Workers(1)),
+        align(room.scan, room.target(), far, {}, Workers(1))}) {
+    EXPECT_EQ(result.status, AlignStatus::kTooFewCorrespondences);
+    EXPECT_LT(translation_error(result.T_target_source, far), 1e-9) << "the start is kept";
+    EXPECT_EQ(result.fitness, 0.0);
+    EXPECT_FALSE(result.covariance.has_value());
+  }
+  EXPECT_EQ(Alignment{}.status, AlignStatus::kNotRun);
+}
+
+TEST(Align, StopsAtTheIterationLimit) {
+  const Room room(9, 3000, 0.02);
+  AlignConfig config;
+  config.max_iterations = 2;
+  config.tolerance = 1e-12;
+  const Alignment result =
+      align(room.moved(motion(0.02, 0.2)), room.target(), Eigen::Isometry3d::Identity(), config, Workers(1));
+  EXPECT_EQ(result.status, AlignStatus::kIterationLimit);
+  EXPECT_EQ(result.iterations, 2);
+}
+
+TEST(Align, CovarianceCoversTheErrorOfIndependentResiduals) {
+  // Source noise on exact planes: the residuals are independent, so the normalised error squared has mean 6.
+  const Room room(10, 3000);
+  const Eigen::Isometry3d T = motion(0.005, 0.05);
+  AlignConfig config;
+  config.doppler_weight = 0.0;
+  double sum = 0.0;
+  constexpr int kRepeats = 60;
+  for (unsigned seed = 0; seed < kRepeats; ++seed) {
+    std::mt19937 random(1000 + seed);
+    std::normal_distribution<double> normal;
+    const Scan exact = room.moved(T);
+    RawScan raw;
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      raw.points.push_back(exact.points()[i] + 0.01 * Vector3d(normal(random), normal(random), normal(random)));
+      raw.doppler.push_back(0.0);
+    }
+    const Alignment result = align(Scan::from_raw(raw), room.target(), T, config, Workers(1));
+    ASSERT_TRUE(result.covariance.has_value());
+    const Vector6d error = log_se3(result.T_target_source * T.inverse());
+    sum += error.dot(result.covariance->inverse() * error);
+  }
+  EXPECT_NEAR(sum / kRepeats, 6.0, 2.0);
+}
+
+TEST(Align, SameBitsForAnyNumberOfThreads) {
+  const Room room(11, 8000, 0.02);
+  const Scan source = room.moved(motion(0.01, 0.15));
+  const Alignment one = align(source, room.target(), Eigen::Isometry3d::Identity(), {}, Workers(1));
+  for (const int threads : {2, 7}) {
+    const Alignment several = align(source, room.target(), Eigen::Isometry3d::Identity(), {}, Workers(threads));
+    EXPECT_EQ(one.T_target_source.matrix(), several.T_target_source.matrix());
+    EXPECT_EQ(*one.covariance, *several.covariance);
+    EXPECT_EQ(one.iterations, several.iterations);
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::registration

@@ -1,0 +1,45 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/base/parallel.hpp"
+#include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/base/se3.hpp"
+#include "dynamic_icp/spatial/kd_tree.hpp"
+
+namespace dynamic_icp::registration {
+
+/// What the source is aligned to: a scan with the search tree over its points and the normals where there are any.
+/// It only refers to its parts; they must outlive it.
+struct Target {
+  const Scan& scan;
+  const spatial::KdTree& tree;
+  std::span<const Eigen::Vector3d> normals;
+  std::span<const std::uint8_t> has_normal;  ///< 1 where the normal may be used
+};
+
+struct Correspondence {
+  std::uint32_t source;     ///< row of the source scan
+  std::uint32_t target;     ///< row of the target scan
+  double squared_distance;  ///< m^2, between T p_i and q_j
+};
+
+/// Association, apart from what is done with it: data that can be printed, tested and drawn.
+struct Correspondences {
+  std::vector<Correspondence> pairs;  ///< in the order of the source rows
+  double fitness = 0.0;               ///< share of the source points that found a partner
+  double inlier_rmse = 0.0;           ///< m, root mean square distance of the pairs; 0 without pairs
+};
+
+/// Pairs each source point, moved by T_target_source, with the nearest target point at most `max_distance_m` away.
+/// A source point whose nearest target point has no normal stays alone: it gets no second choice.
+Correspondences find_correspondences(const Scan& source, const Target& target, const Eigen::Isometry3d& T_target_source,
+                                     double max_distance_m, const Workers& workers);
+
+}  // namespace dynamic_icp::registration

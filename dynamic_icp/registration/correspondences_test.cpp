@@ -1,0 +1,96 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/registration/correspondences.hpp"
+
+#include <cmath>
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::registration {
+namespace {
+
+using Eigen::Vector3d;
+
+Scan scan_of(const std::vector<Vector3d>& points) {
+  RawScan raw;
+  raw.points = points;
+  raw.doppler.assign(points.size(), 0.0);
+  return Scan::from_raw(raw);
+}
+
+struct TargetParts {
+  explicit TargetParts(const std::vector<Vector3d>& points)
+      : scan(scan_of(points)),
+        tree(scan.points()),
+        normals(points.size(), Vector3d::UnitZ()),
+        has_normal(points.size(), 1) {}
+  [[nodiscard]] Target target() const { return {scan, tree, normals, has_normal}; }
+
+  Scan scan;
+  spatial::KdTree tree;
+  std::vector<Vector3d> normals;
+  std::vector<std::uint8_t> has_normal;
+};
+
+TEST(Correspondences, EqualBruteForce) {
+  std::mt19937 random(1);
+  std::uniform_real_distribution<double> uniform(-5.0, 5.0);
+  std::vector<Vector3d> source(400);
+  std::vector<Vector3d> target(500);
+  for (Vector3d& p : source) {
+    p = {uniform(random), uniform(random), uniform(random)};
+  }
+  for (Vector3d& q : target) {
+    q = {uniform(random), uniform(random), uniform(random)};
+  }
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = exp_so3({0.1, -0.2, 0.3});
+  T.translation() = Vector3d(0.5, 0.0, -0.2);
+  TargetParts parts(target);
+  for (std::size_t j = 0; j < target.size(); j += 7) {
+    parts.has_normal[j] = 0;
+  }
+  constexpr double kGate = 0.6;
+  const Correspondences found = find_correspondences(scan_of(source), parts.target(), T, kGate, Workers(2));
+  std::size_t next = 0;
+  double sum = 0.0;
+  for (std::uint32_t i = 0; i < source.size(); ++i) {
+    std::size_t best = 0;
+    for (std::size_t j = 1; j < target.size(); ++j) {
+      if ((T * source[i] - target[j]).norm() < (T * source[i] - target[best]).norm()) {
+        best = j;
+      }
+    }
+    const double distance = (T * source[i] - target[best]).norm();
+    if (distance <= kGate && best % 7 != 0) {
+      ASSERT_LT(next, found.pairs.size());
+      EXPECT_EQ(found.pairs[next].source, i);
+      EXPECT_EQ(found.pairs[next].target, best);
+      EXPECT_NEAR(found.pairs[next].squared_distance, distance * distance, 1e-12);
+      sum += distance * distance;
+      ++next;
+    }
+  }
+  EXPECT_GT(next, 50u);
+  EXPECT_EQ(found.pairs.size(), next);
+  EXPECT_NEAR(found.fitness, static_cast<double>(next) / 400.0, 1e-15);
+  EXPECT_NEAR(found.inlier_rmse, std::sqrt(sum / static_cast<double>(next)), 1e-12);
+}
+
+TEST(Correspondences, OfEmptyScansAreEmptyNotUndefined) {
+  const TargetParts parts({{1, 0, 0}});
+  const TargetParts nothing((std::vector<Vector3d>()));
+  const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  for (const Correspondences& found :
+       {find_correspondences(Scan{}, parts.target(), T, 1.0, Workers(1)),
+        find_correspondences(scan_of({{1, 0, 0}}), nothing.target(), T, 1.0, Workers(1)),
+        find_correspondences(scan_of({{5, 0, 0}}), parts.target(), T, 1.0, Workers(1))}) {
+    EXPECT_TRUE(found.pairs.empty());
+    EXPECT_EQ(found.fitness, 0.0);
+    EXPECT_EQ(found.inlier_rmse, 0.0);
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::registration

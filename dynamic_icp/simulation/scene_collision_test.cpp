@@ -1,0 +1,195 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/simulation/body_shapes.hpp"
+#include "dynamic_icp/simulation/scene.hpp"
+#include "dynamic_icp/simulation/simulation.hpp"
+
+// Bodies of the shipped scenes must not run through each other, through the vehicle or through what stands there.
+namespace dynamic_icp::simulation {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kFrames = 600;
+constexpr int kSeeds = 5;
+
+using Triangle = std::array<Vector3d, 3>;
+
+/// A box in the world: middle, axes with half lengths as their lengths.
+struct WorldBox {
+  Vector3d center;
+  std::array<Vector3d, 3> half_axes;
+
+  [[nodiscard]] double reach(const Vector3d& axis) const {
+    return std::abs(axis.dot(half_axes[0])) + std::abs(axis.dot(half_axes[1])) + std::abs(axis.dot(half_axes[2]));
+  }
+  [[nodiscard]] double radius() const {
+    return std::sqrt(half_axes[0].squaredNorm() + half_axes[1].squaredNorm() + half_axes[2].squaredNorm());
+  }
+};
+
+/// The box of a body without the lowest `ground_m`: it stands on the ground, which may be rough.
+WorldBox world_box(const MotionState& motion, Eigen::AlignedBox3d box, double ground_m) {
+  box.min().z() += ground_m;
+  WorldBox result;
+  result.center = motion.T_world_body * box.center();
+  for (int i = 0; i < 3; ++i) {
+    result.half_axes[static_cast<std::size_t>(i)] = 0.5 * box.sizes()[i] * motion.T_world_body.linear().col(i);
+  }
+  return result;
+}
+
+/// Convex sets are apart when some axis separates them; for two boxes the normals of the faces and the products of
+/// the edges are enough.
+bool overlap(const WorldBox& a, const WorldBox& b) {
+  const Vector3d between = b.center - a.center;
+  if (between.norm() > a.radius() + b.radius()) {
+    return false;
+  }
+  std::vector<Vector3d> axes;
+  for (std::size_t i = 0; i < 3; ++i) {
+    axes.push_back(a.half_axes[i]);
+    axes.push_back(b.half_axes[i]);
+    for (std::size_t j = 0; j < 3; ++j) {
+      axes.push_back(a.half_axes[i].cross(b.half_axes[j]));
+    }
+  }
+  return std::none_of(axes.begin(), axes.end(), [&](const Vector3d& axis) {
+    return std::abs(axis.dot(between)) > a.reach(axis) + b.reach(axis);
+  });
+}
+
+bool overlap(const WorldBox& box, const Triangle& triangle) {
+  const std::array<Vector3d, 3> edges = {triangle[1] - triangle[0], triangle[2] - triangle[1],
+                                         triangle[0] - triangle[2]};
+  std::vector<Vector3d> axes = {edges[0].cross(edges[1])};
+  for (const Vector3d& half_axis : box.half_axes) {
+    axes.push_back(half_axis);
+    for (const Vector3d& edge : edges) {
+      axes.push_back(half_axis.cross(edge));
+    }
+  }
+  return std::none_of(axes.begin(), axes.end(), [&](const Vector3d& axis) {
+    const auto [low, high] = std::minmax({axis.dot(triangle[0]), axis.dot(triangle[1]), axis.dot(triangle[2])});
+    const double center = axis.dot(box.center);
+    return low > center + box.reach(axis) || high < center - box.reach(axis);
+  });
+}
+
+TEST(Overlap, KnownCases) {
+  const Eigen::AlignedBox3d cube(Vector3d(-1.0, -1.0, -1.0), Vector3d(1.0, 1.0, 1.0));
+  const auto at = [&](double x, double yaw) {
+    MotionState motion;
+    motion.T_world_body.translation().x() = x;
+    motion.T_world_body.linear() = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()).toRotationMatrix();
+    return world_box(motion, cube, 0.0);
+  };
+  EXPECT_TRUE(overlap(at(0.0, 0.0), at(1.99, 0.0)));
+  EXPECT_FALSE(overlap(at(0.0, 0.0), at(2.01, 0.0)));
+  EXPECT_TRUE(overlap(at(0.0, 0.0), at(2.40, M_PI / 4.0)));
+  EXPECT_FALSE(overlap(at(0.0, 0.0), at(2.42, M_PI / 4.0)));
+  EXPECT_TRUE(overlap(at(0.0, 0.0), Triangle{{{0.9, -9.0, -9.0}, {0.9, 9.0, -9.0}, {0.9, 0.0, 9.0}}}));
+  EXPECT_FALSE(overlap(at(0.0, 0.0), Triangle{{{1.1, -9.0, -9.0}, {1.1, 9.0, -9.0}, {1.1, 0.0, 9.0}}}));
+}
+
+/// Static triangles by square cells of the ground plane.
+class TriangleCells {
+ public:
+  explicit TriangleCells(const TriangleMesh& mesh) {
+    for (const auto& corners : mesh.triangles) {
+      const Triangle triangle = {mesh.vertices[corners[0]], mesh.vertices[corners[1]], mesh.vertices[corners[2]]};
+      // Level ground reaches far and cannot be run into.
+      if (triangle[0].z() == triangle[1].z() && triangle[1].z() == triangle[2].z() && triangle[0].z() <= 0.12) {
+        continue;
+      }
+      Eigen::AlignedBox3d box(triangle[0]);
+      box.extend(triangle[1]).extend(triangle[2]);
+      for (int x = cell(box.min().x()); x <= cell(box.max().x()); ++x) {
+        for (int y = cell(box.min().y()); y <= cell(box.max().y()); ++y) {
+          cells_[{x, y}].push_back(triangle);
+        }
+      }
+    }
+  }
+
+  [[nodiscard]] bool overlaps(const WorldBox& box) const {
+    const double reach_x = box.reach(Vector3d::UnitX());
+    const double reach_y = box.reach(Vector3d::UnitY());
+    for (int x = cell(box.center.x() - reach_x); x <= cell(box.center.x() + reach_x); ++x) {
+      for (int y = cell(box.center.y() - reach_y); y <= cell(box.center.y() + reach_y); ++y) {
+        const auto found = cells_.find({x, y});
+        if (found != cells_.end() &&
+            std::any_of(found->second.begin(), found->second.end(), [&](const auto& t) { return overlap(box, t); })) {
+          return true;
+        }
+      }
+    }
+    return false;
+  }
+
+ private:
+  static int cell(double x) { return static_cast<int>(std::floor(x / 5.0)); }
+
+  std::map<std::pair<int, int>, std::vector<Triangle>> cells_;
+};
+
+/// A moving thing of a scene: the vehicle or a body.
+struct Mover {
+  std::string name;
+  Trajectory trajectory;
+  Eigen::AlignedBox3d box;
+};
+
+std::vector<Mover> movers_of(const Scene& scene) {
+  std::vector<Mover> movers = {{"vehicle", scene.vehicle, bounds(make_car())}};
+  for (const MovingBody& body : scene.world.bodies) {
+    movers.push_back(
+        {body.name + " " + std::to_string(body.id), body.trajectory, bounds(scene.world.shapes[body.shape])});
+  }
+  return movers;
+}
+
+void expect_no_collision(const Scene& scene, double ground_m) {
+  const std::vector<Mover> movers = movers_of(scene);
+  const TriangleCells statics(scene.world.statics);
+  for (int i = 0; i < kFrames; ++i) {
+    const double t = 0.1 * i;
+    std::vector<WorldBox> boxes;
+    for (const Mover& mover : movers) {
+      boxes.push_back(world_box(mover.trajectory(t), mover.box, ground_m));
+    }
+    for (std::size_t a = 0; a < boxes.size(); ++a) {
+      ASSERT_FALSE((boxes[a].center - boxes[0].center).norm() < 260.0 && statics.overlaps(boxes[a]))
+          << movers[a].name << " runs into something static at " << t << " s";
+      for (std::size_t b = 0; b < a; ++b) {
+        ASSERT_FALSE(overlap(boxes[a], boxes[b]))
+            << movers[a].name << " runs into " << movers[b].name << " at " << t << " s";
+      }
+    }
+  }
+}
+
+TEST(ShippedScenes, NobodyRunsThroughAnybody) {
+  for (const SceneKind& kind : scene_kinds()) {
+    const double rough_m = kind.name == "off-road" ? 0.45 : 0.15;
+    for (int seed = 1; seed <= kSeeds; ++seed) {
+      SCOPED_TRACE(std::string(kind.name) + ", seed " + std::to_string(seed));
+      SimulationConfig config = default_config(kind);
+      config.frames = kFrames;
+      config.seed = seed;
+      expect_no_collision(build_scene(kind, config), rough_m);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::simulation
