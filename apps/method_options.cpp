@@ -15,9 +15,9 @@ namespace dynamic_icp::apps {
 void add_method_options(CLI::App& command, MethodOptions& options) {
   command.add_option("--method", options.method, "Method: dynamic-icp (default dynamic-icp)")->type_name("NAME");
   command
-      .add_option("--preset", options.preset,
-                  fmt::format("Configuration to start from: {} (default default; the two are the same so far)",
-                              fmt::join(odometry::preset_names(), ", ")))
+      .add_option(
+          "--preset", options.preset,
+          fmt::format("Configuration to start from: {} (default default)", fmt::join(odometry::preset_names(), ", ")))
       ->type_name("NAME");
   command
       .add_option("--ablation", options.ablation,

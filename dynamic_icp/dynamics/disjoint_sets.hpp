@@ -28,6 +28,9 @@ class DisjointSets {
     return x;
   }
 
+  /// Number of members of the set that is known by `root`.
+  [[nodiscard]] std::uint32_t size(std::uint32_t root) const { return size_[root]; }
+
   /// Unites the sets of `a` and `b`; false when they are one set already. The larger set keeps its member.
   bool unite(std::uint32_t a, std::uint32_t b) {
     a = find(a);

@@ -32,6 +32,7 @@ TEST(DisjointSets, AgreeWithRelabellingEveryMember) {
     const auto x = static_cast<std::uint32_t>(random() % n);
     const auto y = static_cast<std::uint32_t>(random() % n);
     EXPECT_EQ(sets.find(x) == sets.find(y), label[x] == label[y]);
+    EXPECT_EQ(sets.size(sets.find(x)), std::count(label.begin(), label.end(), label[x]));
   }
   std::sort(label.begin(), label.end());
   EXPECT_EQ(sets.count(), static_cast<std::size_t>(std::unique(label.begin(), label.end()) - label.begin()));

@@ -136,7 +136,7 @@ NaiveTree naive_condensed_tree(const std::vector<Link>& tree, std::size_t min_cl
         for (const std::size_t point : part) {
           result.cluster[point] = child;
         }
-        result.clusters.push_back({.parent = parent, .birth = lambda});
+        result.clusters.push_back({.parent = parent, .birth = lambda, .children = {}});
       }
       continue;
     }

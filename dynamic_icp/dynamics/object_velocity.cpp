@@ -4,9 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+
+#include "dynamic_icp/estimation/robust_kernel.hpp"
 
 namespace dynamic_icp::dynamics {
 namespace {
@@ -14,6 +17,9 @@ namespace {
 using Rows = std::vector<std::uint32_t>;
 
 constexpr std::size_t kUnknowns = 3;
+
+constexpr int kMaxIterations = 50;
+constexpr double kStepTolerance = 1e-6;  // m/s
 
 // The velocity gate of an object at rest would have no width: allow for rounding.
 constexpr double kSmallestGate = 1e-12;
@@ -38,15 +44,55 @@ Conditioning conditioning(const Scan& scan, const Rows& rows) {
   return {std::sqrt(std::max(0.0, values[0])), std::sqrt(std::max(0.0, values[2]))};
 }
 
-Eigen::Vector3d least_squares(const Scan& scan, std::span<const double> compensated, const Rows& rows) {
+/// Covariance of the M-estimate, [sum psi^2 / (n - 3)] / [mean psi']^2 (U^T U)^-1; zero for three points or fewer.
+Eigen::Matrix3d residual_covariance(const Scan& scan, std::span<const double> compensated, const Rows& rows,
+                                    double delta, const Eigen::Vector3d& velocity) {
   Eigen::Matrix3d UtU = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d Uts = Eigen::Vector3d::Zero();
+  double psi_squared = 0.0;
+  double inliers = 0.0;
   for (const std::uint32_t row : rows) {
     const Eigen::Vector3d& u = scan.directions()[row];
+    const double e = u.dot(velocity) - compensated[row];
+    const double psi = estimation::huber_weight(e, delta) * e;
     UtU += u * u.transpose();
-    Uts += compensated[row] * u;
+    psi_squared += psi * psi;
+    inliers += std::abs(e) <= delta ? 1.0 : 0.0;
   }
-  return UtU.ldlt().solve(Uts);
+  const auto n = static_cast<double>(rows.size());
+  if (rows.size() <= kUnknowns || inliers == 0.0) {
+    return Eigen::Matrix3d::Zero();
+  }
+  const double inlier_share = inliers / n;
+  return psi_squared / (n - kUnknowns) / (inlier_share * inlier_share) * UtU.inverse();
+}
+
+struct Velocity {
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
+};
+
+/// Minimises sum rho(u_i . v - s~_i): the square for delta = infinity, which takes one step, else Huber's loss.
+Velocity regress(const Scan& scan, std::span<const double> compensated, const Rows& rows, double delta) {
+  Velocity result;
+  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
+    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (const std::uint32_t row : rows) {
+      const Eigen::Vector3d& u = scan.directions()[row];
+      const double e = u.dot(result.velocity) - compensated[row];
+      // The first step starts from nowhere, so its residuals say nothing yet.
+      const double w = iteration == 0 ? 1.0 : estimation::huber_weight(e, delta);
+      H += w * u * u.transpose();
+      b += w * e * u;
+    }
+    const Eigen::Vector3d step = -H.ldlt().solve(b);
+    result.velocity += step;
+    if (std::isinf(delta) || step.norm() < kStepTolerance) {
+      break;
+    }
+  }
+  result.covariance = residual_covariance(scan, compensated, rows, delta, result.velocity);
+  return result;
 }
 
 /// The rows of each label, in scan order.
@@ -76,6 +122,11 @@ void measure_box(const Scan& scan, ObjectEstimate& object) {
   object.extent = high - low;
 }
 
+double largest_deviation(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(std::max(
+      0.0, Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(covariance, Eigen::EigenvaluesOnly).eigenvalues()[2]));
+}
+
 ObjectEstimate reconstruct(const Scan& scan, std::span<const double> compensated, const Rows& rows,
                            const ObjectVelocityConfig& config) {
   ObjectEstimate object;
@@ -91,7 +142,10 @@ ObjectEstimate reconstruct(const Scan& scan, std::span<const double> compensated
     object.verdict = ClusterVerdict::kIllConditioned;
     return object;
   }
-  object.velocity_sensor = least_squares(scan, compensated, rows);
+  const double delta = config.huber_delta_mps > 0.0 ? config.huber_delta_mps : std::numeric_limits<double>::infinity();
+  const Velocity estimate = regress(scan, compensated, rows, delta);
+  object.velocity_sensor = estimate.velocity;
+  object.covariance = estimate.covariance;
   // The paper writes the threshold with a vector; it is read as lambda times the speed of the cluster.
   const double tau_v = std::max(config.lambda * object.velocity_sensor.norm(), kSmallestGate);
   Rows inliers;
@@ -105,6 +159,8 @@ ObjectEstimate reconstruct(const Scan& scan, std::span<const double> compensated
     object.verdict = ClusterVerdict::kTooFewInliers;
   } else if (inliers.size() < kUnknowns || !conditioning(scan, inliers).good(config)) {
     object.verdict = ClusterVerdict::kInliersIllConditioned;
+  } else if (config.max_deviation_mps > 0.0 && largest_deviation(object.covariance) > config.max_deviation_mps) {
+    object.verdict = ClusterVerdict::kUncertain;
   } else {
     object.verdict = ClusterVerdict::kAccepted;
     object.members = std::move(inliers);
@@ -125,6 +181,10 @@ ConfigFields fields(ObjectVelocityConfig& config) {
        "smallest allowed singular value of a cluster's lines of sight (sigma_min)"},
       {"max_condition_number", &config.max_condition_number, 1.0, 1e9, "",
        "largest allowed condition number of a cluster's lines of sight"},
+      {"huber_delta_mps", &config.huber_delta_mps, 0.0, 100.0, "m/s",
+       "threshold of Huber regression of an object's velocity; 0 is ordinary least squares, the paper's way"},
+      {"max_deviation_mps", &config.max_deviation_mps, 0.0, 1000.0, "m/s",
+       "objects whose velocity has a larger standard deviation in some direction are rejected; 0 switches this off"},
   };
 }
 
@@ -142,6 +202,8 @@ std::string_view to_string(ClusterVerdict verdict) {
       return "too_few_inliers";
     case ClusterVerdict::kInliersIllConditioned:
       return "inliers_ill_conditioned";
+    case ClusterVerdict::kUncertain:
+      return "uncertain";
   }
   return "unknown";
 }

@@ -19,6 +19,9 @@ struct ObjectVelocityConfig {
   double min_inlier_fraction = 0.5;     ///< phi_min
   double min_singular_value = 1e-3;     ///< sigma_min of the stacked lines of sight U_k
   double max_condition_number = 400.0;  ///< kappa(U_k)
+  // Beyond the paper; off in preset `paper`.
+  double huber_delta_mps = 0.0;    ///< Huber regression with this threshold instead of least squares; 0: least squares
+  double max_deviation_mps = 0.0;  ///< reject velocities with a standard deviation beyond this in any direction; 0: off
 };
 
 ConfigFields fields(ObjectVelocityConfig& config);
@@ -31,6 +34,7 @@ enum class ClusterVerdict {
   kIllConditioned,         ///< lines of sight too parallel: the velocity across them is not observable
   kTooFewInliers,          ///< no single velocity explains its points
   kInliersIllConditioned,  ///< what is left of it has lines of sight too parallel
+  kUncertain,              ///< the velocity is known worse than max_deviation_mps in some direction
 };
 
 std::string_view to_string(ClusterVerdict verdict);
@@ -39,6 +43,7 @@ std::string_view to_string(ClusterVerdict verdict);
 struct ObjectEstimate {
   ClusterVerdict verdict = ClusterVerdict::kNotRun;
   Eigen::Vector3d velocity_sensor = Eigen::Vector3d::Zero();  ///< m/s over ground, in the sensor frame of the scan
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();       ///< (m/s)^2, from the residuals; zero if not estimated
   std::size_t cluster_points = 0;
   double inlier_fraction = 0.0;
   double smallest_singular_value = 0.0;  ///< of U_k
@@ -49,8 +54,11 @@ struct ObjectEstimate {
 };
 
 /// Velocity reconstruction of the paper, Eq. (5)-(8), for each cluster label 0, 1, ... in `labels` (one per row of the
-/// scan, negative: in no cluster): ordinary least squares U_k v_k = s~_k over all its points, then the test of
-/// conditioning and the velocity gate tau_v. Entry k of the result belongs to label k.
+/// scan, negative: in no cluster): the test of conditioning, ordinary least squares U_k v_k = s~_k over all its points,
+/// and the velocity gate tau_v. Entry k of the result belongs to label k.
+///
+/// A single gross Doppler error can turn the least squares velocity across the line of sight by tens of m/s; with
+/// `huber_delta_mps` the same system is solved by Huber regression instead.
 ///
 /// `compensated` is the Doppler with the sensor's motion taken out (m/s), one per row.
 std::vector<ObjectEstimate> reconstruct_velocities(const Scan& scan, std::span<const double> compensated,

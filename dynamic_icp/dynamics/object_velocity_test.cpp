@@ -70,6 +70,45 @@ TEST(ObjectVelocity, EqualsTheOrthogonalLeastSquaresSolution) {
   EXPECT_NEAR(object.condition_number, singular[0] / singular[2], 1e-6);
 }
 
+TEST(ObjectVelocity, HuberRegressionBearsGrossDopplerErrors) {
+  const Vector3d v(10.0, 1.0, 0.0);
+  Cluster c = cluster(10, 100, {20.0, 3.0, 0.0}, {2.0, 1.8, 1.4}, v, 0.05);
+  c.compensated[7] += 25.0;
+  ObjectVelocityConfig robust;
+  robust.huber_delta_mps = 0.15;
+  const ObjectEstimate plain = only_object(c);
+  const ObjectEstimate estimate = only_object(c, robust);
+  EXPECT_GT((plain.velocity_sensor - v).norm(), 3.0) << "otherwise the error is not gross enough for this test";
+  EXPECT_LT((estimate.velocity_sensor - v).norm(), 0.8);
+  EXPECT_EQ(estimate.verdict, ClusterVerdict::kAccepted);
+}
+
+TEST(ObjectVelocity, CovarianceCoversTheTrueErrorWithAndWithoutHuber) {
+  const Vector3d v(10.0, 1.0, 0.0);
+  for (const double delta : {0.0, 0.1}) {
+    ObjectVelocityConfig config;
+    config.huber_delta_mps = delta;
+    double sum = 0.0;
+    constexpr int kRepeats = 300;
+    for (unsigned seed = 0; seed < kRepeats; ++seed) {
+      const ObjectEstimate object = only_object(cluster(500 + seed, 120, kNear, kCarSize, v, 0.08), config);
+      const Vector3d error = object.velocity_sensor - v;
+      sum += error.dot(object.covariance.inverse() * error);
+    }
+    EXPECT_NEAR(sum / kRepeats, 3.0, 0.6) << "normalised error squared of three components, delta " << delta;
+  }
+}
+
+TEST(ObjectVelocity, UncertainVelocitiesAreRejectedOnRequest) {
+  const Cluster c = cluster(11, 60, {60.0, 0.0, 0.0}, {0.5, 1.8, 1.4}, {10.0, 0.0, 0.0}, 0.05);
+  ObjectVelocityConfig config;
+  config.huber_delta_mps = 0.15;
+  EXPECT_EQ(only_object(c, config).verdict, ClusterVerdict::kAccepted);
+  config.max_deviation_mps = 0.3;
+  EXPECT_EQ(only_object(c, config).verdict, ClusterVerdict::kUncertain);
+  EXPECT_TRUE(only_object(c, config).members.empty());
+}
+
 TEST(ObjectVelocity, LeavesOutPointsBeyondTheGate) {
   Cluster c = cluster(3, 200, kNear, kCarSize, {10.0, 0.0, 0.0});
   c.compensated[5] += 2.0;  // gate: 0.05 * 10 m/s

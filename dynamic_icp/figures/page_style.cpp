@@ -45,6 +45,13 @@ pre { margin: 0 0 12px; padding: 10px 12px; border-radius: 6px; background: var(
   white-space: pre-wrap; overflow-wrap: anywhere; }
 ul.warnings { margin: 0; padding-left: 18px; }
 ul.warnings li { margin-bottom: 6px; overflow-wrap: anywhere; }
+@media (max-width: 560px) {
+  tr { display: grid; grid-template-columns: minmax(0, 1fr) fit-content(60%); column-gap: 12px;
+    border-bottom: 1px solid var(--grid); }
+  tr:last-child { border-bottom: 0; }
+  th, td { border: 0; padding-right: 0; overflow-wrap: anywhere; }
+  td + td { grid-column: 1 / -1; padding-top: 0; font-size: 13px; }
+}
 @media print { body { max-width: none; } }
 )css";
 

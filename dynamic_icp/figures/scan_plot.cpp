@@ -116,15 +116,30 @@ void draw_scale_bar(Svg& svg, const Theme& theme, Pixel right_end, double metres
            {.colour = theme.ink, .size = 12.0, .anchor = Anchor::kMiddle});
 }
 
-void draw_foot(Svg& svg, const Theme& theme, const GroundView& ground, double limit, double ring_m) {
+std::string note_of(const ScanView& view) {
+  std::string count = std::to_string(view.scan.size());
+  for (std::size_t digits = 3; digits < count.size(); digits += 4) {
+    count.insert(count.size() - digits, 1, ',');
+  }
+  return fmt::format("{} · {} points", view.title, count);
+}
+
+/// What the scales below the panels say.
+struct Scales {
+  double limit = 1.0;    ///< of the colours, m/s
+  double ring_m = 10.0;  ///< between range rings; also the length of the scale bar
+};
+
+void draw_foot(Svg& svg, const Theme& theme, const GroundView& ground, const Scales& scales, const std::string& note) {
   const double top = ground.box.bottom() + 34.0;
-  draw_colour_bar(svg, theme, {kSpacing.margin + 10.0, top, 340.0, 12.0}, limit);
+  draw_colour_bar(svg, theme, {kSpacing.margin + 10.0, top, 340.0, 12.0}, scales.limit);
   const double right = kWidth - kSpacing.margin;
-  draw_scale_bar(svg, theme, {right, top + 6.0}, ring_m, ground.pixels_per_metre());
-  const double text_right = right - ring_m * ground.pixels_per_metre() - 24.0;
+  draw_scale_bar(svg, theme, {right, top + 6.0}, scales.ring_m, ground.pixels_per_metre());
+  const double text_right = right - scales.ring_m * ground.pixels_per_metre() - 24.0;
   const TextStyle style{.colour = theme.muted, .size = 12.0, .anchor = Anchor::kEnd};
-  svg.text({text_right, top + 2.0}, "arrows: the way covered in 1 s", style);
-  svg.text({text_right, top + 18.0}, fmt::format("rings: every {} m", compact_number(ring_m)), style);
+  svg.text({text_right, top - 7.0}, note, style);
+  svg.text({text_right, top + 9.0}, "arrows: the way covered in 1 s", style);
+  svg.text({text_right, top + 25.0}, fmt::format("rings: every {} m", compact_number(scales.ring_m)), style);
 }
 
 void draw_head(Svg& svg, const Theme& theme, const GroundView& ground, const char* title, const char* explanation) {
@@ -152,22 +167,13 @@ std::vector<PanelContent> panel_contents(const ScanView& view) {
   return contents;
 }
 
-std::string note_of(const ScanView& view) {
-  std::string count = std::to_string(view.scan.size());
-  for (std::size_t digits = 3; digits < count.size(); digits += 4) {
-    count.insert(count.size() - digits, ",");
-  }
-  return fmt::format("{} · {} points", view.title, count);
-}
-
 }  // namespace
 
 Svg scan_plot(const ScanView& view, const Theme& theme) {
   const std::vector<PanelContent> contents = panel_contents(view);
   const Region region = region_of_interest(view.scan, rows_per_cell(view.scan, 0.5), view.objects);
   const std::vector<GroundView> panels = arrange_panels(region, contents.size(), kWidth, kSpacing);
-  const double limit = colour_limit(view.scan.doppler());
-  const double ring_m = nice_step(region.x.length(), 9);
+  const Scales scales{.limit = colour_limit(view.scan.doppler()), .ring_m = nice_step(region.x.length(), 9)};
   const std::vector<std::uint32_t> rows = rows_to_draw(view.scan, panels.front());
 
   Svg svg(kWidth, panels.back().box.bottom() + kFoot, view.title + " from above, coloured by Doppler velocity");
@@ -176,17 +182,15 @@ Svg scan_plot(const ScanView& view, const Theme& theme) {
     draw_head(svg, theme, panels[k], contents[k].title, contents[k].explanation);
     svg.rectangle(panels[k].box, {.fill = theme.panel}, 6.0);
     svg.begin_clip(panels[k].box);
-    draw_surroundings(svg, theme, panels[k], field_of_view(view.scan), ring_m);
-    draw_points(svg, theme, panels[k], view.scan, rows, contents[k].doppler, limit);
+    draw_surroundings(svg, theme, panels[k], field_of_view(view.scan), scales.ring_m);
+    draw_points(svg, theme, panels[k], view.scan, rows, contents[k].doppler, scales.limit);
     draw_sensor(svg, theme, panels[k], view.ego_velocity);
     if (k + 1 == panels.size()) {
       draw_object_marks(svg, theme, panels[k], view, contents[k].doppler);
     }
     svg.end_clip();
   }
-  draw_foot(svg, theme, panels.back(), limit, ring_m);
-  svg.text({kWidth - kSpacing.margin, kSpacing.head - 13.0}, note_of(view),
-           {.colour = theme.muted, .size = 13.0, .anchor = Anchor::kEnd});
+  draw_foot(svg, theme, panels.back(), scales, note_of(view));
   return svg;
 }
 

@@ -40,13 +40,14 @@ std::vector<Pixel> thinned(const Axes& axes, const std::vector<Eigen::Vector3d>&
   return kept;
 }
 
-void draw_ends(Svg& svg, const Theme& theme, const std::vector<Pixel>& path) {
+void draw_ends(Svg& svg, const Theme& theme, const PixelBox& area, const std::vector<Pixel>& path) {
   if (path.empty()) {
     return;
   }
   svg.circle(path.back(), 4.5, {.fill = theme.series[0], .title = "end"});
   svg.circle(path.front(), 6.0, {.fill = theme.panel, .stroke = theme.series[0], .width = 2.5, .title = "start"});
-  svg.text({path.front().x, path.front().y - 11.0}, "start",
+  const bool room_above = path.front().y > area.top + 26.0;
+  svg.text({path.front().x, path.front().y + (room_above ? -11.0 : 22.0)}, "start",
            {.colour = theme.ink, .size = 12.0, .anchor = Anchor::kMiddle, .halo = theme.panel});
 }
 
@@ -72,7 +73,7 @@ Svg trajectory_plot(const PathMap& paths, const Theme& theme, const MapSize& siz
   }
   const std::vector<Pixel> estimate = thinned(axes, paths.estimate);
   svg.polyline(estimate, {.stroke = theme.series[0], .width = 2.2});
-  draw_ends(svg, theme, estimate);
+  draw_ends(svg, theme, area, estimate);
   draw_legend(&svg, theme, {kLeft, 47.0}, area.width, legend);
   if (estimate.empty()) {
     svg.text({area.left + 0.5 * area.width, area.top + 0.5 * area.height}, "no poses",

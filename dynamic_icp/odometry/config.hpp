@@ -51,7 +51,7 @@ ConfigFields fields(Config& config);
 void check(const Config& config);
 
 /// A named configuration: "paper" is the paper's method with its published values and nothing added; "default" is the
-/// best this program can do (so far the same). Throws UsageError for other names.
+/// best this program can do: so far the same with robust object velocities. Throws UsageError for other names.
 Config preset(std::string_view name);
 
 std::vector<std::string_view> preset_names();

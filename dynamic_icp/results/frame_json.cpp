@@ -73,6 +73,7 @@ Json term_json(const registration::TermStatistics& term) {
 Json object_json(std::size_t id, const dynamics::ObjectEstimate& object) {
   return {{"id", id},
           {"velocity", vector_json(object.velocity_sensor)},
+          {"velocity_covariance", matrix_json(object.covariance)},
           {"centroid", vector_json(object.centroid)},
           {"extent", vector_json(object.extent)},
           {"points", object.members.size()}};

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "dynamic_icp/base/error.hpp"
 
@@ -51,7 +50,7 @@ ObjectTruth object_truth(const World& world, const MovingBody& body, const Motio
 ConfigFields fields(SimulationConfig& config) {
   ConfigFields list = {
       {"frames", &config.frames, 1, 1e6, "", "number of scans"},
-      {"seed", &config.seed, 0, std::numeric_limits<int>::max(), "", "decides on layout, traffic and noise"},
+      {"seed", &config.seed, 0, 1e9, "", "decides on layout, traffic and noise"},
       {"speed_mps", &config.speed_mps, 0.0, 70.0, "m/s", "mean speed of the vehicle"},
       {"traffic", &config.traffic, 0.0, 3.0, "", "density of moving road users: 0 none, 1 usual"},
   };

@@ -30,42 +30,6 @@ void check_points(std::span<const Eigen::Vector3d> points) {
   }
 }
 
-/// Squared gate of a search, or a negative number when nothing can be found. Never infinite, so that the infinite
-/// coordinates that fill the last leaf stay outside.
-double squared_gate(const Eigen::Vector3d& query, double max_distance_m) {
-  if (!query.allFinite() || !(max_distance_m >= 0.0)) {
-    return -1.0;
-  }
-  return std::min(max_distance_m * max_distance_m, std::numeric_limits<double>::max());
-}
-
-/// Added up like the distances of the points, so that rounding cannot lift a bound above them.
-double squared_length(const Eigen::Array3d& offset) {
-  return (offset[0] * offset[0] + offset[1] * offset[1]) + offset[2] * offset[2];
-}
-
-bool is_nearer(const Neighbour& a, const Neighbour& b) {
-  return a.squared_distance < b.squared_distance || (a.squared_distance == b.squared_distance && a.index < b.index);
-}
-
-/// Puts `candidate` at its place among the ordered `found`, whose last element gives way when k are there.
-void insert_ordered(std::vector<Neighbour>& found, std::size_t k, const Neighbour& candidate) {
-  if (found.size() < k) {
-    found.push_back(candidate);
-  } else if (!is_nearer(candidate, found.back())) {
-    return;
-  }
-  Neighbour* place = &found.back();
-  Neighbour* const first = found.data();
-  for (; place != first && place[-1].squared_distance > candidate.squared_distance; --place) {
-    *place = place[-1];
-  }
-  for (; place != first && is_nearer(candidate, place[-1]); --place) {
-    *place = place[-1];
-  }
-  *place = candidate;
-}
-
 }  // namespace
 
 KdTree::KdTree(std::span<const Eigen::Vector3d> points) : KdTree(points, Workers(1)) {}
@@ -153,7 +117,7 @@ void KdTree::fill_leaves(std::span<const IndexedPoint> points) {
 template <class VisitLeaf>
 void KdTree::visit_leaves(const Eigen::Vector3d& query, const Neighbour& limit, const VisitLeaf& visit) const {
   // `offset` is the vector from the query to the cell of a node. Only the component along the split changes on the
-  // way to the far child. Rounding is monotonic, so |offset|^2 never exceeds the computed distance of a point inside.
+  // way to the far child.
   struct Cell {
     Node node;
     Eigen::Array3d offset;
@@ -190,16 +154,16 @@ void KdTree::visit_leaves(const Eigen::Vector3d& query, const Neighbour& limit, 
 }
 
 std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3d& query, double max_distance_m) const {
-  Neighbour best{kNoIndex, squared_gate(query, max_distance_m)};
-  if (size_ == 0 || best.squared_distance < 0.0) {
+  Neighbour best{kNoIndex, squared_gate(max_distance_m)};
+  if (size_ == 0 || !query.allFinite()) {
     return std::nullopt;
   }
   visit_leaves(query, best, [&](std::size_t leaf) {
     const auto distances = squared_distances(leaves_[leaf], query);
-    for (std::size_t i = 0; i < kLeafSize; ++i) {
-      const double distance = distances[static_cast<Eigen::Index>(i)];
+    for (std::size_t row = 0; row < kLeafSize; ++row) {
+      const double distance = distances[static_cast<Eigen::Index>(row)];
       if (distance <= best.squared_distance) {
-        const Neighbour candidate{order_[leaf * kLeafSize + i], distance};
+        const Neighbour candidate{order_[leaf * kLeafSize + row], distance};
         best = is_nearer(candidate, best) ? candidate : best;
       }
     }
@@ -209,25 +173,24 @@ std::optional<Neighbour> KdTree::nearest(const Eigen::Vector3d& query, double ma
 
 void KdTree::nearest_k(const Eigen::Vector3d& query, std::size_t k, double max_distance_m,
                        std::vector<Neighbour>& found) const {
-  found.clear();
-  Neighbour limit{kNoIndex, squared_gate(query, max_distance_m)};
-  if (size_ == 0 || k == 0 || limit.squared_distance < 0.0) {
-    return;
+  found.resize(std::min(k, size_));
+  std::size_t count = 0;
+  Neighbour limit{kNoIndex, squared_gate(max_distance_m)};
+  if (!found.empty() && query.allFinite()) {
+    visit_leaves(query, limit, [&](std::size_t leaf) {
+      const auto distances = squared_distances(leaves_[leaf], query);
+      const LeafRows near = rows_within(distances, limit.squared_distance);
+      for (std::size_t j = 0; j < near.count; ++j) {
+        const Neighbour candidate{order_[leaf * kLeafSize + near.rows[j]], distances[near.rows[j]]};
+        if (is_nearer(candidate, limit)) {
+          count += count < found.size() ? 1 : 0;  // else the farthest gives way
+          insert_ordered(&found[0], &found[count - 1], candidate);
+          limit = count == found.size() ? found[count - 1] : limit;
+        }
+      }
+    });
   }
-  visit_leaves(query, limit, [&](std::size_t leaf) {
-    const auto distances = squared_distances(leaves_[leaf], query);
-    std::array<std::uint32_t, kLeafSize> near;
-    std::size_t count = 0;
-    for (std::uint32_t i = 0; i < kLeafSize; ++i) {
-      near[count] = i;
-      count += distances[i] <= limit.squared_distance ? 1 : 0;
-    }
-    for (std::size_t j = 0; j < count; ++j) {
-      const std::size_t i = near[j];
-      insert_ordered(found, k, {order_[leaf * kLeafSize + i], distances[static_cast<Eigen::Index>(i)]});
-    }
-    limit = found.size() == k ? found.back() : limit;
-  });
+  found.resize(count);
 }
 
 }  // namespace dynamic_icp::spatial

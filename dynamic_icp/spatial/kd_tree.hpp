@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -12,14 +13,9 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/base/parallel.hpp"
+#include "dynamic_icp/spatial/neighbour.hpp"
 
 namespace dynamic_icp::spatial {
-
-/// A point found by a search.
-struct Neighbour {
-  std::uint32_t index = 0;        ///< row of the point in the span the tree was built from
-  double squared_distance = 0.0;  ///< m^2, formed as (dx^2 + dy^2) + dz^2
-};
 
 /// Exact nearest-neighbour search among 3D points.
 ///
@@ -85,6 +81,8 @@ class KdTree {
   [[nodiscard]] Node root() const { return {0, 0, static_cast<std::uint32_t>(leaves_.size())}; }
   [[nodiscard]] const Box& box(Node node) const { return boxes_[node.id]; }
   [[nodiscard]] const Leaf& leaf(std::size_t leaf) const { return leaves_[leaf]; }
+  /// The smallest index among the points of a node.
+  [[nodiscard]] std::uint32_t smallest_index(Node node) const { return splits_[node.id].smallest_index; }
   /// Index of the point at each position.
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
 
@@ -121,10 +119,44 @@ class KdTree {
   std::vector<Box> boxes_;     // by node id
 };
 
-/// The squared distances (m^2) from `query` to the points of a leaf; infinite in rows without a point.
+// Squared distances (m^2), all added up as (dx^2 + dy^2) + dz^2. Rounding is monotonic: the distance to a box never
+// exceeds the computed distance to any point in it.
+
+/// From `query` to the points of a leaf; infinite in rows without a point.
 inline Eigen::Array<double, KdTree::kLeafSize, 1> squared_distances(const KdTree::Leaf& leaf,
                                                                     const Eigen::Vector3d& query) {
   return (leaf.col(0) - query.x()).square() + (leaf.col(1) - query.y()).square() + (leaf.col(2) - query.z()).square();
+}
+
+/// Some rows of a leaf, the first `count` of `rows`.
+struct LeafRows {
+  std::array<std::uint32_t, KdTree::kLeafSize> rows;
+  std::size_t count;
+};
+
+/// The rows of a leaf whose squared distance is `limit` at most. Without a branch: which rows these are is hard to
+/// predict.
+inline LeafRows rows_within(const Eigen::Array<double, KdTree::kLeafSize, 1>& squared_distances, double limit) {
+  LeafRows found;
+  found.count = 0;
+  for (std::uint32_t row = 0; row < KdTree::kLeafSize; ++row) {
+    found.rows[found.count] = row;
+    found.count += squared_distances[row] <= limit ? 1 : 0;
+  }
+  return found;
+}
+
+/// The length of a difference vector.
+inline double squared_length(const Eigen::Array3d& v) { return (v[0] * v[0] + v[1] * v[1]) + v[2] * v[2]; }
+
+/// From `point` to the box, 0 inside.
+inline double squared_distance(const KdTree::Box& box, const Eigen::Vector3d& point) {
+  return squared_length((box.lower - point.array()).max(point.array() - box.upper).max(0.0));
+}
+
+/// Between two boxes, 0 where they meet.
+inline double squared_distance(const KdTree::Box& a, const KdTree::Box& b) {
+  return squared_length((a.lower - b.upper).max(b.lower - a.upper).max(0.0));
 }
 
 }  // namespace dynamic_icp::spatial

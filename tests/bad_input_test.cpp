@@ -1,0 +1,265 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+// Everything that can be wrong with input, output and the command line: a clear error with the right exit status or a
+// reported status per frame, never a crash, a NaN in a file or the loss of an earlier result.
+#include <cmath>
+#include <cstring>
+#include <iterator>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/program.hpp"
+
+namespace dynamic_icp::tests {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongUsage = 2;
+
+class BadInput : public ProgramTest {
+ protected:
+  /// A copy of the first scans of the street that the test may damage.
+  fs::path copy_of_street(int scans = 4) {
+    const fs::path copy = folder_ / "recording";
+    fs::create_directories(copy / "point_clouds");
+    std::istringstream poses(read_file(street() / "ref_poses.txt"));
+    std::string kept;
+    for (std::string line; scans > 0 && std::getline(poses, line);) {
+      kept += line + "\n";
+      if (!line.empty() && line[0] != '#') {
+        const std::string name = "0000" + std::to_string(++copied_) + ".bin";
+        fs::copy_file(street() / "point_clouds" / name, copy / "point_clouds" / name);
+        --scans;
+      }
+    }
+    write_file(copy / "ref_poses.txt", kept);
+    return copy;
+  }
+
+  Outcome run(const fs::path& input, const std::string& more = "") {
+    return run_program("run --quiet " + input.string() + " --output " + (folder_ / "out").string() + " " + more);
+  }
+
+  void expect_failure(const Outcome& outcome, int status, const std::string& words) {
+    EXPECT_EQ(outcome.status, status) << outcome.text;
+    EXPECT_NE(outcome.text.find(words), std::string::npos) << outcome.text;
+    EXPECT_FALSE(fs::exists(folder_ / "out")) << "nothing half-written";
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
+      EXPECT_EQ(entry.path().filename().string().find(".partial"), std::string::npos) << entry.path();
+    }
+  }
+
+  /// The statuses of a run that must have gone through, with no NaN in any file of it.
+  std::vector<std::string> statuses(const Outcome& outcome) {
+    EXPECT_EQ(outcome.status, kDone) << outcome.text;
+    for (const char* name : {"trajectory.tum", "frames.jsonl", "objects.jsonl", "summary.json"}) {
+      const std::string content = read_file(folder_ / "out" / name);
+      EXPECT_FALSE(content.empty()) << name;
+      EXPECT_EQ(content.find("nan"), std::string::npos) << name;
+      EXPECT_EQ(content.find("inf,"), std::string::npos) << name;
+    }
+    std::vector<std::string> result;
+    std::istringstream frames(read_file(folder_ / "out" / "frames.jsonl"));
+    for (std::string line; std::getline(frames, line);) {
+      result.push_back(json::parse(line)["status"]);
+    }
+    return result;
+  }
+
+  static std::string record(float x, float y, float z, float doppler) {
+    const float values[] = {x, y, z, doppler};
+    return {reinterpret_cast<const char*>(values), sizeof(values)};
+  }
+
+ private:
+  int copied_ = 0;
+};
+
+TEST_F(BadInput, MissingOrForeignInput) {
+  expect_failure(run(folder_ / "nowhere"), kFailed, "nowhere");
+  fs::create_directories(folder_ / "empty");
+  expect_failure(run(folder_ / "empty"), kFailed, "not a recording of a known layout");
+  write_file(folder_ / "file.txt", "hello");
+  expect_failure(run(folder_ / "file.txt"), kFailed, "not a recording");
+}
+
+TEST_F(BadInput, ScansWithoutUse) {
+  const fs::path recording = copy_of_street(6);
+  const fs::path scans = recording / "point_clouds";
+  write_file(scans / "00002.bin", "");
+  write_file(scans / "00003.bin", record(5.0F, 1.0F, 0.0F, -3.0F));
+  std::string one_voxel;
+  for (int i = 0; i < 500; ++i) {
+    one_voxel += record(5.05F, 1.05F, 0.05F, -3.0F);
+  }
+  write_file(scans / "00004.bin", one_voxel);
+  std::string not_numbers;
+  for (int i = 0; i < 500; ++i) {
+    not_numbers += record(NAN, 1.0F, INFINITY, NAN);
+  }
+  write_file(scans / "00005.bin", not_numbers);
+  const std::vector<std::string> result = statuses(run(recording));
+  EXPECT_EQ(result, (std::vector<std::string>{"first", "too_few_points", "too_few_points", "too_few_points",
+                                              "too_few_points", result.back()}));
+  EXPECT_TRUE(result.back() == "converged" || result.back() == "iteration_limit") << "recovers: " << result.back();
+}
+
+TEST_F(BadInput, AllMovingOrNoDoppler) {
+  const fs::path recording = copy_of_street(4);
+  for (const char* name : {"00002.bin", "00003.bin"}) {
+    const fs::path file = recording / "point_clouds" / name;
+    std::string bytes = read_file(file);
+    for (std::size_t i = 0; i + 16 <= bytes.size(); i += 16) {
+      const float doppler = name[4] == '3' ? 0.0F : (i / 16 % 2 == 0 ? 40.0F : -40.0F);
+      std::memcpy(bytes.data() + i + 12, &doppler, 4);
+    }
+    write_file(file, bytes);
+  }
+  EXPECT_EQ(statuses(run(recording)).size(), 4u);
+}
+
+TEST_F(BadInput, TruncatedScanIsReadWithAWarning) {
+  const fs::path recording = copy_of_street(2);
+  const fs::path file = recording / "point_clouds" / "00002.bin";
+  write_file(file, read_file(file).substr(0, 16 * 5000 + 7));
+  const Outcome outcome = run_program("run " + recording.string() + " --output " + (folder_ / "out").string());
+  EXPECT_EQ(outcome.status, kDone);
+  EXPECT_NE(outcome.text.find("00002.bin: 7 bytes after record 5000"), std::string::npos) << outcome.text;
+  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["warnings"].size(), 1u);
+}
+
+TEST_F(BadInput, GitLfsPointerIsNamed) {
+  const fs::path recording = copy_of_street(3);
+  write_file(recording / "point_clouds" / "00003.bin",
+             "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a\nsize 1256624\n");
+  expect_failure(run(recording), kFailed, "00003.bin: is a Git LFS pointer");
+}
+
+TEST_F(BadInput, PosesThatDoNotFit) {
+  const fs::path recording = copy_of_street(3);
+  write_file(recording / "ref_poses.txt", "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n");
+  expect_failure(run(recording), kFailed, "2 poses for 3 scans");
+  write_file(recording / "ref_poses.txt", "0 0 0 0 0 0 0 1\n0.1 1 zero 0 0 0 0 1\n0.2 1 0 0 0 0 0 1\n");
+  expect_failure(run(recording), kFailed, "ref_poses.txt");
+  write_file(recording / "ref_poses.txt", "0 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.1 2 0 0 0 0 0 1\n");
+  expect_failure(run(recording), kFailed, "ref_poses.txt");
+  fs::remove(recording / "ref_poses.txt");
+  const Outcome outcome = run_program("run " + recording.string() + " --output " + (folder_ / "out").string());
+  EXPECT_EQ(outcome.status, kDone) << "poses are optional";
+  EXPECT_NE(outcome.text.find("scan period of 0.1 s is assumed"), std::string::npos) << outcome.text;
+  EXPECT_TRUE(json::parse(read_file(folder_ / "out" / "summary.json"))["rte_rmse_m"].is_null());
+}
+
+TEST_F(BadInput, GroundTruthOfAnotherRecording) {
+  write_file(folder_ / "other.tum", "1700000000.0 0 0 0 0 0 0 1\n1700000000.1 1 0 0 0 0 0 1\n");
+  expect_failure(run(copy_of_street(2), "--ground-truth " + (folder_ / "other.tum").string()), kFailed, "1700000000");
+}
+
+TEST_F(BadInput, AnEarlierRunIsNotOverwritten) {
+  const fs::path recording = copy_of_street(2);
+  ASSERT_EQ(run(recording).status, kDone);
+  const std::string before = read_file(folder_ / "out" / "frames.jsonl");
+  const Outcome refused = run(recording);
+  EXPECT_EQ(refused.status, kFailed);
+  EXPECT_NE(refused.text.find("--force"), std::string::npos) << refused.text;
+  write_file(recording / "point_clouds" / "00002.bin", "PK\x03\x04 not a scan");
+  EXPECT_EQ(run(recording, "--force").status, kFailed);
+  EXPECT_EQ(read_file(folder_ / "out" / "frames.jsonl"), before) << "a failing run leaves the earlier one";
+}
+
+TEST_F(BadInput, OutputThatCannotBeWritten) {
+  write_file(folder_ / "file", "x");
+  const Outcome outcome =
+      run_program("run --quiet " + street().string() + " --output " + (folder_ / "file" / "out").string());
+  EXPECT_EQ(outcome.status, kFailed);
+  EXPECT_NE(outcome.text.find("file/out"), std::string::npos) << outcome.text;
+}
+
+TEST_F(BadInput, FullDisk) {
+  const fs::path disk = folder_ / "disk";
+  fs::create_directories(disk);
+  if (run_shell("mount -t tmpfs -o size=48k tmpfs '" + disk.string() + "'").status != 0) {
+    GTEST_SKIP() << "needs the right to mount a small file system";
+  }
+  const Outcome outcome =
+      run_program("run --quiet --save-labels " + street().string() + " --output " + (disk / "out").string());
+  const bool clean = fs::is_empty(disk);
+  run_shell("umount '" + disk.string() + "'");
+  EXPECT_EQ(outcome.status, kFailed) << outcome.text;
+  EXPECT_NE(outcome.text.find("No space left on device"), std::string::npos) << outcome.text;
+  EXPECT_TRUE(clean) << "a failed run leaves nothing behind";
+}
+
+TEST_F(BadInput, AKilledRunLeavesNoResultAndTheNextOneCleansUp) {
+  const std::string out = (folder_ / "out").string();
+  const Outcome killed =
+      run_shell("timeout -s KILL 0.15 '" DYNAMIC_ICP_PROGRAM "' run --quiet " + street().string() + " --output " + out);
+  if (killed.status == kDone) {
+    GTEST_SKIP() << "the run was faster than the kill";
+  }
+  EXPECT_FALSE(fs::exists(out));
+  ASSERT_EQ(run_program("run --quiet --max-frames 2 " + street().string() + " --output " + out).status, kDone);
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "only the result";
+}
+
+TEST_F(BadInput, WrongUseIsStatusTwoAndNamesTheRemedy) {
+  const std::string in = street().string();
+  const std::string out = " --output " + (folder_ / "out").string();
+  const auto expect_usage_error = [&](const std::string& arguments, const std::string& words) {
+    const Outcome outcome = run_program(arguments);
+    EXPECT_EQ(outcome.status, kWrongUsage) << arguments << "\n" << outcome.text;
+    EXPECT_NE(outcome.text.find(words), std::string::npos) << arguments << "\n" << outcome.text;
+    EXPECT_FALSE(fs::exists(folder_ / "out"));
+  };
+  expect_usage_error("", "subcommand");
+  expect_usage_error("fly", "fly");
+  expect_usage_error("run " + in, "--output");
+  expect_usage_error("run " + in + out + " --wrong", "--wrong");
+  expect_usage_error("run " + in + out + " --set voxel_sise_m=1", "did you mean 'preprocess.voxel.voxel_size_m'");
+  expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m=-1", "0 to 100 m");
+  expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m", "expected key=value");
+  expect_usage_error("run " + in + out + " --preset best", "paper");
+  expect_usage_error("run " + in + out + " --ablation no-such", "no-vf");
+  expect_usage_error("run " + in + out + " --method magic", "dynamic-icp");
+  expect_usage_error("run " + in + out + " --format vhs", "dicp");
+  expect_usage_error("run " + in + out + " --start 500", "0 to 11");
+  expect_usage_error("run " + in + out + " --threads -1", "threads");
+  expect_usage_error("simulate moon" + out, "street");
+  expect_usage_error("simulate street --set speed_mps=-5" + out, "speed_mps");
+  write_file(folder_ / "bad.yaml", "preprocess:\n  voxel:\n    voxel_size_m: [1, 2]\n");
+  expect_usage_error("run " + in + out + " --config " + (folder_ / "bad.yaml").string(), "line 3");
+}
+
+TEST_F(BadInput, RegisterReportsWhatItCannotAlign) {
+  write_file(folder_ / "empty.bin", "");
+  const std::string scan = (street() / "point_clouds" / "00001.bin").string();
+  for (const std::string& pair :
+       {(folder_ / "empty.bin").string() + " " + scan, scan + " " + (folder_ / "empty.bin").string()}) {
+    const Outcome outcome = run_program("register " + pair + " 2>/dev/null");
+    EXPECT_EQ(outcome.status, kDone);
+    EXPECT_EQ(json::parse(outcome.text)["status"], "too_few_points") << pair;
+  }
+  EXPECT_EQ(run_program("register " + scan + " " + scan + " --dt 0").status, kWrongUsage);
+  EXPECT_EQ(run_program("register " + scan + " " + scan + ".missing").status, kFailed);
+}
+
+TEST_F(BadInput, HelpDocumentsEveryOption) {
+  for (const char* command : {"run", "register", "evaluate", "simulate", "info", "report", "plot", "config"}) {
+    const Outcome outcome = run_program(std::string(command) + " --help");
+    EXPECT_EQ(outcome.status, kDone) << command;
+    std::istringstream lines(outcome.text);
+    for (std::string line; std::getline(lines, line);) {
+      if (line.starts_with("  --")) {
+        EXPECT_GT(line.size(), 30u) << command << ": no description: " << line;
+      }
+    }
+  }
+  EXPECT_EQ(run_program("--version").status, kDone);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tests
