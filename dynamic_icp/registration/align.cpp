@@ -93,11 +93,9 @@ Alignment align(const Scan& source, const Target& target, const Eigen::Isometry3
   result.T_target_source = T_initial;
   result.status = AlignStatus::kIterationLimit;
   const double length_m = typical_distance(source);
-  const auto associate = [&] {
-    return find_correspondences(source, target, result.T_target_source, config.max_correspondence_distance_m, workers);
-  };
+  CorrespondenceSearch search(source, target, config.max_correspondence_distance_m, workers);
 
-  Correspondences current = associate();
+  Correspondences current = search.find(result.T_target_source);
   while (result.iterations < config.max_iterations) {
     if (!enough(current, config)) {
       result.status = AlignStatus::kTooFewCorrespondences;
@@ -113,7 +111,7 @@ Alignment align(const Scan& source, const Target& target, const Eigen::Isometry3
     result.T_target_source = exp_se3(step.xi) * result.T_target_source;
     ++result.iterations;
     // The pairs at the new pose decide about stopping and are those of the next step.
-    Correspondences updated = associate();
+    Correspondences updated = search.find(result.T_target_source);
     const bool converged = enough(updated, config) && stable(current, updated, config.tolerance);
     current = std::move(updated);
     if (converged) {

@@ -94,13 +94,14 @@ TEST(Align, TheDopplerTermHardlyDisturbsGoodGeometry) {
 }
 
 TEST(Align, FirstStepIsTheWeightedLeastSquaresStep) {
+  const Workers workers(1);
   // One Gauss-Newton step against the same rows stacked and solved by an orthogonal decomposition.
   const Room room(2, 900, 0.05);
   const Scan source = room.moved(motion(0.005, 0.05));
   AlignConfig config;
   config.max_iterations = 1;
   const Eigen::Isometry3d T0 = Eigen::Isometry3d::Identity();
-  const Correspondences pairs = find_correspondences(source, room.target(), T0, 0.3, Workers(1));
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, workers).find(T0);
   Eigen::Matrix<double, Eigen::Dynamic, 6> A(2 * static_cast<Eigen::Index>(pairs.pairs.size()), 6);
   Eigen::VectorXd b(A.rows());
   Eigen::Index row = 0;
@@ -125,10 +126,11 @@ TEST(Align, FirstStepIsTheWeightedLeastSquaresStep) {
 }
 
 TEST(Align, CostDoesNotChangeWhenBothScansAreTurned) {
+  const Workers workers(1);
   const Room room(3, 600, 0.03);
   const Eigen::Isometry3d T = motion(0.02, 0.1);
   const Scan source = room.moved(T);
-  const Correspondences pairs = find_correspondences(source, room.target(), T, 0.3, Workers(1));
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, workers).find(T);
   const double expected = cost(source, room.target(), pairs, T, {});
   const Eigen::Matrix3d Q = exp_so3({0.4, -1.1, 0.7});
   const auto turned = [&](const Scan& scan) {
@@ -154,10 +156,11 @@ TEST(Align, CostDoesNotChangeWhenBothScansAreTurned) {
 }
 
 TEST(Align, NormalEquationsAreTheGradientOfTheCost) {
+  const Workers workers(1);
   const Room room(4, 600, 0.05);
   const Scan source = room.moved(motion(0.01, 0.1));
   const Eigen::Isometry3d T = motion(0.012, 0.12);
-  const Correspondences pairs = find_correspondences(source, room.target(), T, 0.5, Workers(1));
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.5, workers).find(T);
   const Linearisation linear = linearise(source, room.target(), pairs, T, {}, Workers(1));
   for (int k = 0; k < 6; ++k) {
     const Vector6d step = 1e-6 * Vector6d::Unit(k);

@@ -39,7 +39,33 @@ struct Correspondences {
 
 /// Pairs each source point, moved by T_target_source, with the nearest target point at most `max_distance_m` away.
 /// A source point whose nearest target point has no normal stays alone: it gets no second choice.
-Correspondences find_correspondences(const Scan& source, const Target& target, const Eigen::Isometry3d& T_target_source,
-                                     double max_distance_m, const Workers& workers);
+///
+/// The search is exact and remembers: for each point it knows where it was last looked up, how far its nearest target
+/// point was and how far all others were at least. While the point has not moved so far that another one could have
+/// come nearer, the answer is the same without a search. The result does not depend on the poses asked for before.
+class CorrespondenceSearch {
+ public:
+  /// The scans must outlive the search.
+  CorrespondenceSearch(const Scan& source, const Target& target, double max_distance_m, const Workers& workers);
+
+  Correspondences find(const Eigen::Isometry3d& T_target_source);
+
+ private:
+  struct Known {
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< where the point was looked up, m, target frame
+    std::uint32_t nearest = 0;                     ///< row of the target; kNone when none was within reach
+    double distance = 0.0;                         ///< m, to the nearest
+    double others = -1.0;  ///< m, no other target point was nearer than this; < 0: not looked up
+  };
+
+  void look_up(std::size_t i, const Eigen::Vector3d& point, std::vector<spatial::Neighbour>& found);
+  [[nodiscard]] bool still_known(std::size_t i, const Eigen::Vector3d& point) const;
+
+  const Scan& source_;
+  Target target_;
+  double max_distance_m_;
+  const Workers& workers_;
+  std::vector<Known> known_;
+};
 
 }  // namespace dynamic_icp::registration

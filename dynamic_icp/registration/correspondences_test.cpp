@@ -33,6 +33,48 @@ struct TargetParts {
   std::vector<std::uint8_t> has_normal;
 };
 
+Correspondences find_once(const Scan& source, const Target& target, const Eigen::Isometry3d& T, double gate) {
+  const Workers workers(2);
+  return CorrespondenceSearch(source, target, gate, workers).find(T);
+}
+
+TEST(Correspondences, RememberedAnswersAreThoseOfAFreshSearch) {
+  // A walk of small and large steps, on a grid full of equal distances and on random points.
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(-3.0, 3.0);
+  std::vector<Vector3d> target;
+  for (int i = 0; i < 1000; ++i) {
+    target.emplace_back(i % 10 * 0.25, i / 10 % 10 * 0.25, i / 100 * 0.25);
+    target.emplace_back(uniform(random), uniform(random), uniform(random));
+  }
+  std::vector<Vector3d> points(800);
+  for (Vector3d& p : points) {
+    p = {uniform(random), uniform(random), uniform(random)};
+  }
+  const Scan source = scan_of(points);
+  const TargetParts parts(target);
+  const Workers workers(2);
+  CorrespondenceSearch search(source, parts.target(), 0.3, workers);
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  for (const double step : {0.0, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-2, 0.1, 1.0, 1e-3, 1e-5, 0.0}) {
+    Vector6d xi;
+    for (int k = 0; k < 6; ++k) {
+      xi[k] = step * uniform(random) / 3.0;
+    }
+    T = exp_se3(xi) * T;
+    const Correspondences remembered = search.find(T);
+    const Correspondences fresh = find_once(source, parts.target(), T, 0.3);
+    ASSERT_EQ(remembered.pairs.size(), fresh.pairs.size()) << "step " << step;
+    EXPECT_GT(fresh.pairs.size(), 50u);
+    for (std::size_t k = 0; k < fresh.pairs.size(); ++k) {
+      ASSERT_EQ(remembered.pairs[k].source, fresh.pairs[k].source);
+      ASSERT_EQ(remembered.pairs[k].target, fresh.pairs[k].target);
+      ASSERT_EQ(remembered.pairs[k].squared_distance, fresh.pairs[k].squared_distance);
+    }
+    EXPECT_EQ(remembered.inlier_rmse, fresh.inlier_rmse);
+  }
+}
+
 TEST(Correspondences, EqualBruteForce) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-5.0, 5.0);
@@ -52,7 +94,7 @@ TEST(Correspondences, EqualBruteForce) {
     parts.has_normal[j] = 0;
   }
   constexpr double kGate = 0.6;
-  const Correspondences found = find_correspondences(scan_of(source), parts.target(), T, kGate, Workers(2));
+  const Correspondences found = find_once(scan_of(source), parts.target(), T, kGate);
   std::size_t next = 0;
   double sum = 0.0;
   for (std::uint32_t i = 0; i < source.size(); ++i) {
@@ -83,9 +125,8 @@ TEST(Correspondences, OfEmptyScansAreEmptyNotUndefined) {
   const TargetParts nothing((std::vector<Vector3d>()));
   const Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   for (const Correspondences& found :
-       {find_correspondences(Scan{}, parts.target(), T, 1.0, Workers(1)),
-        find_correspondences(scan_of({{1, 0, 0}}), nothing.target(), T, 1.0, Workers(1)),
-        find_correspondences(scan_of({{5, 0, 0}}), parts.target(), T, 1.0, Workers(1))}) {
+       {find_once(Scan{}, parts.target(), T, 1.0), find_once(scan_of({{1, 0, 0}}), nothing.target(), T, 1.0),
+        find_once(scan_of({{5, 0, 0}}), parts.target(), T, 1.0)}) {
     EXPECT_TRUE(found.pairs.empty());
     EXPECT_EQ(found.fitness, 0.0);
     EXPECT_EQ(found.inlier_rmse, 0.0);
