@@ -17,6 +17,21 @@ namespace {
 constexpr int kDataOrMachineFailed = 1;
 constexpr int kWrongUsage = 2;
 
+/// A first word that is no command deserves better than "a subcommand is required".
+void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
+  if (argc < 2 || argv[1][0] == '-') {
+    return;
+  }
+  std::string known;
+  for (const CLI::App* command : app.get_subcommands(nullptr)) {
+    if (command->get_name() == argv[1]) {
+      return;
+    }
+    known += " " + command->get_name();
+  }
+  throw dynamic_icp::UsageError(fmt::format("unknown command '{}'; known are:{}", argv[1], known));
+}
+
 int report(const char* message, int status) {
   fmt::print(stderr, "dynamic-icp: {}\n", message);
   return status;
@@ -37,6 +52,7 @@ int main(int argc, char** argv) {
     add(app, selected);
   }
   try {
+    refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
     return selected();
   } catch (const CLI::Success& help_or_version) {

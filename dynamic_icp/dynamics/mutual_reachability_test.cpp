@@ -124,6 +124,20 @@ TEST(MutualReachability, GridsFullOfTies) {
   expect_same_tree(sorted(cube), {1, 6, 10, 30});
 }
 
+TEST(MutualReachability, TiesAcrossGaps) {
+  // Blocks of a grid, three steps apart: hundreds of equal edges join two blocks, found by searches in any order.
+  Points blocks;
+  for (int i = 0; i < 4 * 6 * 6 * 3; ++i) {
+    const int block = i / 108;
+    blocks.emplace_back(i % 6 + 8.0 * (block % 2), i / 6 % 6 + 8.0 * (block / 2), -(i / 36 % 3));
+  }
+  expect_same_tree(sorted(blocks), {1, 3, 6});
+  for (Eigen::Vector3d& p : blocks) {
+    p = Eigen::Vector3d(-p.y(), p.z(), -p.x());
+  }
+  expect_same_tree(sorted(blocks), {1, 3, 6});
+}
+
 TEST(MutualReachability, RefusesWhatItCannotUse) {
   const Points points{{0, 0, 0}, {0, 0, 1}, {0, 1, 0}};
   EXPECT_NO_THROW(mutual_reachability_tree(points, 2, Workers(1)));

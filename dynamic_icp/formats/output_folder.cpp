@@ -2,11 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/formats/output_folder.hpp"
 
-#include <cerrno>
-#include <cstdlib>
-
+#include <fcntl.h>
 #include <fmt/format.h>
-#include <signal.h>
+#include <sys/file.h>
 #include <unistd.h>
 
 #include "dynamic_icp/base/error.hpp"
@@ -55,17 +53,27 @@ void check_replaceable(const fs::path& path, const std::string& marker, bool rep
   }
 }
 
-/// Removes staging folders of processes that no longer run.
+/// Opens a folder and locks it; -1 when it cannot be locked. The lock ends with the process, however that ends.
+int lock_folder(const fs::path& folder) {
+  const int descriptor = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor >= 0 && ::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    ::close(descriptor);
+    return -1;
+  }
+  return descriptor;
+}
+
+/// Removes staging folders that no running process holds.
 void remove_leftovers(const fs::path& final_path) {
   const std::string prefix = "." + final_path.filename().string() + kStaging;
   std::error_code fault;
   for (const fs::directory_entry& entry : fs::directory_iterator(final_path.parent_path(), fault)) {
-    const std::string name = entry.path().filename().string();
-    if (name.starts_with(prefix)) {
-      const pid_t owner = static_cast<pid_t>(std::atoi(name.c_str() + prefix.size()));
-      if (owner > 0 && ::kill(owner, 0) != 0 && errno == ESRCH) {
+    if (entry.path().filename().string().starts_with(prefix)) {
+      const int lock = lock_folder(entry.path());
+      if (lock >= 0) {
         std::error_code ignored;
         fs::remove_all(entry.path(), ignored);
+        ::close(lock);
       }
     }
   }
@@ -86,9 +94,13 @@ OutputFolder::OutputFolder(const fs::path& final_path, const std::string& marker
   if (fault) {
     throw_fault(final_, "create", fault);
   }
+  lock_ = lock_folder(staging_);
 }
 
 OutputFolder::~OutputFolder() {
+  if (lock_ >= 0) {
+    ::close(lock_);
+  }
   std::error_code ignored;
   fs::remove_all(staging_, ignored);
 }

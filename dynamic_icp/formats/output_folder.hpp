@@ -33,6 +33,7 @@ class OutputFolder {
   std::filesystem::path staging_;
   std::string marker_;
   bool replace_;
+  int lock_ = -1;  ///< held on the staging folder, so that others can tell it from one left behind
 };
 
 }  // namespace dynamic_icp::formats

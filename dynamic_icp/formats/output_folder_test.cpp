@@ -5,6 +5,7 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -86,18 +87,21 @@ TEST_F(OutputFolderTest, AnEmptyFolderAndATrailingSlashAreFine) {
   EXPECT_EQ(read(out_ / "run.json"), "{}");
 }
 
-TEST_F(OutputFolderTest, RemovesWhatAKilledProcessLeft) {
+TEST_F(OutputFolderTest, RemovesWhatAKilledProcessLeftButNotWhatOneStillWrites) {
   const pid_t child = ::fork();
   if (child == 0) {
-    ::_exit(0);
+    const OutputFolder killed(out_, "run.json", false);
+    ::raise(SIGKILL);
   }
-  ::waitpid(child, nullptr, 0);  // now a process number that does not run
-  fs::create_directories(parent_ / (".out.partial-" + std::to_string(child)) / "labels");
+  ::waitpid(child, nullptr, 0);
+  EXPECT_EQ(entries(), 1u) << "the staging folder of the killed process";
+  const OutputFolder running(parent_ / "other", "run.json", false);
   {
     OutputFolder folder(out_, "run.json", false);
-    EXPECT_EQ(entries(), 1u);
+    EXPECT_EQ(entries(), 2u) << "this one's and the other's";
+    EXPECT_TRUE(fs::exists(folder.path()));
   }
-  EXPECT_EQ(entries(), 0u);
+  EXPECT_TRUE(fs::exists(running.path()));
 }
 
 TEST_F(OutputFolderTest, AFolderThatCannotBeCreatedIsAnError) {
