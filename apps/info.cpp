@@ -7,6 +7,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/base/scan.hpp"
 #include "dynamic_icp/datasets/dataset.hpp"

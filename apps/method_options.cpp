@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/config_file.hpp"

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "progress.hpp"
+#include "apps/progress.hpp"
 
 #include <cstdio>
 

@@ -17,8 +17,9 @@
 #include "dynamic_icp/simulation/sequence_writer.hpp"
 #include "dynamic_icp/simulation/simulation.hpp"
 
-#include "commands.hpp"
-#include "progress.hpp"
+#include "apps/commands.hpp"
+#include "apps/progress.hpp"
+#include "apps/settings.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -63,13 +64,7 @@ std::string settings_help() {
 SimulationConfig make_config(const SceneKind& kind, const SimulateOptions& options) {
   SimulationConfig config = simulation::default_config(kind);
   const ConfigFields fields = simulation::fields(config);
-  for (const std::string& setting : options.settings) {
-    const std::size_t equals = setting.find('=');
-    if (equals == std::string::npos) {
-      throw UsageError(fmt::format("--set '{}': expected key=value", setting));
-    }
-    set_field(fields, setting.substr(0, equals), setting.substr(equals + 1));
-  }
+  apply_settings(fields, options.settings);
   if (!options.frames.empty()) {
     set_field(fields, "frames", options.frames);
   }

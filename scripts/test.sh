@@ -8,19 +8,28 @@ cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh tests
 
-build_and_test() {  # preset, then arguments for ctest
+configure() {  # preset
+  echo "== Configuring and building ($1)"
+  cmake --preset "$1" -DDYNAMIC_ICP_BUILD_TESTS=ON | grep -iE 'warning|error' || true
+}
+
+run_tests() {  # preset, then arguments for ctest
   local preset=$1
   shift
-  echo "== Building ($preset)"
-  cmake --preset "$preset" -DDYNAMIC_ICP_BUILD_TESTS=ON | grep -iE 'warning|error' || true
-  cmake --build --preset "$preset"
   echo "== Testing ($preset)"
   ctest --preset "$preset" -j "$(nproc)" "$@"
 }
 
 if [[ "${1:-}" == sanitizers ]]; then
-  build_and_test asan
-  build_and_test tsan -R '^(base|preprocess|ego_motion|dynamics|registration|odometry|simulation)\.'
+  configure asan
+  cmake --build --preset asan
+  run_tests asan
+  threaded_rooms=(base preprocess ego_motion dynamics registration odometry simulation)
+  configure tsan
+  cmake --build --preset tsan --target $(printf 'dynamic_icp_%s_test ' "${threaded_rooms[@]}")
+  run_tests tsan -R "^($(IFS='|'; echo "${threaded_rooms[*]}"))\\."
 else
-  build_and_test release
+  configure release
+  cmake --build --preset release
+  run_tests release
 fi

@@ -128,7 +128,7 @@ Scan DynamicIcp::preprocess(const RawScan& raw, Frame& frame) const {
 }
 
 void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const {
-  const spatial::KdTree tree(scan.points());
+  const spatial::KdTree tree(scan.points(), workers_);
   const preprocess::Normals normals =
       preprocess::estimate_normals(scan.points(), tree, config_.preprocess.normals, workers_);
   clock.finish(Stage::kNormals);

@@ -129,10 +129,7 @@ void KdTree::visit_leaves(const Eigen::Vector3d& query, const Neighbour& limit, 
   Cell cell{root(), (all.lower - query.array()).max(query.array() - all.upper).max(0.0), 0.0};
   cell.squared_distance = squared_length(cell.offset);
   while (true) {
-    const bool reached =
-        cell.squared_distance < limit.squared_distance ||
-        (cell.squared_distance == limit.squared_distance && splits_[cell.node.id].smallest_index < limit.index);
-    if (reached) {
+    if (is_nearer({smallest_index(cell.node), cell.squared_distance}, limit)) {
       while (!cell.node.is_leaf()) {
         const Split& split = splits_[cell.node.id];
         const double beyond = query[split.axis] - split.value;
