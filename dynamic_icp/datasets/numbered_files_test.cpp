@@ -19,7 +19,7 @@ class NumberedFiles : public ::testing::Test {
   void SetUp() override { fs::create_directories(folder_); }
   void TearDown() override { fs::remove_all(folder_); }
   void make(const std::string& name) { std::ofstream(folder_ / name) << "x"; }
-  [[nodiscard]] std::vector<std::string> names() const {
+  std::vector<std::string> names() const {
     std::vector<std::string> result;
     for (const fs::path& path : numbered_files(folder_, ".bin")) {
       result.push_back(path.filename().string());
