@@ -28,11 +28,11 @@ struct PlotOptions {
   std::string theme = "light";
 };
 
-figures::Theme theme_of(const std::string& name) {
+drawing::Theme theme_of(const std::string& name) {
   if (name != "light" && name != "dark") {
     throw UsageError(fmt::format("--theme is '{}', expected light or dark", name));
   }
-  return figures::theme(name == "light" ? figures::Ground::kLight : figures::Ground::kDark);
+  return drawing::theme(name == "light" ? drawing::Ground::kLight : drawing::Ground::kDark);
 }
 
 void create_folder(const fs::path& folder) {
@@ -44,7 +44,7 @@ void create_folder(const fs::path& folder) {
 }
 
 int plot(const PlotOptions& options) {
-  const figures::Theme theme = theme_of(options.theme);
+  const drawing::Theme theme = theme_of(options.theme);
   if (options.frame && *options.frame < 0) {
     throw UsageError(fmt::format("--frame is {}, expected 0 or more", *options.frame));
   }

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 #include <chrono>
+#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,7 +14,11 @@
 #include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/version.hpp"
 #include "dynamic_icp/formats/output_folder.hpp"
-#include "dynamic_icp/simulation/scene.hpp"
+#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/scenes/scene.hpp"
+#include "dynamic_icp/scenes/scene_file.hpp"
+#include "dynamic_icp/simulation/overview.hpp"
+#include "dynamic_icp/simulation/rig.hpp"
 #include "dynamic_icp/simulation/sequence_writer.hpp"
 #include "dynamic_icp/simulation/simulation.hpp"
 
@@ -24,7 +29,7 @@
 namespace dynamic_icp::apps {
 namespace {
 
-using simulation::SceneKind;
+using scenes::SceneKind;
 using simulation::SequenceCounts;
 using simulation::Simulation;
 using simulation::SimulationConfig;
@@ -32,74 +37,160 @@ using simulation::SimulationConfig;
 struct SimulateOptions {
   std::string scene;
   std::string output;
+  std::string sensor = std::string(simulation::kDefaultRig);
+  std::string show_sensor;
+  std::string layout = "dicp";
   std::string frames;
   std::string seed;
   std::vector<std::string> settings;
   int threads = 0;
   bool list = false;
+  bool instant = false;
   bool noise_free = false;
+  bool point_truth = false;
+  bool calibration = false;
   bool force = false;
   bool quiet = false;
 };
 
-int list_scenes() {
-  for (const SceneKind& kind : simulation::scene_kinds()) {
-    fmt::print("{:<14} {} ({:g} m/s)\n", kind.name, kind.description, kind.speed_mps);
+int list_choices() {
+  fmt::print("Scenes (or a scene file, see docs/scenes.md):\n");
+  for (const SceneKind& kind : scenes::scene_kinds()) {
+    fmt::print("  {:<14} {} ({:g} m/s)\n", kind.name, kind.description, kind.speed_mps);
+  }
+  fmt::print("\nSensors (--sensor; or a sensor file: --show-sensor NAME prints one to begin with):\n");
+  for (const simulation::RigPreset& preset : simulation::rig_presets()) {
+    const simulation::Rig rig = simulation::find_rig(std::string(preset.name));
+    fmt::print("  {:<14} {}\n", rig.name, rig.description);
   }
   return 0;
 }
 
+int show_sensor(const std::string& name) {
+  for (const simulation::RigPreset& preset : simulation::rig_presets()) {
+    if (preset.name == name) {
+      fmt::print("{}", preset.yaml);
+      return 0;
+    }
+  }
+  (void)simulation::find_rig(name);  // tells the known names
+  throw UsageError(fmt::format("--show-sensor '{}': is a file already", name));
+}
+
+std::string help_line(const ConfigField& field) {
+  const std::string unit = field.unit.empty() ? "" : " " + field.unit;
+  return fmt::format("  {:<32} {} [{}{}; {}]\n", field.key, field.description, value_text(field), unit,
+                     range_text(field));
+}
+
 /// The keys of --set with their defaults, for the help.
 std::string settings_help() {
-  SimulationConfig config;
-  std::string text = "Settings for --set key=value (speed_mps: the default depends on the scene, see --list):\n";
+  SimulationConfig config = simulation::default_config(scenes::scene_kinds().front());
+  std::string text = "Settings for --set key=value (speed: the default depends on the scene, see --list):\n";
   for (const ConfigField& field : simulation::fields(config)) {
-    const std::string unit = field.unit.empty() ? "" : " " + field.unit;
-    text += fmt::format("  {:<30} {} [{}{}; {}]\n", field.key, field.description, value_text(field), unit,
-                        range_text(field));
+    text += help_line(field);
+  }
+  text +=
+      "Of the sensor, here with the values of the default one; with several sensors of all of them, or of one as\n"
+      "--set NAME.lidar.rows=32:\n";
+  for (const ConfigField& field : fields(config.rig.sensors.front())) {
+    text += help_line(field);
   }
   return text;
 }
 
+/// Splits "key=value" for the sensors; false when it is meant for the drive.
+bool apply_to_sensors(std::vector<simulation::SensorConfig>& sensors, const std::string& setting) {
+  if (setting.starts_with("lidar.") || setting.starts_with("mount.")) {
+    for (simulation::SensorConfig& sensor : sensors) {
+      apply_settings(fields(sensor), {setting});
+    }
+    return true;
+  }
+  for (simulation::SensorConfig& sensor : sensors) {
+    if (setting.starts_with(sensor.name + ".")) {
+      apply_settings(fields(sensor), {setting.substr(sensor.name.size() + 1)});
+      return true;
+    }
+  }
+  return false;
+}
+
 SimulationConfig make_config(const SceneKind& kind, const SimulateOptions& options) {
   SimulationConfig config = simulation::default_config(kind);
+  config.rig = simulation::find_rig(options.sensor);
   const ConfigFields fields = simulation::fields(config);
-  apply_settings(fields, options.settings);
+  for (const std::string& setting : options.settings) {
+    if (!apply_to_sensors(config.rig.sensors, setting)) {
+      apply_settings(fields, {setting});
+    }
+  }
   if (!options.frames.empty()) {
     set_field(fields, "frames", options.frames);
   }
   if (!options.seed.empty()) {
     set_field(fields, "seed", options.seed);
   }
-  if (options.noise_free) {
-    config.lidar = simulation::without_noise(config.lidar);
+  for (simulation::SensorConfig& sensor : config.rig.sensors) {
+    sensor.lidar = options.noise_free ? simulation::without_noise(sensor.lidar) : sensor.lidar;
+    sensor.lidar = options.instant ? simulation::instant(sensor.lidar) : sensor.lidar;
   }
   return config;
 }
 
+/// The scene that comes with the program or the one of a file.
+SceneKind find_scene(const std::string& name) {
+  const bool is_file = name.ends_with(".yaml") || name.ends_with(".yml");
+  return is_file ? scenes::load_scene_file(name) : scenes::find_scene(name);
+}
+
 void print_summary(const Simulation& simulation, const SequenceCounts& counts, double seconds,
-                   const std::string& output) {
+                   const SimulateOptions& options) {
+  const SimulationConfig& config = simulation.config();
   const auto per_scan = [&](std::size_t n) { return static_cast<double>(n) / static_cast<double>(counts.scans); };
-  const double moving_percent =
-      counts.points == 0 ? 0.0 : 100.0 * static_cast<double>(counts.moving_points) / static_cast<double>(counts.points);
-  fmt::print("scene          {}, seed {}\n", simulation.kind().name, simulation.config().seed);
-  fmt::print("scans          {} at {:g} Hz, {:.0f} m driven\n", counts.scans, simulation.config().lidar.rate_hz,
-             counts.path_length_m);
-  fmt::print("points         {:.0f} per scan, {:.1f} % on moving bodies\n", per_scan(counts.points), moving_percent);
-  fmt::print("moving bodies  {:.1f} seen per scan\n", per_scan(counts.objects));
+  const auto percent = [](std::size_t part, std::size_t whole) {
+    return whole == 0 ? 0.0 : 100.0 * static_cast<double>(part) / static_cast<double>(whole);
+  };
+  fmt::print("scene          {}, seed {}: {}\n", simulation.kind().name, config.scene.seed,
+             simulation.kind().description);
+  for (const simulation::SensorConfig& sensor : config.rig.sensors) {
+    const simulation::FmcwLidarConfig& lidar = sensor.lidar;
+    fmt::print("sensor         {}: {} x {} rays over {:g} x {:g} deg, {:g} Hz, {}\n", sensor.name, lidar.columns,
+               lidar.rows, lidar.horizontal_fov_deg, lidar.vertical_fov_deg, lidar.rate_hz,
+               lidar.sweep_s > 0.0 ? fmt::format("swept in {:g} s", lidar.sweep_s) : "instant");
+  }
+  fmt::print("drive          {} scans, {:.1f} s, {:.0f} m\n", config.frames,
+             config.frames / config.rig.sensors.front().lidar.rate_hz, counts.path_length_m);
+  fmt::print(
+      "points         {:.0f} a scan, {:.1f} % of the rays; {:.1f} % on moving bodies, {:.2f} % mixed, {:.2f} % rain\n",
+      per_scan(counts.points), percent(counts.points, counts.rays), percent(counts.moving_points, counts.points),
+      percent(counts.mixed_points, counts.points), percent(counts.rain_points, counts.points));
+  fmt::print("moving bodies  {} in the scene, {:.1f} seen a scan\n", simulation.scene().world.bodies.size(),
+             per_scan(counts.objects));
   fmt::print("time           {:.1f} s, {:.1f} scans/s\n", seconds, static_cast<double>(counts.scans) / seconds);
-  fmt::print("written to     {}\n", output);
+  fmt::print("written to     {} (layout {}, picture overview.svg)\n", options.output, options.layout);
+}
+
+/// A picture of the scan in the middle of the drive.
+void write_overview(const Simulation& simulation, const std::filesystem::path& path, const Workers& workers) {
+  const simulation::SimulatedFrame frame = simulation.frame(simulation.size() / 2, workers);
+  formats::write_whole_file(path, simulation::draw_overview(simulation, frame, drawing::Ground::kLight, workers));
 }
 
 int simulate(const SimulateOptions& options) {
   if (options.list) {
-    return list_scenes();
+    return list_choices();
+  }
+  if (!options.show_sensor.empty()) {
+    return show_sensor(options.show_sensor);
   }
   if (options.scene.empty()) {
     throw UsageError("simulate: name a scene (--list shows them)");
   }
-  const SceneKind& kind = simulation::find_scene(options.scene);
+  const SceneKind kind = find_scene(options.scene);
   const SimulationConfig config = make_config(kind, options);
+  const simulation::SequenceOptions written{simulation::find_layout(options.layout), options.point_truth,
+                                            options.calibration};
   if (options.output.empty()) {
     throw UsageError("simulate: --output DIR is missing");
   }
@@ -107,19 +198,22 @@ int simulate(const SimulateOptions& options) {
   const Workers workers(options.threads);
   formats::OutputFolder output(options.output, "scene.json", options.force);
   const Simulation simulation(kind, config);
-  simulation::SequenceWriter writer(output.path());
+  simulation::SequenceWriter writer(output.path(), simulation, written);
   {
     Progress progress(fmt::format("simulating {}", kind.name), simulation.size(), options.quiet);
     for (std::size_t i = 0; i < simulation.size(); ++i) {
-      writer.add(simulation.frame(i, workers));
+      for (std::size_t sensor = 0; sensor < config.rig.sensors.size(); ++sensor) {
+        writer.add(simulation.frame(i, workers, sensor), sensor);
+      }
       progress.advance();
     }
   }
-  writer.finish(simulation, version());
+  writer.finish(version());
+  write_overview(simulation, output.path() / "overview.svg", workers);
   output.commit();
   if (!options.quiet) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
-    print_summary(simulation, writer.counts(), elapsed.count(), options.output);
+    print_summary(simulation, writer.counts(), elapsed.count(), options);
   }
   return 0;
 }
@@ -128,25 +222,36 @@ int simulate(const SimulateOptions& options) {
 
 void add_simulate_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<SimulateOptions>();
-  const SimulationConfig defaults;
   CLI::App* command = app.add_subcommand("simulate", "Make an FMCW LiDAR sequence with full ground truth");
-  command->add_option("scene", options->scene, "Which scene (--list shows them)")->type_name("SCENE");
-  command->add_flag("--list", options->list, "List the scenes and end");
+  command->add_option("scene", options->scene, "Name of a scene (--list shows them) or a scene file (*.yaml)")
+      ->type_name("SCENE");
+  command->add_flag("--list", options->list, "List scenes and sensors and end");
   command->add_option("--output", options->output, "Folder to write; must be new or empty")->type_name("DIR");
-  command->add_option("--frames", options->frames, fmt::format("Number of scans (default {})", defaults.frames))
-      ->type_name("N");
   command
-      ->add_option("--seed", options->seed,
-                   fmt::format("Decides on layout, traffic and noise (default {})", defaults.seed))
+      ->add_option(
+          "--sensor", options->sensor,
+          fmt::format("Sensors of the vehicle, by name or as a file (*.yaml) (default {})", simulation::kDefaultRig))
+      ->type_name("NAME");
+  command->add_option("--show-sensor", options->show_sensor, "Print the file of a sensor and end")->type_name("NAME");
+  command
+      ->add_option("--layout", options->layout,
+                   "Files to write: dicp, hercules or aevascenes (default dicp); the truth is the same for all")
+      ->type_name("NAME");
+  command->add_option("--frames", options->frames, "Number of scans, the length of the drive (default 60)")
       ->type_name("N");
+  command->add_option("--seed", options->seed, "Decides on layout, traffic and noise (default 1)")->type_name("N");
   command->add_option("--threads", options->threads, "Threads, 0 for all (default 0); the result does not depend on it")
       ->type_name("N")
       ->check(CLI::Range(0, 1024));
   command->add_option("--set", options->settings, "Change a setting, see below; may be repeated")
       ->type_name("KEY=VALUE")
       ->allow_extra_args(false);
+  command->add_flag("--instant", options->instant, "All rays of a scan at its stamp (wins over --set)");
   command->add_flag("--noise-free", options->noise_free,
-                    "No noise, bias, quantisation, outliers or dropouts (wins over --set)");
+                    "No noise, bias, quantisation, outliers, rain, mixed or lost returns (wins over --set)");
+  command->add_flag("--point-truth", options->point_truth, "Write true range and true Doppler of every point");
+  command->add_flag("--calibration", options->calibration,
+                    "Write calibration.json, and poses of the vehicle instead of the sensor (layout dicp)");
   command->add_flag("--force", options->force, "Replace an earlier simulated sequence in the output folder");
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->footer(settings_help);

@@ -4,6 +4,17 @@ find_package(Eigen3 3.4 REQUIRED NO_MODULE)
 find_package(nlohmann_json 3.9 REQUIRED)
 find_package(yaml-cpp REQUIRED)
 find_package(fmt REQUIRED)
+find_package(PNG REQUIRED)
+
+# Not by find_package: the CMake files of the distributions' libzip ask for its command line tools, which are packages
+# of their own.
+if(NOT TARGET libzip::zip)
+  find_path(DYNAMIC_ICP_LIBZIP_INCLUDE_DIR zip.h REQUIRED)
+  find_library(DYNAMIC_ICP_LIBZIP_LIBRARY zip REQUIRED)
+  add_library(libzip::zip UNKNOWN IMPORTED GLOBAL)
+  set_target_properties(libzip::zip PROPERTIES IMPORTED_LOCATION ${DYNAMIC_ICP_LIBZIP_LIBRARY}
+    INTERFACE_INCLUDE_DIRECTORIES ${DYNAMIC_ICP_LIBZIP_INCLUDE_DIR})
+endif()
 
 # Embree 3 (Debian 12, Ubuntu 22.04) and Embree 4 (newer) differ in the name of their package and header.
 find_package(embree 4 QUIET)

@@ -3,7 +3,8 @@
 # usage: scripts/install_dependencies.sh [tests]
 set -euo pipefail
 
-packages=(g++ cmake ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev libembree-dev)
+packages=(g++ cmake ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
+  libpng-dev libembree-dev libzip-dev)
 if [[ "${1:-}" == tests ]]; then
   packages+=(libgtest-dev python3-numpy python3-scipy)
 fi

@@ -9,6 +9,7 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/datasets/numbered_files.hpp"
+#include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/tum.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 #include "dynamic_icp/formats/xyzd_bin.hpp"
@@ -43,11 +44,28 @@ Eigen::Isometry3d read_calibration(const fs::path& path) {
   }
 }
 
+/// Seconds after the stamp, one float32 per point. Our own addition to the layout, for scans that take time.
+std::vector<double> read_times(const fs::path& path, std::size_t points) {
+  const formats::RecordFile file = formats::read_record_file(path, sizeof(float));
+  if (file.records != points || !file.warning.empty()) {
+    throw DataError(fmt::format("{}: {} times for {} points, expected one float32 per point", path.string(),
+                                file.records, points));
+  }
+  std::vector<double> times(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    times[i] = formats::value_at<float>(file.bytes, i * sizeof(float));
+  }
+  return times;
+}
+
 class DicpDataset final : public Dataset {
  public:
   explicit DicpDataset(const fs::path& folder) : files_(numbered_files(folder / "point_clouds", ".bin")) {
     if (files_.empty()) {
       throw DataError(fmt::format("{}: holds no *.bin scans", (folder / "point_clouds").string()));
+    }
+    if (fs::is_directory(folder / "times")) {
+      times_ = folder / "times";
     }
     const fs::path poses = folder / "ref_poses.txt";
     if (fs::exists(poses)) {
@@ -71,6 +89,9 @@ class DicpDataset final : public Dataset {
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     RawScan raw = formats::read_xyzd(files_.at(index));
     raw.stamp = stamps_[index];
+    if (!times_.empty()) {
+      raw.times = read_times(times_ / files_[index].filename(), raw.points.size());
+    }
     return raw;
   }
 
@@ -91,6 +112,7 @@ class DicpDataset final : public Dataset {
   }
 
   std::vector<fs::path> files_;
+  fs::path times_;  ///< empty where the scans are instant
   std::vector<Stamp> stamps_;
   formats::Trajectory ground_truth_;
   fs::path ground_truth_file_;

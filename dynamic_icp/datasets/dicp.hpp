@@ -14,6 +14,7 @@ std::filesystem::path find_dicp(const std::filesystem::path& input);
 
 /// The layout of the Doppler-ICP data, which is also the plain one for interchange:
 ///   point_clouds/00001.bin ...  records of little-endian float32 x, y, z (m, sensor frame), Doppler (m/s, + away)
+///   times/00001.bin ...         optional: float32 seconds after the stamp per point, for scans that take time
 ///   ref_poses.txt               optional: TUM rows, one per scan; gives the time stamps too
 ///   calibration.json            optional: pose of the sensor in the vehicle; ref_poses.txt then holds vehicle poses
 /// Scans are ordered by the number in their file name. Without ref_poses.txt a period of 0.1 s is assumed.

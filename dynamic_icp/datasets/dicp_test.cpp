@@ -53,6 +53,22 @@ class Dicp : public ::testing::Test {
   fs::path folder_ = fs::temp_directory_path() / ("dicp_test-" + std::to_string(::getpid()));
 };
 
+TEST_F(Dicp, ReadsTimesOfPointsWhereThereAreSome) {
+  EXPECT_TRUE(open_dataset(folder_)->scan(1).times.empty());
+  fs::create_directories(folder_ / "times");
+  write("times/00002.bin", record(0.0625F, 0, 0, 0).substr(0, 4));
+  const std::unique_ptr<Dataset> dataset = open_dataset(folder_);
+  EXPECT_EQ(dataset->scan(1).times, std::vector<double>{0.0625});
+  EXPECT_THROW((void)dataset->scan(0), DataError) << "missing";
+  write("times/00001.bin", record(1, 2, 3, 4));
+  try {
+    (void)dataset->scan(0);
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("00001.bin: 4 times for 1 points"), std::string::npos) << error.what();
+  }
+}
+
 TEST_F(Dicp, ReadsScansInOrderWithTheStampsOfThePoses) {
   write("ref_poses.txt", kThreePoses);
   const std::unique_ptr<Dataset> dataset = open_dataset(folder_);

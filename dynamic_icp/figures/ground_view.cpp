@@ -17,13 +17,13 @@ std::vector<GroundView> arrange_panels(const Region& region, std::size_t count, 
   const double most_height = stacked ? 420.0 : 620.0;
   const double panel_height = std::clamp(panel_width / aspect, least_height, most_height);
   Region shown = region;
-  make_aspect_equal({0.0, 0.0, panel_width, panel_height}, shown.x, shown.y);
+  drawing::make_aspect_equal({0.0, 0.0, panel_width, panel_height}, shown.x, shown.y);
   std::vector<GroundView> panels;
   for (std::size_t k = 0; k < count; ++k) {
     const double row = stacked ? static_cast<double>(k) : 0.0;
     const double column = stacked ? 0.0 : static_cast<double>(k);
-    const PixelBox box{spacing.margin + column * (panel_width + spacing.margin),
-                       spacing.head + row * (panel_height + spacing.head), panel_width, panel_height};
+    const drawing::PixelBox box{spacing.margin + column * (panel_width + spacing.margin),
+                                spacing.head + row * (panel_height + spacing.head), panel_width, panel_height};
     panels.push_back({box, shown});
   }
   return panels;

@@ -7,22 +7,22 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/drawing/svg.hpp"
 #include "dynamic_icp/figures/scan_view.hpp"
-#include "dynamic_icp/figures/svg.hpp"
 
 namespace dynamic_icp::figures {
 
 /// A drawing area for a part of the ground plane, x to the right and y up, with equal scales.
 struct GroundView {
-  PixelBox box;
+  drawing::PixelBox box;
   Region region;
 
   [[nodiscard]] double pixels_per_metre() const { return box.width / region.x.length(); }
-  [[nodiscard]] Pixel at(double x, double y) const {
+  [[nodiscard]] drawing::Pixel at(double x, double y) const {
     return {box.left + (x - region.x.minimum) * pixels_per_metre(),
             box.top + (region.y.maximum - y) * pixels_per_metre()};
   }
-  [[nodiscard]] Pixel at(const Eigen::Vector3d& p) const { return at(p.x(), p.y()); }
+  [[nodiscard]] drawing::Pixel at(const Eigen::Vector3d& p) const { return at(p.x(), p.y()); }
 };
 
 /// Space around panels, px.

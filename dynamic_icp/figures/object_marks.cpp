@@ -8,8 +8,8 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/figures/label_places.hpp"
-#include "dynamic_icp/figures/markup.hpp"
+#include "dynamic_icp/drawing/label_places.hpp"
+#include "dynamic_icp/drawing/markup.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -19,9 +19,9 @@ constexpr std::size_t kMostNamed = 16;  // more labels would hide the scene
 /// An object with its place in the picture.
 struct Mark {
   ObjectRow object;
-  PixelBox box;
-  Pixel middle;
-  Pixel tip;  ///< where the middle will be after kArrowSeconds
+  drawing::PixelBox box;
+  drawing::Pixel middle;
+  drawing::Pixel tip;  ///< where the middle will be after kArrowSeconds
 };
 
 /// Those in the region, the ones with most points first.
@@ -34,7 +34,7 @@ std::vector<Mark> marks_of(const GroundView& ground, const ScanView& view, const
     if (!middle.allFinite() || !ground.region.contains(middle.x(), middle.y())) {
       continue;
     }
-    const Pixel corner = ground.at(box.x.minimum, box.y.maximum);
+    const drawing::Pixel corner = ground.at(box.x.minimum, box.y.maximum);
     marks.push_back(
         {.object = object,
          .box = {corner.x - kBorder, corner.y - kBorder, box.x.length() * ground.pixels_per_metre() + 2.0 * kBorder,
@@ -54,26 +54,28 @@ std::string speed_text(const Eigen::Vector3d& velocity) {
 
 std::string description_of(const ObjectRow& object) {
   const Eigen::Vector3d& v = object.velocity;
-  const std::string velocity = v.allFinite() ? fmt::format("({}, {}, {}) m/s over ground", compact_number(v.x()),
-                                                           compact_number(v.y()), compact_number(v.z()))
-                                             : "velocity unknown";
-  return fmt::format("object {}: {} points, {}", object.id, compact_number(object.points, 0), velocity);
+  const std::string velocity = v.allFinite()
+                                   ? fmt::format("({}, {}, {}) m/s over ground", drawing::compact_number(v.x()),
+                                                 drawing::compact_number(v.y()), drawing::compact_number(v.z()))
+                                   : "velocity unknown";
+  return fmt::format("object {}: {} points, {}", object.id, drawing::compact_number(object.points, 0), velocity);
 }
 
 }  // namespace
 
-void draw_sensor(Svg& svg, const Theme& theme, const GroundView& ground, const Eigen::Vector3d& ego_velocity) {
-  const Pixel origin = ground.at(0.0, 0.0);
+void draw_sensor(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground,
+                 const Eigen::Vector3d& ego_velocity) {
+  const drawing::Pixel origin = ground.at(0.0, 0.0);
   const std::string& colour = theme.series[2];
   svg.arrow(origin, ground.at(kArrowSeconds * ego_velocity), {.stroke = colour, .width = 3.0});
   svg.circle(origin, 6.0, {.fill = colour, .stroke = theme.panel, .width = 2.0, .title = "sensor"});
 }
 
-void draw_object_marks(Svg& svg, const Theme& theme, const GroundView& ground, const ScanView& view,
+void draw_object_marks(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground, const ScanView& view,
                        const std::vector<double>& compensated) {
   const std::vector<Mark> marks = marks_of(ground, view, compensated);
-  const Pixel origin = ground.at(0.0, 0.0);
-  LabelPlaces places(ground.box);
+  const drawing::Pixel origin = ground.at(0.0, 0.0);
+  drawing::LabelPlaces places(ground.box);
   places.block_line(origin, ground.at(kArrowSeconds * view.ego_velocity));
   const std::string& colour = theme.series[3];
   for (const Mark& mark : marks) {
@@ -82,7 +84,7 @@ void draw_object_marks(Svg& svg, const Theme& theme, const GroundView& ground, c
     places.block(mark.box);
     places.block_line(mark.middle, mark.tip);
   }
-  const TextStyle style{.colour = theme.ink, .size = 13.0, .bold = true, .halo = theme.panel};
+  const drawing::TextStyle style{.colour = theme.ink, .size = 13.0, .bold = true, .halo = theme.panel};
   const std::string own = "sensor · " + speed_text(view.ego_velocity);
   svg.text(places.place({origin.x - 6.0, origin.y - 6.0, 12.0, 12.0}, own, style.size), own, style);
   for (std::size_t k = 0; k < std::min(marks.size(), kMostNamed); ++k) {

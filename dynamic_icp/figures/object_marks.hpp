@@ -6,10 +6,10 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/drawing/svg.hpp"
+#include "dynamic_icp/drawing/theme.hpp"
 #include "dynamic_icp/figures/ground_view.hpp"
 #include "dynamic_icp/figures/scan_view.hpp"
-#include "dynamic_icp/figures/svg.hpp"
-#include "dynamic_icp/figures/theme.hpp"
 
 namespace dynamic_icp::figures {
 
@@ -17,11 +17,12 @@ namespace dynamic_icp::figures {
 constexpr double kArrowSeconds = 1.0;
 
 /// Draws the sensor as a dot with an arrow for its velocity; the arrow is left out when the velocity is not known.
-void draw_sensor(Svg& svg, const Theme& theme, const GroundView& ground, const Eigen::Vector3d& ego_velocity);
+void draw_sensor(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground,
+                 const Eigen::Vector3d& ego_velocity);
 
 /// Draws the objects of a scan that lie in the region: box, arrow for the velocity, and for those with most points id
 /// and speed in words; and the speed of the sensor in words. `compensated` is the Doppler without own motion, m/s.
-void draw_object_marks(Svg& svg, const Theme& theme, const GroundView& ground, const ScanView& view,
+void draw_object_marks(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground, const ScanView& view,
                        const std::vector<double>& compensated);
 
 }  // namespace dynamic_icp::figures

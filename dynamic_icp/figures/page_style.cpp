@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/figures/theme.hpp"
+#include "dynamic_icp/drawing/theme.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -59,7 +59,7 @@ ul.warnings li { margin-bottom: 6px; overflow-wrap: anywhere; }
 
 std::string page_style() {
   return fmt::format(":root{{--page:#eef0f4;{}}}\n@media (prefers-color-scheme: dark){{:root{{--page:#0a0d13;{}}}}}\n",
-                     css_variables(Ground::kLight), css_variables(Ground::kDark)) +
+                     drawing::css_variables(drawing::Ground::kLight), drawing::css_variables(drawing::Ground::kDark)) +
          kRules;
 }
 

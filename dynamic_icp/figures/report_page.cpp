@@ -8,10 +8,10 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/figures/markup.hpp"
+#include "dynamic_icp/drawing/markup.hpp"
+#include "dynamic_icp/drawing/theme.hpp"
 #include "dynamic_icp/figures/page_style.hpp"
 #include "dynamic_icp/figures/summary_keys.hpp"
-#include "dynamic_icp/figures/theme.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -26,13 +26,13 @@ std::string name_of(const RunFiles& run) {
 }
 
 std::string table_row(std::string_view name, std::string_view value, std::string_view explanation = {}) {
-  const std::string last = explanation.empty() ? "" : fmt::format("<td>{}</td>", escape_markup(explanation));
-  return fmt::format("<tr><th scope=\"row\">{}</th><td class=\"value\">{}</td>{}</tr>\n", escape_markup(name),
-                     escape_markup(value), last);
+  const std::string last = explanation.empty() ? "" : fmt::format("<td>{}</td>", drawing::escape_markup(explanation));
+  return fmt::format("<tr><th scope=\"row\">{}</th><td class=\"value\">{}</td>{}</tr>\n", drawing::escape_markup(name),
+                     drawing::escape_markup(value), last);
 }
 
 std::string section(std::string_view title, std::string_view content) {
-  return fmt::format("<section>\n<h2>{}</h2>\n{}</section>\n", escape_markup(title), content);
+  return fmt::format("<section>\n<h2>{}</h2>\n{}</section>\n", drawing::escape_markup(title), content);
 }
 
 /// The few numbers to see first.
@@ -46,20 +46,20 @@ std::string tiles(const RunFiles& run) {
                                                             {"dynamic_ratio_mean", "moving points"}};
   std::string html = "<div class=\"tiles\">\n";
   for (const auto& [key, name] : kTiles) {
-    html +=
-        fmt::format("<div><b>{}</b><span>{}</span></div>\n", escape_markup(value_with_unit(run.summary, key)), name);
+    html += fmt::format("<div><b>{}</b><span>{}</span></div>\n",
+                        drawing::escape_markup(value_with_unit(run.summary, key)), name);
   }
   return html + "</div>\n";
 }
 
 std::string header(const RunFiles& run) {
-  std::string html =
-      fmt::format("<header>\n<p class=\"kind\">Dynamic-ICP run</p>\n<h1>{}</h1>\n", escape_markup(name_of(run)));
+  std::string html = fmt::format("<header>\n<p class=\"kind\">Dynamic-ICP run</p>\n<h1>{}</h1>\n",
+                                 drawing::escape_markup(name_of(run)));
   html += "<p class=\"facts\">";
   for (const auto& [key, name] : {std::pair("method", "method"), std::pair("preset", "preset"),
                                   std::pair("ablation", "ablation"), std::pair("version", "version")}) {
     if (const std::string value = text_of(run.run, key); !value.empty()) {
-      html += fmt::format("<span>{} <b>{}</b></span> ", name, escape_markup(value));
+      html += fmt::format("<span>{} <b>{}</b></span> ", name, drawing::escape_markup(value));
     }
   }
   return html + "</p>\n</header>\n" + tiles(run);
@@ -81,11 +81,12 @@ std::string warnings(const RunFiles& run, std::vector<std::string> notes) {
     for (std::size_t k = 0; k < std::min(indices.size(), kNamed); ++k) {
       names += fmt::format("{}{}", k == 0 ? "" : ", ", indices[k]);
     }
-    items += fmt::format("<li><b>{} of {} scans: {}</b> <span class=\"muted\">scan {}{}</span></li>\n", indices.size(),
-                         run.frames.size(), escape_markup(status), names, indices.size() > kNamed ? ", ..." : "");
+    items +=
+        fmt::format("<li><b>{} of {} scans: {}</b> <span class=\"muted\">scan {}{}</span></li>\n", indices.size(),
+                    run.frames.size(), drawing::escape_markup(status), names, indices.size() > kNamed ? ", ..." : "");
   }
   for (const std::string& note : notes) {
-    items += fmt::format("<li>{}</li>\n", escape_markup(note));
+    items += fmt::format("<li>{}</li>\n", drawing::escape_markup(note));
   }
   return items.empty() ? "<p class=\"muted\">No warnings: every scan was aligned and converged.</p>\n"
                        : section("Warnings", "<ul class=\"warnings\">\n" + items + "</ul>\n");
@@ -102,7 +103,7 @@ std::string summary(const RunFiles& run) {
 std::string figure_grid(const RunFiles& run, const RunContext& context) {
   std::string wide;
   std::string narrow;
-  for (const Figure& figure : draw_figures(run, context, page_theme())) {
+  for (const Figure& figure : draw_figures(run, context, drawing::page_theme())) {
     const bool is_wide = figure.name == "scan";
     (is_wide ? wide : narrow) +=
         fmt::format("<figure class=\"{}\">\n{}</figure>\n", is_wide ? "wide" : "narrow", figure.svg.element());
@@ -122,8 +123,9 @@ std::string settings_table(const Settings& settings) {
 std::string origin(const RunFiles& run) {
   Settings rest = run.run;
   std::erase_if(rest, [](const auto& entry) { return entry.first == "command"; });
-  return section("How it was made",
-                 fmt::format("<pre>{}</pre>\n", escape_markup(text_of(run.run, "command"))) + settings_table(rest));
+  return section(
+      "How it was made",
+      fmt::format("<pre>{}</pre>\n", drawing::escape_markup(text_of(run.run, "command"))) + settings_table(rest));
 }
 
 }  // namespace
@@ -134,7 +136,7 @@ std::string report_page(const RunFiles& run, const RunContext& context) {
       "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'\"/>\n"
       "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\"/>\n"
       "<meta name=\"color-scheme\" content=\"light dark\"/>\n<title>{}</title>\n<style>\n{}</style>\n</head>\n<body>\n",
-      escape_markup(name_of(run) + " - Dynamic-ICP run"), page_style());
+      drawing::escape_markup(name_of(run) + " - Dynamic-ICP run"), page_style());
   html += header(run) + warnings(run, context.notes);
   html += figure_grid(run, context);
   html += "<div class=\"columns\">\n<div>\n" + summary(run) + "</div>\n<div>\n";

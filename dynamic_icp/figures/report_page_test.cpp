@@ -4,17 +4,17 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/drawing/well_formed.hpp"
 #include "dynamic_icp/figures/sample_run.hpp"
 #include "dynamic_icp/figures/summary_keys.hpp"
-#include "dynamic_icp/figures/well_formed.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
 
 std::string page_of(const RunFiles& run) {
   const std::string page = report_page(run, read_context(run));
-  EXPECT_EQ(WellFormed::fault_of(page), "");
-  EXPECT_FALSE(holds_non_finite(page));
+  EXPECT_EQ(drawing::WellFormed::fault_of(page), "");
+  EXPECT_FALSE(drawing::holds_non_finite(page));
   return page;
 }
 
@@ -27,7 +27,7 @@ std::string page_of(const SampleRun& sample) {
 
 TEST(ReportPage, ShowsEveryFigureAndEveryKey) {
   const std::string page = page_of(SampleRun());
-  EXPECT_EQ(count_of(page, "<figure"), 7u);
+  EXPECT_EQ(drawing::count_of(page, "<figure"), 7u);
   for (const char* text : {"rte_rmse_m", ">0.01 m<", ">100 %<", "250 1/s", "preprocess.voxel_size_m", ">0.3<",
                            "dynamic-icp run drive --output run", "<h1>drive</h1>", "No warnings"}) {
     EXPECT_NE(page.find(text), std::string::npos) << text;
@@ -37,19 +37,20 @@ TEST(ReportPage, ShowsEveryFigureAndEveryKey) {
 
 TEST(ReportPage, NeedsNothingFromOutside) {
   const std::string page = page_of(SampleRun());
-  EXPECT_EQ(count_of(page, "<script"), 0u);
-  EXPECT_EQ(count_of(page, "src="), 0u);
-  EXPECT_EQ(count_of(page, "href="), 0u);
-  EXPECT_EQ(count_of(page, "url("), 0u);
-  EXPECT_EQ(count_of(page, "@import"), 0u);
-  EXPECT_EQ(count_of(page, "http"), count_of(page, "xmlns=\"http://www.w3.org/2000/svg\"") + 1) << "http-equiv";
+  EXPECT_EQ(drawing::count_of(page, "<script"), 0u);
+  EXPECT_EQ(drawing::count_of(page, "src="), 0u);
+  EXPECT_EQ(drawing::count_of(page, "href="), 0u);
+  EXPECT_EQ(drawing::count_of(page, "url("), 0u);
+  EXPECT_EQ(drawing::count_of(page, "@import"), 0u);
+  EXPECT_EQ(drawing::count_of(page, "http"), drawing::count_of(page, "xmlns=\"http://www.w3.org/2000/svg\"") + 1)
+      << "http-equiv";
 }
 
 TEST(ReportPage, DefinesEveryColourItUses) {
   const std::string page = page_of(SampleRun());
   for (std::size_t at = page.find("var("); at != std::string::npos; at = page.find("var(", at + 1)) {
     const std::string name = page.substr(at + 4, page.find(')', at) - at - 4);
-    EXPECT_EQ(count_of(page, name + ":"), 2u) << name << ": once for light, once for dark";
+    EXPECT_EQ(drawing::count_of(page, name + ":"), 2u) << name << ": once for light, once for dark";
   }
 }
 
@@ -69,9 +70,9 @@ TEST(ReportPage, ShowsHostileTextAsText) {
   run.frames[2].status = hostile;
   run.frames[0].milliseconds.emplace_back(hostile, 1.0);
   const std::string page = page_of(run);
-  EXPECT_EQ(count_of(page, "<script"), 0u);
-  EXPECT_EQ(count_of(page, "<img"), 0u);
-  EXPECT_EQ(count_of(page, "<b>\"drive"), 0u);
+  EXPECT_EQ(drawing::count_of(page, "<script"), 0u);
+  EXPECT_EQ(drawing::count_of(page, "<img"), 0u);
+  EXPECT_EQ(drawing::count_of(page, "<b>\"drive"), 0u);
   EXPECT_NE(page.find("&lt;script&gt;alert(1)&lt;/script&gt; &amp; &#39;quotes&#39;"), std::string::npos);
 }
 

@@ -115,7 +115,7 @@ std::vector<Panel> timing_panels(const RunFiles& run) {
 
 }  // namespace
 
-std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const Theme& theme) {
+std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const drawing::Theme& theme) {
   std::vector<double> times;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {
     times.push_back(run.seconds(k));

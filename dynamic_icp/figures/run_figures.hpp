@@ -5,20 +5,20 @@
 #include <string>
 #include <vector>
 
+#include "dynamic_icp/drawing/svg.hpp"
+#include "dynamic_icp/drawing/theme.hpp"
 #include "dynamic_icp/figures/run_context.hpp"
 #include "dynamic_icp/figures/run_folder.hpp"
-#include "dynamic_icp/figures/svg.hpp"
-#include "dynamic_icp/figures/theme.hpp"
 
 namespace dynamic_icp::figures {
 
 struct Figure {
   std::string name;  ///< "scan", "trajectory", "errors", "speed", "dynamics", "convergence" or "timing"
-  Svg svg;
+  drawing::Svg svg;
 };
 
 /// The figures of a run in the order of that list, without those that have nothing to show: no "scan" when the
 /// recording is gone, no "errors" without ground truth.
-std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const Theme& theme);
+std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const drawing::Theme& theme);
 
 }  // namespace dynamic_icp::figures

@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/figures/markup.hpp"
+#include "dynamic_icp/drawing/markup.hpp"
 #include "dynamic_icp/formats/tum.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 

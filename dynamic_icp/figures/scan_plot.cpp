@@ -11,8 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/drawing/markup.hpp"
 #include "dynamic_icp/figures/ground_view.hpp"
-#include "dynamic_icp/figures/markup.hpp"
 #include "dynamic_icp/figures/object_marks.hpp"
 
 namespace dynamic_icp::figures {
@@ -46,16 +46,17 @@ double colour_limit(const std::vector<double>& doppler) {
   }
   constexpr double kWithin = 0.98;  // gross outliers do not stretch the scale
   const double limit = std::max(quantile(magnitudes, kWithin), 1.0);
-  const double step = nice_step(limit, 5);
+  const double step = drawing::nice_step(limit, 5);
   return step * std::ceil(limit / step);
 }
 
 /// Range rings and the borders of the field of view.
-void draw_surroundings(Svg& svg, const Theme& theme, const GroundView& ground, const Range& view, double ring_m) {
+void draw_surroundings(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground,
+                       const drawing::Range& view, double ring_m) {
   const double farthest = std::hypot(std::max(std::abs(ground.region.x.minimum), ground.region.x.maximum),
                                      std::max(std::abs(ground.region.y.minimum), ground.region.y.maximum));
   for (double radius = ring_m; radius < farthest; radius += ring_m) {
-    std::vector<Pixel> arc;
+    std::vector<drawing::Pixel> arc;
     constexpr int kSteps = 90;
     for (int k = 0; k <= kSteps; ++k) {
       const double azimuth = view.minimum + view.length() * k / kSteps;
@@ -73,12 +74,12 @@ void draw_surroundings(Svg& svg, const Theme& theme, const GroundView& ground, c
 }
 
 /// One path a colour; strong colours on top of weak ones.
-void draw_points(Svg& svg, const Theme& theme, const GroundView& ground, const Scan& scan,
+void draw_points(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground, const Scan& scan,
                  std::span<const std::uint32_t> rows, const std::vector<double>& doppler, double limit) {
   const std::size_t bins = theme.doppler.size();
-  std::vector<std::vector<Pixel>> dots(bins);
+  std::vector<std::vector<drawing::Pixel>> dots(bins);
   for (const std::uint32_t row : rows) {
-    dots[diverging_bin(doppler[row], limit, bins)].push_back(ground.at(scan.points()[row]));
+    dots[drawing::diverging_bin(doppler[row], limit, bins)].push_back(ground.at(scan.points()[row]));
   }
   const std::size_t middle = bins / 2;
   for (std::size_t away = 0; away <= middle; ++away) {
@@ -89,31 +90,33 @@ void draw_points(Svg& svg, const Theme& theme, const GroundView& ground, const S
   }
 }
 
-void draw_colour_bar(Svg& svg, const Theme& theme, const PixelBox& box, double limit) {
+void draw_colour_bar(drawing::Svg& svg, const drawing::Theme& theme, const drawing::PixelBox& box, double limit) {
   const auto bins = static_cast<double>(theme.doppler.size());
   for (std::size_t k = 0; k < theme.doppler.size(); ++k) {
     const double left = box.left + box.width * static_cast<double>(k) / bins;
     svg.rectangle({left, box.top, box.width / bins + 0.4, box.height}, {.fill = theme.doppler[k]});
   }
   for (const double share : {-1.0, -0.5, 0.0, 0.5, 1.0}) {
-    const std::string text = fmt::format("{}{}", share > 0.0 ? "+" : "", compact_number(share * limit, 2));
+    const std::string text = fmt::format("{}{}", share > 0.0 ? "+" : "", drawing::compact_number(share * limit, 2));
     svg.text({box.left + 0.5 * (share + 1.0) * box.width, box.bottom() + 16.0}, text,
-             {.colour = theme.muted, .size = 12.0, .anchor = Anchor::kMiddle});
+             {.colour = theme.muted, .size = 12.0, .anchor = drawing::Anchor::kMiddle});
   }
   svg.text({box.left, box.top - 7.0}, "approaching", {.colour = theme.muted, .size = 12.0});
   svg.text({box.left + 0.5 * box.width, box.top - 7.0}, "Doppler (m/s)",
-           {.colour = theme.ink, .size = 12.0, .anchor = Anchor::kMiddle, .bold = true});
-  svg.text({box.right(), box.top - 7.0}, "receding", {.colour = theme.muted, .size = 12.0, .anchor = Anchor::kEnd});
+           {.colour = theme.ink, .size = 12.0, .anchor = drawing::Anchor::kMiddle, .bold = true});
+  svg.text({box.right(), box.top - 7.0}, "receding",
+           {.colour = theme.muted, .size = 12.0, .anchor = drawing::Anchor::kEnd});
 }
 
-void draw_scale_bar(Svg& svg, const Theme& theme, Pixel right_end, double metres, double pixels_per_metre) {
+void draw_scale_bar(drawing::Svg& svg, const drawing::Theme& theme, drawing::Pixel right_end, double metres,
+                    double pixels_per_metre) {
   const double left = right_end.x - metres * pixels_per_metre;
-  const Paint paint{.stroke = theme.ink, .width = 1.6};
+  const drawing::Paint paint{.stroke = theme.ink, .width = 1.6};
   svg.line({left, right_end.y}, right_end, paint);
   svg.line({left, right_end.y - 5.0}, {left, right_end.y + 5.0}, paint);
   svg.line({right_end.x, right_end.y - 5.0}, {right_end.x, right_end.y + 5.0}, paint);
-  svg.text({0.5 * (left + right_end.x), right_end.y - 8.0}, compact_number(metres) + " m",
-           {.colour = theme.ink, .size = 12.0, .anchor = Anchor::kMiddle});
+  svg.text({0.5 * (left + right_end.x), right_end.y - 8.0}, drawing::compact_number(metres) + " m",
+           {.colour = theme.ink, .size = 12.0, .anchor = drawing::Anchor::kMiddle});
 }
 
 std::string note_of(const ScanView& view) {
@@ -130,22 +133,24 @@ struct Scales {
   double ring_m = 10.0;  ///< between range rings; also the length of the scale bar
 };
 
-void draw_foot(Svg& svg, const Theme& theme, const GroundView& ground, const Scales& scales, const std::string& note) {
+void draw_foot(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground, const Scales& scales,
+               const std::string& note) {
   const double top = ground.box.bottom() + 34.0;
   draw_colour_bar(svg, theme, {kSpacing.margin + 10.0, top, 340.0, 12.0}, scales.limit);
   const double right = kWidth - kSpacing.margin;
   draw_scale_bar(svg, theme, {right, top + 6.0}, scales.ring_m, ground.pixels_per_metre());
   const double text_right = right - scales.ring_m * ground.pixels_per_metre() - 24.0;
-  const TextStyle style{.colour = theme.muted, .size = 12.0, .anchor = Anchor::kEnd};
+  const drawing::TextStyle style{.colour = theme.muted, .size = 12.0, .anchor = drawing::Anchor::kEnd};
   svg.text({text_right, top - 7.0}, note, style);
   svg.text({text_right, top + 9.0}, "arrows: the way covered in 1 s", style);
-  svg.text({text_right, top + 25.0}, fmt::format("rings: every {} m", compact_number(scales.ring_m)), style);
+  svg.text({text_right, top + 25.0}, fmt::format("rings: every {} m", drawing::compact_number(scales.ring_m)), style);
 }
 
-void draw_head(Svg& svg, const Theme& theme, const GroundView& ground, const char* title, const char* explanation) {
+void draw_head(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground, const char* title,
+               const char* explanation) {
   const double baseline = ground.box.top - 13.0;
   svg.text({ground.box.left, baseline}, title, {.colour = theme.ink, .size = 16.0, .bold = true});
-  svg.text({ground.box.left + estimated_width(title, 17.5) + 10.0, baseline}, explanation,
+  svg.text({ground.box.left + drawing::estimated_width(title, 17.5) + 10.0, baseline}, explanation,
            {.colour = theme.muted, .size = 13.0});
 }
 
@@ -169,14 +174,15 @@ std::vector<PanelContent> panel_contents(const ScanView& view) {
 
 }  // namespace
 
-Svg scan_plot(const ScanView& view, const Theme& theme) {
+drawing::Svg scan_plot(const ScanView& view, const drawing::Theme& theme) {
   const std::vector<PanelContent> contents = panel_contents(view);
   const Region region = region_of_interest(view.scan, rows_per_cell(view.scan, 0.5), view.objects);
   const std::vector<GroundView> panels = arrange_panels(region, contents.size(), kWidth, kSpacing);
-  const Scales scales{.limit = colour_limit(view.scan.doppler()), .ring_m = nice_step(region.x.length(), 9)};
+  const Scales scales{.limit = colour_limit(view.scan.doppler()), .ring_m = drawing::nice_step(region.x.length(), 9)};
   const std::vector<std::uint32_t> rows = rows_to_draw(view.scan, panels.front());
 
-  Svg svg(kWidth, panels.back().box.bottom() + kFoot, view.title + " from above, coloured by Doppler velocity");
+  drawing::Svg svg(kWidth, panels.back().box.bottom() + kFoot,
+                   view.title + " from above, coloured by Doppler velocity");
   svg.rectangle({0.0, 0.0, kWidth, svg.height()}, {.fill = theme.background}, 10.0);
   for (std::size_t k = 0; k < panels.size(); ++k) {
     draw_head(svg, theme, panels[k], contents[k].title, contents[k].explanation);

@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include "dynamic_icp/drawing/svg.hpp"
+#include "dynamic_icp/drawing/theme.hpp"
 #include "dynamic_icp/figures/scan_view.hpp"
-#include "dynamic_icp/figures/svg.hpp"
-#include "dynamic_icp/figures/theme.hpp"
 
 namespace dynamic_icp::figures {
 
@@ -13,6 +13,6 @@ namespace dynamic_icp::figures {
 /// boxes, ids and velocities of the objects. Arrows are as long as the way covered in one second. The second panel is
 /// left out when the ego velocity is not known. At most 13,000 points are drawn, which keeps the file under
 /// 300 KB.
-Svg scan_plot(const ScanView& view, const Theme& theme);
+drawing::Svg scan_plot(const ScanView& view, const drawing::Theme& theme);
 
 }  // namespace dynamic_icp::figures

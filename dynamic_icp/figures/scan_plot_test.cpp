@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/figures/well_formed.hpp"
+#include "dynamic_icp/drawing/well_formed.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -16,9 +16,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string drawn(const ScanView& view) {
-  const std::string document = scan_plot(view, theme(Ground::kDark)).document();
-  EXPECT_EQ(WellFormed::fault_of(document), "");
-  EXPECT_FALSE(holds_non_finite(document));
+  const std::string document = scan_plot(view, drawing::theme(drawing::Ground::kDark)).document();
+  EXPECT_EQ(drawing::WellFormed::fault_of(document), "");
+  EXPECT_FALSE(drawing::holds_non_finite(document));
   return document;
 }
 
@@ -54,7 +54,7 @@ TEST(ScanPlot, NamesObjectsWithTheirSpeed) {
   EXPECT_NE(document.find(">4 · 9.0 m/s<"), std::string::npos);
   EXPECT_NE(document.find(">sensor · 13.0 m/s<"), std::string::npos);
   EXPECT_NE(document.find("2,000 points"), std::string::npos);
-  EXPECT_EQ(count_of(document, "Own motion taken out"), 1u);
+  EXPECT_EQ(drawing::count_of(document, "Own motion taken out"), 1u);
 }
 
 TEST(ScanPlot, WithoutEgoVelocityThereIsOnePanel) {
@@ -68,8 +68,9 @@ TEST(ScanPlot, WithoutEgoVelocityThereIsOnePanel) {
 TEST(ScanPlot, StaticSceneIsGreyOnceOwnMotionIsTakenOut) {
   const std::string document = drawn(random_view(2000));
   const std::string lower = document.substr(document.find("Own motion taken out"));
-  EXPECT_EQ(count_of(lower, "stroke-linecap=\"round\" d="), 1u) << "one path of dots, of one colour";
-  const std::string grey = theme(Ground::kDark).doppler[theme(Ground::kDark).doppler.size() / 2];
+  EXPECT_EQ(drawing::count_of(lower, "stroke-linecap=\"round\" d="), 1u) << "one path of dots, of one colour";
+  const std::string grey =
+      drawing::theme(drawing::Ground::kDark).doppler[drawing::theme(drawing::Ground::kDark).doppler.size() / 2];
   EXPECT_NE(lower.find("stroke=\"" + grey + "\" stroke-width=\"21\""), std::string::npos);
 }
 

@@ -9,12 +9,12 @@
 namespace dynamic_icp::figures {
 namespace {
 
-void include(Range& range, double low, double high) {
+void include(drawing::Range& range, double low, double high) {
   range = {std::min(range.minimum, low), std::max(range.maximum, high)};
 }
 
 /// The middle share of `values`, without the outermost 1 - share on either side.
-Range middle_part(const std::vector<double>& values, double share) {
+drawing::Range middle_part(const std::vector<double>& values, double share) {
   return {quantile(values, 1.0 - share), quantile(values, share)};
 }
 
@@ -85,13 +85,13 @@ Region region_of_interest(const Scan& scan, std::span<const std::uint32_t> rows,
   }
   include(region.x, -3.0, 10.0);  // the sensor and the way ahead
   include(region.y, -6.0, 6.0);
-  for (Range* range : {&region.x, &region.y}) {
+  for (drawing::Range* range : {&region.x, &region.y}) {
     *range = {std::max(range->minimum, -kFarthestM) - kMarginM, std::min(range->maximum, kFarthestM) + kMarginM};
   }
   return region;
 }
 
-Range field_of_view(const Scan& scan) {
+drawing::Range field_of_view(const Scan& scan) {
   std::vector<double> azimuths;
   for (const Eigen::Vector3d& u : scan.directions()) {
     azimuths.push_back(std::atan2(u.y(), u.x()));

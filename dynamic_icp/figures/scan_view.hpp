@@ -10,7 +10,7 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/base/scan.hpp"
-#include "dynamic_icp/figures/axes.hpp"
+#include "dynamic_icp/drawing/axes.hpp"
 #include "dynamic_icp/figures/run_folder.hpp"
 
 namespace dynamic_icp::figures {
@@ -26,8 +26,8 @@ struct ScanView {
 
 /// Part of the ground plane of the sensor: m, x forward, y to the left.
 struct Region {
-  Range x;
-  Range y;
+  drawing::Range x;
+  drawing::Range y;
 
   [[nodiscard]] Eigen::Vector3d middle() const {
     return {0.5 * (x.minimum + x.maximum), 0.5 * (y.minimum + y.maximum), 0.0};
@@ -47,7 +47,7 @@ Region region_of_interest(const Scan& scan, std::span<const std::uint32_t> rows,
 
 /// The horizontal field of view: the azimuths (rad, 0 forward, positive to the left) between which nearly all rows
 /// lie.
-Range field_of_view(const Scan& scan);
+drawing::Range field_of_view(const Scan& scan);
 
 /// The Doppler that is left when the sensor's own motion is taken out, s_i + u_i.v of the paper's Eq. (4), m/s; zero
 /// for static points but for noise.

@@ -128,7 +128,7 @@ TEST(ScanView, FieldOfViewOfASector) {
     raw.points.emplace_back(20.0 * std::cos(azimuth), 20.0 * std::sin(azimuth), 0.0);
     raw.doppler.push_back(0.0);
   }
-  const Range view = field_of_view(Scan::from_raw(raw));
+  const drawing::Range view = field_of_view(Scan::from_raw(raw));
   EXPECT_NEAR(view.minimum, -std::numbers::pi / 3.0, 0.01);
   EXPECT_NEAR(view.maximum, std::numbers::pi / 3.0, 0.01);
 }

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "dynamic_icp/figures/svg.hpp"
-#include "dynamic_icp/figures/theme.hpp"
+#include "dynamic_icp/drawing/svg.hpp"
+#include "dynamic_icp/drawing/theme.hpp"
 
 namespace dynamic_icp::figures {
 
@@ -33,8 +33,8 @@ struct PanelSize {
 };
 
 /// The panels below each other over one time axis (s).
-Svg series_plot(const std::vector<double>& times, const std::vector<Panel>& panels, const Theme& theme,
-                const PanelSize& size = {});
+drawing::Svg series_plot(const std::vector<double>& times, const std::vector<Panel>& panels,
+                         const drawing::Theme& theme, const PanelSize& size = {});
 
 /// Whether a few values tower over the rest, so that only a logarithmic axis shows both.
 bool spans_decades(const std::vector<double>& values);

@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/figures/well_formed.hpp"
+#include "dynamic_icp/drawing/well_formed.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -16,9 +16,9 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 std::string drawn(const std::vector<double>& times, const std::vector<Panel>& panels) {
-  const std::string document = series_plot(times, panels, theme(Ground::kLight)).document();
-  EXPECT_EQ(WellFormed::fault_of(document), "");
-  EXPECT_FALSE(holds_non_finite(document));
+  const std::string document = series_plot(times, panels, drawing::theme(drawing::Ground::kLight)).document();
+  EXPECT_EQ(drawing::WellFormed::fault_of(document), "");
+  EXPECT_FALSE(drawing::holds_non_finite(document));
   return document;
 }
 
@@ -27,8 +27,8 @@ Panel panel(std::vector<double> values) { return {.title = "t", .label = "l", .s
 /// The smallest y (the highest point) of all lines.
 double highest_pixel(const std::string& document) {
   double highest = 1e9;
-  for (const std::vector<Pixel>& line : polylines_of(document)) {
-    for (const Pixel& pixel : line) {
+  for (const std::vector<drawing::Pixel>& line : drawing::polylines_of(document)) {
+    for (const drawing::Pixel& pixel : line) {
       highest = std::min(highest, pixel.y);
     }
   }
@@ -39,7 +39,7 @@ TEST(SeriesPlot, DrawsNothingAndLittle) {
   drawn({}, {});
   EXPECT_NE(drawn({}, {panel({})}).find("no values"), std::string::npos);
   EXPECT_NE(drawn({0.0, 1.0}, {panel({kNaN, kNaN})}).find("no values"), std::string::npos);
-  EXPECT_EQ(count_of(drawn({5.0}, {panel({3.0})}), "<circle"), 1u) << "a single frame is a dot";
+  EXPECT_EQ(drawing::count_of(drawn({5.0}, {panel({3.0})}), "<circle"), 1u) << "a single frame is a dot";
   drawn({0.0, 1.0}, {panel({0.0, 0.0})});
   drawn({0.0, 1.0}, {panel({1e300, -1e300})});
   drawn({0.0, 0.0}, {panel({1.0, 2.0})});
@@ -56,7 +56,7 @@ TEST(SeriesPlot, LogarithmicScaleTakesZerosAndNegatives) {
 
 TEST(SeriesPlot, GapsBreakTheLine) {
   const std::string document = drawn({0.0, 1.0, 2.0, 3.0, 4.0}, {panel({1.0, 2.0, kNaN, 2.0, 1.0})});
-  EXPECT_EQ(count_of(document, "<polyline"), 2u);
+  EXPECT_EQ(drawing::count_of(document, "<polyline"), 2u);
 }
 
 TEST(SeriesPlot, LongDrivesStaySmallAndKeepTheirPeaks) {

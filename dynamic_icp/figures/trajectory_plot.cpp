@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamic_icp/figures/axes.hpp"
+#include "dynamic_icp/drawing/axes.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -17,21 +17,21 @@ constexpr double kBottom = 50.0;
 constexpr double kSmallestHeight = 130.0;  // px of the drawing area
 
 /// The range of one coordinate over both paths, with room around it.
-Range extent(const PathMap& paths, int coordinate) {
+drawing::Range extent(const PathMap& paths, int coordinate) {
   std::vector<double> values;
   for (const auto* path : {&paths.estimate, &paths.ground_truth}) {
     for (const Eigen::Vector3d& position : *path) {
       values.push_back(position[coordinate]);
     }
   }
-  return padded(range_of(values).value_or(Range{0.0, 0.0}), 0.05);
+  return drawing::padded(drawing::range_of(values).value_or(drawing::Range{0.0, 0.0}), 0.05);
 }
 
 /// The path in pixels, without the positions that are closer than half a pixel to the one kept before.
-std::vector<Pixel> thinned(const Axes& axes, const std::vector<Eigen::Vector3d>& path) {
-  std::vector<Pixel> kept;
+std::vector<drawing::Pixel> thinned(const drawing::Axes& axes, const std::vector<Eigen::Vector3d>& path) {
+  std::vector<drawing::Pixel> kept;
   for (std::size_t k = 0; k < path.size(); ++k) {
-    const Pixel pixel = axes.at(path[k].x(), path[k].y());
+    const drawing::Pixel pixel = axes.at(path[k].x(), path[k].y());
     const bool is_far = kept.empty() || !(std::hypot(pixel.x - kept.back().x, pixel.y - kept.back().y) < 0.5);
     if (is_far || k + 1 == path.size()) {
       kept.push_back(pixel);
@@ -40,7 +40,8 @@ std::vector<Pixel> thinned(const Axes& axes, const std::vector<Eigen::Vector3d>&
   return kept;
 }
 
-void draw_ends(Svg& svg, const Theme& theme, const PixelBox& area, const std::vector<Pixel>& path) {
+void draw_ends(drawing::Svg& svg, const drawing::Theme& theme, const drawing::PixelBox& area,
+               const std::vector<drawing::Pixel>& path) {
   if (path.empty()) {
     return;
   }
@@ -48,36 +49,37 @@ void draw_ends(Svg& svg, const Theme& theme, const PixelBox& area, const std::ve
   svg.circle(path.front(), 6.0, {.fill = theme.panel, .stroke = theme.series[0], .width = 2.5, .title = "start"});
   const bool room_above = path.front().y > area.top + 26.0;
   svg.text({path.front().x, path.front().y + (room_above ? -11.0 : 22.0)}, "start",
-           {.colour = theme.ink, .size = 12.0, .anchor = Anchor::kMiddle, .halo = theme.panel});
+           {.colour = theme.ink, .size = 12.0, .anchor = drawing::Anchor::kMiddle, .halo = theme.panel});
 }
 
 }  // namespace
 
-Svg trajectory_plot(const PathMap& paths, const Theme& theme, const MapSize& size) {
-  Range x = extent(paths, 0);
-  Range y = extent(paths, 1);
+drawing::Svg trajectory_plot(const PathMap& paths, const drawing::Theme& theme, const MapSize& size) {
+  drawing::Range x = extent(paths, 0);
+  drawing::Range y = extent(paths, 1);
   const double width = size.width - kLeft - kRight;
   const double largest = size.largest_height - kTop - kBottom;
-  const PixelBox area{kLeft, kTop, width, std::clamp(width * y.length() / x.length(), kSmallestHeight, largest)};
-  make_aspect_equal(area, x, y);
-  const Axes axes(area, {.label = "x (m)", .range = x}, {.label = "y (m)", .range = y});
+  const drawing::PixelBox area{kLeft, kTop, width,
+                               std::clamp(width * y.length() / x.length(), kSmallestHeight, largest)};
+  drawing::make_aspect_equal(area, x, y);
+  const drawing::Axes axes(area, {.label = "x (m)", .range = x}, {.label = "y (m)", .range = y});
 
-  Svg svg(size.width, area.bottom() + kBottom, paths.title);
+  drawing::Svg svg(size.width, area.bottom() + kBottom, paths.title);
   svg.rectangle({0.0, 0.0, svg.width(), svg.height()}, {.fill = theme.background}, 8.0);
   svg.text({kLeft, 26.0}, paths.title, {.colour = theme.ink, .size = 15.0, .bold = true});
   axes.draw(svg, theme);
-  std::vector<LegendEntry> legend = {{"estimate", theme.series[0]}};
+  std::vector<drawing::LegendEntry> legend = {{"estimate", theme.series[0]}};
   if (!paths.ground_truth.empty()) {
     svg.polyline(thinned(axes, paths.ground_truth), {.stroke = theme.series[3], .width = 7.0, .opacity = 0.55});
     legend.push_back({"ground truth", theme.series[3]});
   }
-  const std::vector<Pixel> estimate = thinned(axes, paths.estimate);
+  const std::vector<drawing::Pixel> estimate = thinned(axes, paths.estimate);
   svg.polyline(estimate, {.stroke = theme.series[0], .width = 2.2});
   draw_ends(svg, theme, area, estimate);
-  draw_legend(&svg, theme, {kLeft, 47.0}, area.width, legend);
+  drawing::draw_legend(&svg, theme, {kLeft, 47.0}, area.width, legend);
   if (estimate.empty()) {
     svg.text({area.left + 0.5 * area.width, area.top + 0.5 * area.height}, "no poses",
-             {.colour = theme.muted, .size = 14.0, .anchor = Anchor::kMiddle});
+             {.colour = theme.muted, .size = 14.0, .anchor = drawing::Anchor::kMiddle});
   }
   return svg;
 }

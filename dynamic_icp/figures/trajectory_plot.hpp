@@ -7,8 +7,8 @@
 
 #include <Eigen/Core>
 
-#include "dynamic_icp/figures/svg.hpp"
-#include "dynamic_icp/figures/theme.hpp"
+#include "dynamic_icp/drawing/svg.hpp"
+#include "dynamic_icp/drawing/theme.hpp"
 
 namespace dynamic_icp::figures {
 
@@ -26,6 +26,6 @@ struct MapSize {
 
 /// Top view (x to the right, y up) with equal scales: the estimate as a line on top of a broad line for the ground
 /// truth, a ring where the drive starts and a dot where it ends. Without positions the map is empty and says so.
-Svg trajectory_plot(const PathMap& paths, const Theme& theme, const MapSize& size = {});
+drawing::Svg trajectory_plot(const PathMap& paths, const drawing::Theme& theme, const MapSize& size = {});
 
 }  // namespace dynamic_icp::figures

@@ -7,15 +7,15 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/figures/well_formed.hpp"
+#include "dynamic_icp/drawing/well_formed.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
 
 std::string drawn(const PathMap& paths) {
-  const std::string document = trajectory_plot(paths, theme(Ground::kDark)).document();
-  EXPECT_EQ(WellFormed::fault_of(document), "");
-  EXPECT_FALSE(holds_non_finite(document));
+  const std::string document = trajectory_plot(paths, drawing::theme(drawing::Ground::kDark)).document();
+  EXPECT_EQ(drawing::WellFormed::fault_of(document), "");
+  EXPECT_FALSE(drawing::holds_non_finite(document));
   return document;
 }
 
@@ -29,8 +29,8 @@ TEST(TrajectoryPlot, DrawsNothingAndLittle) {
 }
 
 TEST(TrajectoryPlot, SquareStaysASquareAndYPointsUp) {
-  const std::vector<Pixel> line =
-      polylines_of(drawn({.estimate = {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}, {0, 30, 0}}})).back();
+  const std::vector<drawing::Pixel> line =
+      drawing::polylines_of(drawn({.estimate = {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}, {0, 30, 0}}})).back();
   ASSERT_EQ(line.size(), 4u);
   const double side = line[1].x - line[0].x;
   EXPECT_GT(side, 100.0);
@@ -45,7 +45,7 @@ TEST(TrajectoryPlot, LongDrivesStaySmall) {
   }
   const std::string document = drawn(paths);
   EXPECT_LT(document.size(), 60'000u);
-  const std::vector<Pixel> line = polylines_of(document).back();
+  const std::vector<drawing::Pixel> line = drawing::polylines_of(document).back();
   EXPECT_NEAR(line.back().x - line.front().x, 468.0 / 1.1, 1.0) << "the end is drawn";
 }
 

@@ -2,59 +2,44 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/formats/xyzd_bin.hpp"
 
-#include <bit>
-#include <cstring>
+#include <stdexcept>
+#include <vector>
 
-#include <fmt/format.h>
-
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/formats/binary_file.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
 
 constexpr std::size_t kRecordBytes = 16;
 
-/// A little-endian float32, whatever the byte order of this machine.
-double read_float32(const char* bytes) {
-  std::uint32_t bits = 0;
-  for (int k = 3; k >= 0; --k) {
-    bits = bits << 8 | static_cast<unsigned char>(bytes[k]);
-  }
-  return static_cast<double>(std::bit_cast<float>(bits));
-}
-
-void refuse_other_kinds(const std::filesystem::path& path, const std::string& content) {
-  if (content.starts_with("version https://git-lfs")) {
-    throw DataError(
-        fmt::format("{}: is a Git LFS pointer, not data; run 'git lfs pull' where it came from", path.string()));
-  }
-  if (content.starts_with("PK\x03\x04")) {
-    throw DataError(fmt::format("{}: is a zip archive; unpack it first", path.string()));
-  }
-}
-
 }  // namespace
 
 RawScan read_xyzd(const std::filesystem::path& path) {
-  const std::string content = read_whole_file(path);
-  refuse_other_kinds(path, content);
+  const RecordFile file = read_record_file(path, kRecordBytes);
   RawScan raw;
-  const std::size_t records = content.size() / kRecordBytes;
-  raw.points.resize(records);
-  raw.doppler.resize(records);
-  for (std::size_t i = 0; i < records; ++i) {
-    const char* record = content.data() + i * kRecordBytes;
-    raw.points[i] = {read_float32(record), read_float32(record + 4), read_float32(record + 8)};
-    raw.doppler[i] = read_float32(record + 12);
+  raw.points.resize(file.records);
+  raw.doppler.resize(file.records);
+  for (std::size_t i = 0; i < file.records; ++i) {
+    const std::size_t at = i * kRecordBytes;
+    raw.points[i] = {value_at<float>(file.bytes, at), value_at<float>(file.bytes, at + 4),
+                     value_at<float>(file.bytes, at + 8)};
+    raw.doppler[i] = value_at<float>(file.bytes, at + 12);
   }
-  if (content.empty()) {
-    raw.warning = fmt::format("{}: empty file, taken as a scan without points", path.string());
-  } else if (content.size() % kRecordBytes != 0) {
-    raw.warning = fmt::format("{}: {} bytes after record {} are left out: the size {} is not a multiple of {} bytes",
-                              path.string(), content.size() % kRecordBytes, records, content.size(), kRecordBytes);
-  }
+  raw.warning = file.warning;
   return raw;
+}
+
+void write_xyzd(const std::filesystem::path& path, const RawScan& scan) {
+  if (scan.doppler.size() != scan.points.size()) {
+    throw std::invalid_argument("points and Doppler differ in length");
+  }
+  std::vector<float> values;
+  values.reserve(4 * scan.points.size());
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const Eigen::Vector3f p = scan.points[i].cast<float>();
+    values.insert(values.end(), {p.x(), p.y(), p.z(), static_cast<float>(scan.doppler[i])});
+  }
+  write_values<float>(path, values);
 }
 
 }  // namespace dynamic_icp::formats

@@ -50,6 +50,20 @@ TEST_F(XyzdBin, AnEmptyFileIsAnEmptyScanWithAWarning) {
   EXPECT_FALSE(raw.warning.empty());
 }
 
+TEST_F(XyzdBin, WritesTheSameBytes) {
+  RawScan scan;
+  scan.points.assign(2, {1.0, -2.0, 0.5});
+  scan.doppler.assign(2, -3.25);
+  write_xyzd(path_, scan);
+  EXPECT_EQ(read_whole_file(path_), kRecord + kRecord);
+  write_xyzd(path_, {});
+  EXPECT_EQ(read_whole_file(path_), "");
+  scan.doppler.pop_back();
+  EXPECT_THROW(write_xyzd(path_, scan), std::invalid_argument);
+  scan.doppler.push_back(0.0);
+  EXPECT_THROW(write_xyzd(path_.string() + ".missing/a.bin", scan), DataError);
+}
+
 TEST_F(XyzdBin, NamesWhatIsNotData) {
   const auto message = [&](const std::string& content) -> std::string {
     write(content);

@@ -2,8 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/simulation/fmcw_lidar.hpp"
 
-#include <cmath>
-#include <numbers>
+#include <string>
 
 #include <gtest/gtest.h>
 
@@ -12,14 +11,7 @@
 namespace dynamic_icp::simulation {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-
-TEST(FmcwLidar, DefaultsAreValid) {
-  FmcwLidarConfig config;
-  MountConfig mount;
-  EXPECT_NO_THROW(check_fields(fields(config)));
-  EXPECT_NO_THROW(check_fields(fields(mount)));
-}
+TEST(FmcwLidar, DefaultsAreValid) { EXPECT_NO_THROW(check(FmcwLidarConfig{})); }
 
 TEST(FmcwLidar, ImpossibleValuesAreRefused) {
   FmcwLidarConfig config;
@@ -29,33 +21,46 @@ TEST(FmcwLidar, ImpossibleValuesAreRefused) {
   EXPECT_THROW(set_field(fields(config), "horizontal_fov_deg", "nan"), UsageError);
 }
 
-TEST(FmcwLidar, PatternCoversTheFieldOfViewEvenly) {
+TEST(FmcwLidar, ContradictionsAreRefused) {
   FmcwLidarConfig config;
-  config.columns = 12;
-  config.rows = 4;
-  const ScanPattern pattern = instant_pattern(config);
-  ASSERT_EQ(pattern.size(), 12U);
-  for (std::size_t column = 0; column < pattern.size(); ++column) {
-    EXPECT_EQ(pattern[column].time_s, 0.0);
-    ASSERT_EQ(pattern[column].directions.size(), 4U);
-    for (std::size_t row = 0; row < 4; ++row) {
-      const Eigen::Vector3d& u = pattern[column].directions[row];
-      EXPECT_NEAR(u.norm(), 1.0, 1e-15);
-      EXPECT_NEAR(std::atan2(u.y(), u.x()) * kDegrees, 55.0 - 10.0 * static_cast<double>(column), 1e-12);
-      EXPECT_NEAR(std::asin(u.z()) * kDegrees, 7.2 - 4.8 * static_cast<double>(row), 1e-12);
+  config.min_range_m = config.max_range_m = 50.0;
+  EXPECT_THROW(check(config), UsageError);
+  config = {};
+  config.sweep_s = 0.11;
+  EXPECT_THROW(check(config), UsageError);
+  config.rate_hz = 5.0;
+  EXPECT_NO_THROW(check(config));
+}
+
+TEST(FmcwLidar, WithoutNoiseIsThePerfectSensorWithTheSameView) {
+  FmcwLidarConfig config;
+  // Every setting away from its default, within its range.
+  for (const ConfigField& field : fields(config)) {
+    if (auto* const* number = std::get_if<double*>(&field.value)) {
+      **number = **number == field.minimum ? 0.5 * field.maximum : 0.5 * (**number + field.minimum);
     }
+  }
+  FmcwLidarConfig clean = without_noise(config);
+  FmcwLidarConfig perfect;
+  const ConfigFields before = fields(config);
+  const ConfigFields after = fields(clean);
+  const ConfigFields defaults = fields(perfect);
+  for (std::size_t i = 0; i < after.size(); ++i) {
+    // What is left alone: the view, the limits of range, and what only says how an effect behaves that is off now.
+    const std::string& key = after[i].key;
+    const bool view = key.find("fov") != std::string::npos || key.starts_with("vertical") || key == "columns" ||
+                      key == "rows" || key == "rate_hz" || key == "sweep_s" || key == "row_by_row" ||
+                      key == "scatter_deg" || key == "min_range_m" || key == "max_range_m" ||
+                      key.starts_with("weak_when") || key == "range_resolution_m" || key == "rain_range_m" ||
+                      key == "doppler_outlier_span_mps";
+    EXPECT_EQ(value_text(after[i]), value_text(view ? before[i] : defaults[i])) << key;
   }
 }
 
-TEST(FmcwLidar, MountIsThePoseOfTheSensorOnTheVehicle) {
-  MountConfig mount{1.0, 2.0, 3.0, 0.0, 90.0, 0.0};
-  const Eigen::Isometry3d T = T_vehicle_sensor(mount);
-  // Pitched by 90 degrees the sensor looks down: one metre ahead of it is one metre below it.
-  EXPECT_TRUE((T * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d(1.0, 2.0, 2.0), 1e-12));
-  mount = {0.0, 0.0, 0.0, 0.0, 0.0, 90.0};
-  EXPECT_TRUE((T_vehicle_sensor(mount) * Eigen::Vector3d::UnitX()).isApprox(Eigen::Vector3d::UnitY(), 1e-12));
-  mount = {0.0, 0.0, 0.0, 90.0, 0.0, 0.0};
-  EXPECT_TRUE((T_vehicle_sensor(mount) * Eigen::Vector3d::UnitY()).isApprox(Eigen::Vector3d::UnitZ(), 1e-12));
+TEST(FmcwLidar, InstantScansTakeNoTime) {
+  FmcwLidarConfig config;
+  config.sweep_s = 0.1;
+  EXPECT_EQ(instant(config).sweep_s, 0.0);
 }
 
 }  // namespace

@@ -4,63 +4,65 @@
 
 #include <cstddef>
 #include <filesystem>
-#include <fstream>
+#include <memory>
+#include <optional>
 #include <string_view>
+#include <vector>
 
+#include "dynamic_icp/simulation/point_layout.hpp"
 #include "dynamic_icp/simulation/simulation.hpp"
+#include "dynamic_icp/simulation/truth_writer.hpp"
 
 namespace dynamic_icp::simulation {
 
-/// What was written, for a summary.
-struct SequenceCounts {
-  std::size_t scans = 0;
-  std::size_t points = 0;
-  std::size_t moving_points = 0;
-  std::size_t objects = 0;     ///< object records: one object in two scans counts twice
-  double path_length_m = 0.0;  ///< of the sensor, from scan to scan
+/// The layout of the points.
+enum class Layout { kDicp, kHercules, kAevaScenes };
+
+/// The layout of that name: dicp, hercules or aevascenes. Throws UsageError with the known names.
+Layout find_layout(std::string_view name);
+
+struct SequenceOptions {
+  Layout layout = Layout::kDicp;
+  bool point_truth = false;  ///< true range and Doppler of every point
+  bool calibration = false;  ///< dicp: poses of the vehicle, and calibration.json with the mounting
 };
 
-/// Writes a sequence scan by scan in the plain layout with its truth (docs/simulator.md):
-///   point_clouds/00001.bin  float32 x, y, z (m, sensor frame), Doppler (m/s, positive away), little-endian
-///   ref_poses.txt           TUM rows of T_world_sensor, first pose identity
-///   labels/00001.bin        int32 per point: 0 at rest, > 0 the id of the moving body
-///   objects.jsonl           moving bodies of each scan
-///   ego.jsonl               velocity and angular velocity of the sensor at each scan
-///   scene.json              what was simulated; written last
-/// Every failure of the machine is a DataError that names the file and the reason.
+/// What was written, for a summary.
+struct SequenceCounts {
+  std::size_t scans = 0;  ///< of all sensors
+  std::size_t rays = 0;
+  std::size_t points = 0;
+  std::size_t moving_points = 0;
+  std::size_t mixed_points = 0;
+  std::size_t rain_points = 0;
+  std::size_t objects = 0;     ///< object records: one object in two scans counts twice
+  double path_length_m = 0.0;  ///< of the first sensor, from scan to scan
+};
+
+/// Writes a sequence scan by scan with its truth (docs/simulator.md): points in the chosen layout, the truth of each
+/// sensor, scene.json last. With several sensors the truth of each, and its points in the layouts for one sensor, lie
+/// in a folder of the sensor's name. Every failure of the machine is a DataError that names the file and the reason.
 class SequenceWriter {
  public:
-  /// Writes into an existing, empty folder.
-  explicit SequenceWriter(const std::filesystem::path& folder);
+  /// Writes into an existing, empty folder. Keeps a reference to the simulation.
+  SequenceWriter(const std::filesystem::path& folder, const Simulation& simulation,
+                 const SequenceOptions& options = {});
 
-  void add(const SimulatedFrame& frame);
+  /// The scans of each sensor must come in order.
+  void add(const SimulatedFrame& frame, std::size_t sensor = 0);
 
   /// Completes the files and writes scene.json. Nothing can be added afterwards.
-  void finish(const Simulation& simulation, std::string_view version);
+  void finish(std::string_view version);
 
   [[nodiscard]] const SequenceCounts& counts() const { return counts_; }
 
  private:
-  /// A text file that grows line by line.
-  struct LineFile {
-    std::filesystem::path path;
-    std::ofstream stream;
-  };
-
-  static LineFile open(const std::filesystem::path& path);
-  static void write(LineFile& file, std::string_view line);
-  static void close(LineFile& file);
-
-  void add_pose(const SimulatedFrame& frame);
-  void add_objects(const SimulatedFrame& frame);
-  void add_ego(const SimulatedFrame& frame);
-
   std::filesystem::path folder_;
-  LineFile poses_;
-  LineFile objects_;
-  LineFile ego_;
-  Eigen::Isometry3d T_first_world_ = Eigen::Isometry3d::Identity();
-  Eigen::Vector3d last_position_ = Eigen::Vector3d::Zero();
+  const Simulation& simulation_;
+  SequenceOptions options_;
+  std::vector<std::unique_ptr<PointLayout>> points_;  ///< one for each sensor, or one for all
+  std::vector<std::unique_ptr<TruthWriter>> truth_;   ///< one for each sensor
+  std::optional<Eigen::Vector3d> last_position_;
   SequenceCounts counts_;
 };
 

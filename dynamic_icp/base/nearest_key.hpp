@@ -1,0 +1,15 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace dynamic_icp {
+
+/// The known key that was probably meant by what was typed: the one with the fewest letters to change, where the last
+/// part of a dotted key ("voxel_size_m") counts as the whole; the first of equals. Empty when there are no keys.
+std::string_view nearest_key(std::string_view typed, std::span<const std::string> keys);
+
+}  // namespace dynamic_icp

@@ -1,0 +1,58 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamic_icp/formats/npy.hpp"
+
+namespace dynamic_icp::formats {
+
+// Named arrays of NumPy in one zip archive, as numpy.savez and numpy.savez_compressed write them.
+
+/// Members that unpack to more are refused: no scan is that large, a damaged or hostile file may say so.
+constexpr std::size_t kMaxNpzMemberBytes = std::size_t{1} << 28U;
+
+/// An archive open for reading.
+class NpzFile {
+ public:
+  /// Throws DataError when the file cannot be read or is no zip archive.
+  explicit NpzFile(const std::filesystem::path& path);
+  ~NpzFile();
+  NpzFile(const NpzFile&) = delete;
+  NpzFile& operator=(const NpzFile&) = delete;
+
+  /// The names of all arrays, also of those that hold no numbers, in the order of the archive.
+  [[nodiscard]] std::vector<std::string> names() const;
+  [[nodiscard]] bool contains(std::string_view name) const;
+
+  /// Unpacks one array. Throws DataError naming file and member when there is none of that name, it is damaged, claims
+  /// more than kMaxNpzMemberBytes or is not an array of numbers (see parse_npy). The other members stay readable.
+  [[nodiscard]] NpyArray read(std::string_view name) const;
+
+ private:
+  class Archive;
+  std::filesystem::path path_;
+  std::unique_ptr<Archive> archive_;
+};
+
+/// An array with its name in the archive.
+struct NpzMember {
+  std::string name;
+  NpyArray array;
+};
+
+/// The bytes of an archive, not compressed: the same for the same arrays, whenever and wherever it is made. Throws
+/// std::invalid_argument when there is no member or a name is empty or used twice.
+std::string npz_bytes(std::span<const NpzMember> members);
+
+/// Writes an archive whole or not at all.
+void write_npz(const std::filesystem::path& path, std::span<const NpzMember> members);
+
+}  // namespace dynamic_icp::formats

@@ -1,0 +1,17 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string_view>
+#include <vector>
+
+namespace dynamic_icp::formats {
+
+/// Takes the next line, without its line feed, from the front of `rest`; nothing when `rest` is empty.
+std::optional<std::string_view> take_line(std::string_view& rest);
+
+/// The words of a line: what stands between blanks, tabs, carriage returns and the like.
+std::vector<std::string_view> words_of(std::string_view line);
+
+}  // namespace dynamic_icp::formats
