@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <optional>
 #include <set>
 
@@ -54,10 +55,10 @@ struct YamlMap::Contents {
   std::filesystem::path origin;
   std::string path;  ///< the keys above, e.g. "vehicle"; empty at the top
   int line = 1;
-  int position = 0;  ///< in the text, of the key of this map
   std::vector<Entry> entries;
   std::set<std::string, std::less<>> asked;
-  std::vector<std::shared_ptr<Contents>> taken;  ///< maps of this map that were asked for
+  /// Maps of this map that were asked for, by the place of their key in the text and their path.
+  std::map<std::pair<int, std::string>, std::shared_ptr<Contents>> taken;
 
   [[nodiscard]] std::string path_of(std::string_view key) const {
     return path.empty() ? std::string(key) : fmt::format("{}.{}", path, key);
@@ -94,13 +95,14 @@ struct YamlMap::Contents {
   }
 
   void fill(const YAML::Node& node) {
+    std::set<std::string> keys;
     for (const auto& entry : node) {
       const int at_line = line_of(entry.first);
       if (!entry.first.IsScalar() || entry.first.Scalar().empty()) {
         fail(at_line, fmt::format("a key is {}, expected a name", found(entry.first)));
       }
       const std::string key = entry.first.Scalar();
-      if (std::any_of(entries.begin(), entries.end(), [&](const Entry& other) { return other.key == key; })) {
+      if (!keys.insert(key).second) {
         fail(at_line, fmt::format("'{}' is set twice", path_of(key)));
       }
       entries.push_back({key, entry.first, entry.second});
@@ -116,7 +118,7 @@ struct YamlMap::Contents {
         fail(line_of(entry.key_node), fmt::format("unknown key '{}'{}", path_of(entry.key), hint));
       }
     }
-    for (const std::shared_ptr<Contents>& map : taken) {
+    for (const auto& [key, map] : taken) {
       map->finish();
     }
   }
@@ -160,19 +162,14 @@ const YamlMap::Entry& YamlMap::at(std::string_view key, std::string_view expecte
 }
 
 YamlMap YamlMap::child(const Entry& entry, const std::string& path) const {
-  const int position = entry.key_node.Mark().pos;
-  for (const std::shared_ptr<Contents>& earlier : contents_->taken) {
-    if (earlier->path == path && earlier->position == position) {
-      return YamlMap(earlier);
-    }
+  std::shared_ptr<Contents>& contents = contents_->taken[{entry.key_node.Mark().pos, path}];
+  if (contents == nullptr) {
+    contents = std::make_shared<Contents>();
+    contents->origin = contents_->origin;
+    contents->path = path;
+    contents->line = line_of(entry.key_node);
+    contents->fill(entry.value);
   }
-  auto contents = std::make_shared<Contents>();
-  contents->origin = contents_->origin;
-  contents->path = path;
-  contents->line = line_of(entry.key_node);
-  contents->position = position;
-  contents->fill(entry.value);
-  contents_->taken.push_back(contents);
   return YamlMap(contents);
 }
 

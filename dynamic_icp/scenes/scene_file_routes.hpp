@@ -5,6 +5,8 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "dynamic_icp/formats/yaml_map.hpp"
 #include "dynamic_icp/world/drive.hpp"
@@ -48,7 +50,8 @@ std::vector<world::SpeedKnot> read_speed_knots(const formats::YamlMap& map);
 /// Either `speed_mps` or `speed`.
 world::SpeedProfile read_speed(const formats::YamlMap& map);
 
-/// The rotation Rz(yaw_deg) Ry(pitch_deg) Rx(roll_deg) at `position`; the angles are 0 where the keys are missing.
+/// The place turned in its own frame by Rz(yaw_deg) Ry(pitch_deg) Rx(roll_deg); the angles are 0 where keys are
+/// missing.
 Eigen::Isometry3d read_turned(const formats::YamlMap& map, const Eigen::Isometry3d& T_world_place);
 
 Eigen::Vector2d read_vector2(const formats::YamlMap& map, std::string_view key, formats::Limits limits);

@@ -40,7 +40,7 @@ std::vector<Isometry3d> read_places(const YamlMap& map, const Routes& routes) {
   const double lateral_m = map.number("lateral_m", kPosition, 0.0);
   const Eigen::Translation3d up(0.0, 0.0, map.number("z_m", kPosition, 0.0));
   const int count = map.whole_number("count", {1, kMostThings}, 1);
-  const double spacing_m = count > 1 ? map.number("spacing_m", kLength) : 0.0;
+  const double spacing_m = count > 1 ? map.number("spacing_m", kLength) : map.number("spacing_m", kLength, 1.0);
   std::vector<Isometry3d> places;
   for (int i = 0; i < count; ++i) {
     places.push_back(read_turned(map, pose_on(*route.route, s_m + i * spacing_m, lateral_m) * up));
@@ -56,8 +56,7 @@ StaticPart copies(TriangleMesh solid, std::vector<Isometry3d> places) {
   };
 }
 
-// Surfaces of their own kind.
-
+/// The keys `low_m` and `high_m`.
 Eigen::AlignedBox2d read_area(const YamlMap& map) {
   const Vector2d low = read_vector2(map, "low_m", kPosition);
   const Vector2d high = read_vector2(map, "high_m", kPosition);

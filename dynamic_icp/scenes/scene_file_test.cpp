@@ -63,6 +63,7 @@ class Probe {
     return hit ? std::optional(kAbove - hit->range_m) : std::nullopt;
   }
   double reflectivity(double x, double y) const { return down(x, y).value().reflectivity; }
+  Vector3d normal(double x, double y) const { return down(x, y).value().normal_world; }
 
  private:
   static constexpr double kAbove = 50.0;
@@ -135,11 +136,13 @@ TEST_F(SceneFile, SurfacesAreWhereTheFileSays) {
   EXPECT_NEAR(*probe.height(30.0, 12.0), 1.0, 1e-6);
   EXPECT_NEAR(*probe.height(30.0, 13.0), 0.5, 1e-6);
   EXPECT_NEAR(*probe.height(39.5, 11.0), 0.5, 1e-6);
+  EXPECT_TRUE(probe.normal(30.0, 13.0).isApprox(Vector3d(0.0, 1.0, 2.0).normalized()));
   EXPECT_FALSE(probe.height(30.0, 14.5));
   EXPECT_FALSE(probe.height(19.5, 12.0));
   EXPECT_NEAR(*probe.height(51.0, 1.0), 1.5, 1e-6);
   EXPECT_NEAR(*probe.height(53.0, 1.0), 2.5, 1e-6);
   EXPECT_NEAR(*probe.height(50.5, 3.0), 3.25, 1e-6);
+  EXPECT_TRUE(probe.normal(51.0, 1.0).isApprox(Vector3d(-1.0, 0.0, 2.0).normalized()));
   EXPECT_FALSE(probe.height(54.5, 1.0));
 }
 
@@ -338,6 +341,16 @@ TEST(ExampleScene, CrossingStopsAndDrivesOn) {
   EXPECT_NEAR(*probe.height(20.0, -5.8), 0.12, 1e-6);
   EXPECT_NEAR(*probe.height(61.75, -3.0), 0.0, 1e-6);
   EXPECT_NEAR(*probe.height(250.0, 12.0), 0.8, 1e-6);
+}
+
+TEST_F(SceneFile, TheSmallestFileOfTheDocumentationIsOne) {
+  const std::string page =
+      formats::read_whole_file(std::filesystem::path(DYNAMIC_ICP_EXAMPLE_SCENES) / "../../docs/scenes.md");
+  const std::size_t begin = page.find("```yaml\n") + 8;
+  const SceneKind kind = load(page.substr(begin, page.find("```", begin) - begin));
+  const Probe probe(build_scene(kind, default_knobs(kind), 1.0));
+  EXPECT_NEAR(*probe.height(300.0, 6.1), 3.0, 1e-9);
+  EXPECT_NEAR(*probe.height(300.0, 5.8), 0.0, 1e-9);
 }
 
 }  // namespace

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
 #include <map>
+#include <span>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -101,7 +103,7 @@ class AevaScenesLayout : public PointLayout {
     formats::make_folder(folder_ / kRawFolder);
     formats::make_folder(folder_ / kCompensatedFolder);
     for (const world::MovingBody& body : simulation.scene().world.bodies) {
-      class_indices_[body.id] = class_of(body.name).index;
+      bodies_[body.id] = &body;
     }
   }
 
@@ -131,8 +133,10 @@ class AevaScenesLayout : public PointLayout {
     return frame.scan.measured.stamp.ns + kUnixTimeOfStart;
   }
 
+  static double time_s(const SimulatedFrame& frame) { return seconds_between(Stamp{}, frame.scan.measured.stamp); }
+
   [[nodiscard]] Eigen::Isometry3d T_world_vehicle(const SimulatedFrame& frame) const {
-    return simulation_.scene().vehicle(seconds_between(Stamp{}, frame.scan.measured.stamp)).T_world_body;
+    return simulation_.scene().vehicle(time_s(frame)).T_world_body;
   }
 
   void begin_frame(const SimulatedFrame& frame) {
@@ -182,12 +186,12 @@ class AevaScenesLayout : public PointLayout {
   [[nodiscard]] std::vector<double> compensated_doppler(const RawScan& scan, std::size_t sensor) const {
     std::vector<double> doppler(scan.doppler.size());
     const double begin_s = seconds_between(Stamp{}, scan.stamp);
-    double time_s = -1.0;
+    double offset_s = -1.0;
     Eigen::Vector3d velocity_sensor = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < doppler.size(); ++i) {
-      if (i == 0 || scan.times[i] != time_s) {  // many points have the same time, one after the other
-        time_s = scan.times[i];
-        velocity_sensor = simulation_.sensor_state(begin_s + time_s, sensor).velocity_sensor;
+      if (i == 0 || scan.times[i] != offset_s) {  // many points have the same time, one after the other
+        offset_s = scan.times[i];
+        velocity_sensor = simulation_.sensor_state(begin_s + offset_s, sensor).velocity_sensor;
       }
       doppler[i] = scan.doppler[i] + scan.points[i].normalized().dot(velocity_sensor);
     }
@@ -195,8 +199,8 @@ class AevaScenesLayout : public PointLayout {
   }
 
   [[nodiscard]] std::int64_t class_index(std::int32_t body) const {
-    const auto found = class_indices_.find(body);
-    return found == class_indices_.end() ? kUnknown.index : found->second;
+    const auto found = bodies_.find(body);
+    return found == bodies_.end() ? kUnknown.index : class_of(found->second->name).index;
   }
 
   /// The bodies that no sensor before has shown in this frame.
@@ -215,14 +219,15 @@ class AevaScenesLayout : public PointLayout {
     const Eigen::Isometry3d T_vehicle_lidar = T_vehicle_sensor(sensor_config(sensor).mount);
     Eigen::Isometry3d T_vehicle_box = T_vehicle_lidar * object.T_sensor_body;
     T_vehicle_box.translation() = T_vehicle_lidar * object.center_sensor;
-    const Eigen::Vector3d up_vehicle = T_world_vehicle(frame).linear().transpose() * Eigen::Vector3d::UnitZ();
+    const Eigen::Vector3d turning_vehicle = T_world_vehicle(frame).linear().transpose() *
+                                            bodies_.at(object.id)->trajectory(time_s(frame)).angular_velocity_world;
     const ObjectClass& object_class = class_of(object.name);
     return {{"id", id},
             {"reference_frame", "VEHICLE"},
             {"dimensions", to_json(object.size)},
             {"pose", to_json(T_vehicle_box)},
             {"linear_velocity", to_json(Eigen::Vector3d(T_vehicle_lidar.linear() * object.velocity_sensor))},
-            {"angular_velocity", to_json(Eigen::Vector3d(object.yaw_rate_rps * up_vehicle))},
+            {"angular_velocity", to_json(turning_vehicle)},
             {"class", object_class.name},
             {"class_idx", object_class.index}};
   }
@@ -245,7 +250,7 @@ class AevaScenesLayout : public PointLayout {
   fs::path folder_;
   const Simulation& simulation_;
   RandomSource identifiers_;
-  std::map<std::int32_t, std::int64_t> class_indices_;  ///< of the moving bodies
+  std::map<std::int32_t, const world::MovingBody*> bodies_;  ///< by their ids
   Eigen::Isometry3d T_first_world_ = Eigen::Isometry3d::Identity();
   std::vector<Json> frames_;
 };

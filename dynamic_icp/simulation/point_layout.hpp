@@ -40,9 +40,9 @@ std::unique_ptr<PointLayout> make_hercules_layout(const std::filesystem::path& f
 ///   pointcloud_raw/<sensor>_<stamp_ns>.npz           points with the Doppler as measured
 ///   pointcloud_compensated/<sensor>_<stamp_ns>.npz   the same points, Doppler without the sensor's own motion
 /// Reflectivities, 13 bits there, are 8191 times the simulated share, at most 8191. Classes are numbers only: the names
-/// beside them in the data set are objects of Python. Boxes turn about the vertical only.
-/// The vehicle frame is that of the simulation, below the middle of the vehicle. The sensors' scans must come frame by
-/// frame. Keeps a reference to the simulation.
+/// beside them in the data set are objects of Python. The vehicle
+/// frame is that of the simulation, below the middle of the vehicle. The sensors' scans must come frame by frame. Keeps
+/// a reference to the simulation.
 std::unique_ptr<PointLayout> make_aevascenes_layout(const std::filesystem::path& folder, const Simulation& simulation);
 
 }  // namespace dynamic_icp::simulation
