@@ -228,8 +228,6 @@ TEST_F(BadInput, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("run " + in + out + " --format vhs", "dicp");
   expect_usage_error("run " + in + out + " --start 500", "0 to 11");
   expect_usage_error("run " + in + out + " --threads -1", "threads");
-  expect_usage_error("simulate moon" + out, "street");
-  expect_usage_error("simulate street --set speed_mps=-5" + out, "speed_mps");
   write_file(folder_ / "bad.yaml", "preprocess:\n  voxel:\n    voxel_size_m: [1, 2]\n");
   expect_usage_error("run " + in + out + " --config " + (folder_ / "bad.yaml").string(), "line 3");
 }

@@ -24,5 +24,20 @@ TEST(Documents, MapNamesEveryRoom) {
   }
 }
 
+TEST(Documents, EverySceneHasAPicture) {
+  std::istringstream list(run_program("simulate --list").text);
+  std::string line;
+  std::getline(list, line);
+  const std::string page = read_file(source_folder() / "docs" / "simulator.md");
+  int scenes = 0;
+  while (std::getline(list, line) && !line.empty()) {
+    const std::string name = line.substr(2, line.find(' ', 2) - 2);
+    EXPECT_TRUE(fs::exists(source_folder() / "docs" / "scenes" / (name + ".svg"))) << name;
+    EXPECT_NE(page.find("[`" + name + "`](scenes/" + name + ".svg)"), std::string::npos) << name;
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 11);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tests

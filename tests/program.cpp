@@ -78,7 +78,7 @@ void ProgramTest::TearDown() {
 fs::path ProgramTest::street() {
   static const fs::path path = [] {
     const fs::path drive = shared_folder() / "street";
-    const Outcome made = run_program("simulate street --frames 12 --quiet --output " + drive.string());
+    const Outcome made = run_program("simulate street --frames 12 --instant --quiet --output " + drive.string());
     EXPECT_EQ(made.status, 0) << made.text;
     return drive;
   }();

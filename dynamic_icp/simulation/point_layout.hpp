@@ -27,9 +27,9 @@ class PointLayout {
 /// Stamp 0 of a simulation in layouts with Unix time: 2025-01-01 00:00:00 UTC.
 constexpr std::int64_t kUnixTimeOfStart = 1'735'689'600'000'000'000;  // ns
 
-/// point_clouds/00001.bin: float32 x, y, z, Doppler. Scans that take time have times/00001.bin beside them: float32
-/// seconds after the stamp, for each point; either all scans have such a file or none.
-std::unique_ptr<PointLayout> make_dicp_layout(const std::filesystem::path& folder);
+/// point_clouds/00001.bin: float32 x, y, z, Doppler. For sensors whose scans take time also times/00001.bin: float32
+/// seconds after the stamp, for each point.
+std::unique_ptr<PointLayout> make_dicp_layout(const std::filesystem::path& folder, bool takes_time);
 
 /// LiDAR/Aeva/<stamp_ns>.bin in records of 29 bytes, with the reflectivity in percent, and PR_GT/Aeva_gt.txt with the
 /// poses of the sensor relative to its first scan. `add` throws UsageError for sensors with more rows than fit (256).
@@ -40,9 +40,8 @@ std::unique_ptr<PointLayout> make_hercules_layout(const std::filesystem::path& f
 ///   pointcloud_raw/<sensor>_<stamp_ns>.npz           points with the Doppler as measured
 ///   pointcloud_compensated/<sensor>_<stamp_ns>.npz   the same points, Doppler without the sensor's own motion
 /// Reflectivities, 13 bits there, are 8191 times the simulated share, at most 8191. Classes are numbers only: the names
-/// beside them in the data set are objects of Python. The vehicle
-/// frame is that of the simulation, below the middle of the vehicle. The sensors' scans must come frame by frame. Keeps
-/// a reference to the simulation.
+/// beside them in the data set are objects of Python. The vehicle frame is that of the simulation, below the middle of
+/// the vehicle. The sensors' scans must come frame by frame. Keeps a reference to the simulation.
 std::unique_ptr<PointLayout> make_aevascenes_layout(const std::filesystem::path& folder, const Simulation& simulation);
 
 }  // namespace dynamic_icp::simulation

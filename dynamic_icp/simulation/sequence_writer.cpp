@@ -77,7 +77,7 @@ SequenceWriter::SequenceWriter(const fs::path& folder, const Simulation& simulat
     formats::make_folder(own);
     truth_.push_back(std::make_unique<TruthWriter>(own, simulation, sensor, truth));
     if (options.layout == Layout::kDicp) {
-      points_.push_back(make_dicp_layout(own));
+      points_.push_back(make_dicp_layout(own, rig.sensors[sensor].lidar.sweep_s > 0.0));
     } else if (options.layout == Layout::kHercules) {
       points_.push_back(make_hercules_layout(own));
     }
