@@ -16,6 +16,7 @@ namespace dynamic_icp::apps {
 void add_run_command(CLI::App& app, std::function<int()>& selected);
 void add_register_command(CLI::App& app, std::function<int()>& selected);
 void add_evaluate_command(CLI::App& app, std::function<int()>& selected);
+void add_benchmark_command(CLI::App& app, std::function<int()>& selected);
 void add_simulate_command(CLI::App& app, std::function<int()>& selected);
 void add_info_command(CLI::App& app, std::function<int()>& selected);
 void add_plot_command(CLI::App& app, std::function<int()>& selected);

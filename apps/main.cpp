@@ -46,9 +46,9 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string(version()));
   app.require_subcommand(1);
   std::function<int()> selected;
-  for (const auto add :
-       {apps::add_run_command, apps::add_register_command, apps::add_evaluate_command, apps::add_simulate_command,
-        apps::add_report_command, apps::add_plot_command, apps::add_info_command, apps::add_config_command}) {
+  for (const auto add : {apps::add_run_command, apps::add_register_command, apps::add_evaluate_command,
+                         apps::add_benchmark_command, apps::add_simulate_command, apps::add_report_command,
+                         apps::add_plot_command, apps::add_info_command, apps::add_config_command}) {
     add(app, selected);
   }
   try {

@@ -2,19 +2,25 @@
 // SPDX-License-Identifier: MIT
 #include "apps/method_options.hpp"
 
+#include <algorithm>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/config_file.hpp"
+#include "dynamic_icp/odometry/odometry.hpp"
 
 #include "apps/settings.hpp"
 
 namespace dynamic_icp::apps {
 
 void add_method_options(CLI::App& command, MethodOptions& options) {
-  command.add_option("--method", options.method, "Method: dynamic-icp (default dynamic-icp)")->type_name("NAME");
+  command
+      .add_option("--method", options.method,
+                  fmt::format("Method: {} (default dynamic-icp)", fmt::join(odometry::method_names(), ", ")))
+      ->type_name("NAME");
   command
       .add_option(
           "--preset", options.preset,
@@ -43,8 +49,13 @@ void add_method_options(CLI::App& command, MethodOptions& options) {
 }
 
 odometry::Config make_config(const MethodOptions& options) {
-  if (options.method != "dynamic-icp") {
-    throw UsageError(fmt::format("unknown method '{}'; known are: dynamic-icp", options.method));
+  const auto methods = odometry::method_names();
+  if (std::find(methods.begin(), methods.end(), options.method) == methods.end()) {
+    throw UsageError(fmt::format("unknown method '{}'; known are: {}", options.method, fmt::join(methods, ", ")));
+  }
+  if (options.ablation != "none" && options.method != "dynamic-icp") {
+    throw UsageError(fmt::format("--ablation {}: parts can be switched off in dynamic-icp only, not in {}",
+                                 options.ablation, options.method));
   }
   odometry::Config config = odometry::preset(options.preset);
   const ConfigFields fields = odometry::fields(config);

@@ -8,7 +8,7 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/xyzd_bin.hpp"
-#include "dynamic_icp/odometry/dynamic_icp.hpp"
+#include "dynamic_icp/odometry/odometry.hpp"
 #include "dynamic_icp/results/frame_json.hpp"
 
 #include "apps/commands.hpp"
@@ -40,13 +40,17 @@ int register_pair(const RegisterOptions& options) {
   }
   const RawScan source = read_scan(options.source, Stamp{0});
   const RawScan target = read_scan(options.target, Stamp{std::llround(options.dt_s * 1e9)});
-  odometry::DynamicIcp odometry(config, options.method.threads);
-  const odometry::Frame first = odometry.process(source);
-  odometry::Frame second = odometry.process(target);
+  const std::unique_ptr<odometry::Odometry> odometry =
+      odometry::make_odometry(options.method.method, config, {}, options.method.threads);
+  for (const std::string& assumption : odometry->assumptions()) {
+    fmt::print(stderr, "dynamic-icp: warning: {}\n", assumption);
+  }
+  const odometry::Frame first = odometry->process(source);
+  odometry::Frame second = odometry->process(target);
   if (first.status != odometry::FrameStatus::kFirst) {
     second.status = first.status;  // nothing to align from: the pair is no better than its source
   }
-  fmt::print("{}\n", results::pair_document(first, second));
+  fmt::print("{}\n", results::pair_document(first, second, odometry->assumptions()));
   return 0;
 }
 

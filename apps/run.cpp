@@ -14,7 +14,7 @@
 #include "dynamic_icp/datasets/dataset.hpp"
 #include "dynamic_icp/formats/output_folder.hpp"
 #include "dynamic_icp/formats/tum.hpp"
-#include "dynamic_icp/odometry/dynamic_icp.hpp"
+#include "dynamic_icp/odometry/odometry.hpp"
 #include "dynamic_icp/results/run_writer.hpp"
 
 #include "apps/command_line.hpp"
@@ -90,7 +90,8 @@ struct Warnings {
 };
 
 std::string run_json(const RunOptions& options, const datasets::Dataset& dataset, const odometry::Config& config,
-                     const fs::path& ground_truth, const Warnings& warnings) {
+                     const std::vector<std::string>& assumptions, const fs::path& ground_truth,
+                     const Warnings& warnings) {
   nlohmann::ordered_json json = {
       {"version", version()},
       {"command", command_line()},
@@ -109,7 +110,7 @@ std::string run_json(const RunOptions& options, const datasets::Dataset& dataset
   if (!ground_truth.empty()) {
     json["ground_truth"] = fs::absolute(ground_truth).string();
   }
-  json["assumptions"] = dataset.assumptions();
+  json["assumptions"] = assumptions;
   json["warnings"] = warnings.texts;
   json["configuration"] = configuration_json(config);
   // File names need not be UTF-8.
@@ -159,11 +160,16 @@ int run(const RunOptions& options) {
   formats::OutputFolder output(options.output, "run.json", options.force);
 
   Warnings warnings{{}, options.quiet};
-  for (const std::string& assumption : dataset->assumptions()) {
+  const std::unique_ptr<odometry::Odometry> odometry =
+      odometry::make_odometry(options.method.method, config, {dataset->T_vehicle_sensor()}, options.method.threads);
+  std::vector<std::string> assumptions = dataset->assumptions();
+  for (const std::string& assumption : odometry->assumptions()) {
+    assumptions.push_back(assumption);
+  }
+  for (const std::string& assumption : assumptions) {
     warnings.add(assumption);
   }
   results::RunWriter writer(output.path(), options.save_labels);
-  odometry::DynamicIcp odometry(config, options.method.threads);
   {
     Progress progress("odometry", selection.end - selection.begin, options.quiet);
     for (std::size_t i = selection.begin; i < selection.end; ++i) {
@@ -171,12 +177,12 @@ int run(const RunOptions& options) {
       if (!scan.warning.empty()) {
         warnings.add(scan.warning);
       }
-      writer.add(i, odometry.process(scan));
+      writer.add(i, odometry->process(scan));
       progress.advance();
     }
   }
-  const results::RunSummary summary =
-      writer.finish(options.method.method, truth, run_json(options, *dataset, config, truth_file, warnings));
+  const results::RunSummary summary = writer.finish(
+      options.method.method, truth, run_json(options, *dataset, config, assumptions, truth_file, warnings));
   if (options.report) {
     write_report(output.path(), output.path() / "report.html");
   }

@@ -3,21 +3,31 @@
 # usage: scripts/install_dependencies.sh [tests]
 set -euo pipefail
 
+optional=()
 packages=(g++ cmake ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
   libpng-dev libembree-dev libzip-dev)
 if [[ "${1:-}" == tests ]]; then
-  packages+=(libgtest-dev python3-numpy python3-scipy)
+  packages+=(libgtest-dev)
+  optional=(python3-open3d)  # an independent implementation to compare with; not in every release
 fi
+
+is_installed() { dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'install ok installed'; }
+is_known() { apt-cache show "$1" >/dev/null 2>&1; }
 
 missing=()
 for package in "${packages[@]}"; do
-  dpkg-query -W -f='${Status}' "$package" 2>/dev/null | grep -q 'install ok installed' || missing+=("$package")
+  is_installed "$package" || missing+=("$package")
 done
-if [[ ${#missing[@]} -eq 0 ]]; then
+wanted=()
+for package in "${optional[@]}"; do
+  is_installed "$package" || wanted+=("$package")
+done
+if [[ ${#missing[@]} -eq 0 && ${#wanted[@]} -eq 0 ]]; then
   exit 0
 fi
 
 if ! command -v apt-get >/dev/null; then
+  [[ ${#missing[@]} -eq 0 ]] && exit 0
   echo "These packages are needed, and this system has no apt-get to install them: ${missing[*]}" >&2
   exit 1
 fi
@@ -26,6 +36,13 @@ if [[ $(id -u) -ne 0 ]]; then
   command -v sudo >/dev/null || { echo "Run as root or install sudo: these packages are needed: ${missing[*]}" >&2; exit 1; }
   as_root=(sudo)
 fi
-echo "== Installing ${missing[*]}"
 "${as_root[@]}" apt-get update -qq
-"${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+for package in "${wanted[@]}"; do
+  if is_known "$package"; then
+    missing+=("$package")
+  fi
+done
+if [[ ${#missing[@]} -gt 0 ]]; then
+  echo "== Installing ${missing[*]}"
+  "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y -qq --no-install-recommends "${missing[@]}" >/dev/null
+fi

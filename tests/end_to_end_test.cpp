@@ -85,6 +85,38 @@ TEST_F(EndToEnd, AblationsRunAndSayWhatTheyAre) {
   }
 }
 
+TEST_F(EndToEnd, EveryMethodRunsAndSaysWhatItTookForGranted) {
+  for (const std::string method :
+       {"dynamic-icp", "doppler-icp", "point-to-point", "point-to-plane", "gicp", "kiss-icp"}) {
+    const json summary = run_and_summarise(street().string() + " --max-frames 4 --method " + method);
+    EXPECT_EQ(summary["method"], method);
+    const json record = json::parse(read_file(folder_ / "out" / "run.json"));
+    EXPECT_EQ(record["method"], method);
+    EXPECT_EQ(record["assumptions"].size(), method == "doppler-icp" ? 1u : 0u) << "the street has no calibration";
+    const std::string scans = (street() / "point_clouds").string();
+    const Outcome pair =
+        run_program("register " + scans + "/00001.bin " + scans + "/00002.bin --method " + method + " 2>/dev/null");
+    ASSERT_EQ(pair.status, 0) << pair.text;
+    EXPECT_EQ(json::parse(pair.text)["assumptions"].size(), method == "doppler-icp" ? 1u : 0u);
+  }
+  EXPECT_EQ(
+      run_program("run " + street().string() + " --method gicp --ablation no-vf --output " + (folder_ / "x").string())
+          .status,
+      2);
+}
+
+TEST_F(EndToEnd, WhatIsKnownOfTheMethodsShowsInASmoothTunnelAtSpeed) {
+  const fs::path tunnel = folder_ / "tunnel";
+  ASSERT_EQ(
+      run_program("simulate tunnel --instant --calibration --frames 12 --quiet --output " + tunnel.string()).status, 0);
+  const auto rte = [&](const std::string& method) {
+    return run_and_summarise(tunnel.string() + " --preset paper --method " + method)["rte_rmse_m"].get<double>();
+  };
+  EXPECT_LT(rte("doppler-icp"), 0.05) << "the Doppler holds the way along the tunnel";
+  EXPECT_GT(rte("point-to-plane"), 1.0) << "nothing in the geometry does";
+  EXPECT_GT(rte("kiss-icp"), 1.0) << "it does not start at 20 m/s";
+}
+
 TEST_F(EndToEnd, RunRecordsWhatItDid) {
   write_file(folder_ / "my.yaml", "preprocess:\n  voxel:\n    voxel_size_m: 0.4\n");
   run_and_summarise(street().string() + " --start 2 --max-frames 4 --preset paper --config " +

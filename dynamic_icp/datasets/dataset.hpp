@@ -42,6 +42,9 @@ class Dataset {
   /// The file the ground truth came from; empty without ground truth.
   [[nodiscard]] virtual std::filesystem::path ground_truth_file() const = 0;
 
+  /// Where the sensor sits on the vehicle, where the recording says so.
+  [[nodiscard]] virtual std::optional<Eigen::Isometry3d> T_vehicle_sensor() const { return std::nullopt; }
+
   /// What had to be assumed about the recording (for instance a scan period), in sentences for the user.
   [[nodiscard]] virtual const std::vector<std::string>& assumptions() const = 0;
 };

@@ -48,8 +48,8 @@ Eigen::Isometry3d read_calibration(const fs::path& path) {
 std::vector<double> read_times(const fs::path& path, std::size_t points) {
   const formats::RecordFile file = formats::read_record_file(path, sizeof(float));
   if (file.records != points || !file.warning.empty()) {
-    throw DataError(fmt::format("{}: {} times for {} points, expected one float32 per point", path.string(),
-                                file.records, points));
+    throw DataError(
+        fmt::format("{}: {} times for {} points, expected one float32 per point", path.string(), file.records, points));
   }
   std::vector<double> times(points);
   for (std::size_t i = 0; i < points; ++i) {
@@ -67,9 +67,12 @@ class DicpDataset final : public Dataset {
     if (fs::is_directory(folder / "times")) {
       times_ = folder / "times";
     }
+    if (const fs::path calibration = folder / "calibration.json"; fs::exists(calibration)) {
+      T_vehicle_sensor_ = read_calibration(calibration);
+    }
     const fs::path poses = folder / "ref_poses.txt";
     if (fs::exists(poses)) {
-      read_poses(poses, folder / "calibration.json");
+      read_poses(poses);
     } else {
       for (std::size_t i = 0; i < files_.size(); ++i) {
         stamps_.push_back(Stamp{static_cast<std::int64_t>(i) * kAssumedPeriodNs});
@@ -86,6 +89,8 @@ class DicpDataset final : public Dataset {
   [[nodiscard]] fs::path ground_truth_file() const override { return ground_truth_file_; }
   [[nodiscard]] const std::vector<std::string>& assumptions() const override { return assumptions_; }
 
+  [[nodiscard]] std::optional<Eigen::Isometry3d> T_vehicle_sensor() const override { return T_vehicle_sensor_; }
+
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     RawScan raw = formats::read_xyzd(files_.at(index));
     raw.stamp = stamps_[index];
@@ -96,16 +101,14 @@ class DicpDataset final : public Dataset {
   }
 
  private:
-  void read_poses(const fs::path& poses, const fs::path& calibration) {
-    const Eigen::Isometry3d T_vehicle_sensor =
-        fs::exists(calibration) ? read_calibration(calibration) : Eigen::Isometry3d::Identity();
+  void read_poses(const fs::path& poses) {
     ground_truth_ = formats::read_tum(poses).trajectory;
     if (ground_truth_.size() != files_.size()) {
       throw DataError(fmt::format("{}: {} poses for {} scans, expected one pose per scan (they carry the time stamps)",
                                   poses.string(), ground_truth_.size(), files_.size()));
     }
     for (formats::StampedPose& pose : ground_truth_) {
-      pose.T_world_sensor = pose.T_world_sensor * T_vehicle_sensor;
+      pose.T_world_sensor = pose.T_world_sensor * T_vehicle_sensor_.value_or(Eigen::Isometry3d::Identity());
       stamps_.push_back(pose.stamp);
     }
     ground_truth_file_ = poses;
@@ -114,6 +117,7 @@ class DicpDataset final : public Dataset {
   std::vector<fs::path> files_;
   fs::path times_;  ///< empty where the scans are instant
   std::vector<Stamp> stamps_;
+  std::optional<Eigen::Isometry3d> T_vehicle_sensor_;
   formats::Trajectory ground_truth_;
   fs::path ground_truth_file_;
   std::vector<std::string> assumptions_;

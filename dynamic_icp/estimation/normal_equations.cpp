@@ -19,6 +19,12 @@ void NormalEquations::add(const Vector6d& J, double e, double w) {
   b += weighted * e;
 }
 
+void NormalEquations::add(const Eigen::Matrix<double, 3, 6>& J, const Eigen::Vector3d& e, const Eigen::Matrix3d& W) {
+  const Eigen::Matrix<double, 6, 3> weighted = J.transpose() * W;
+  H.triangularView<Eigen::Lower>() += weighted * J;
+  b += weighted * e;
+}
+
 NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   H += other.H;
   b += other.b;

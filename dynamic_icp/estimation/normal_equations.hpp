@@ -20,6 +20,9 @@ struct NormalEquations {
   /// Adds one residual e with Jacobian J (d e / d xi) and weight w.
   void add(const Vector6d& J, double e, double w);
 
+  /// Adds residuals that belong together: e^T W e with a symmetric weight matrix W.
+  void add(const Eigen::Matrix<double, 3, 6>& J, const Eigen::Vector3d& e, const Eigen::Matrix3d& W);
+
   NormalEquations& operator+=(const NormalEquations& other);
 };
 

@@ -27,4 +27,15 @@ double tukey_weight(double e, double k) {
   return inside <= 0.0 ? 0.0 : inside * inside;
 }
 
+double geman_mcclure_loss(double e, double k) {
+  const double ratio = e / k;
+  return 0.5 * e * e / (1.0 + ratio * ratio);
+}
+
+double geman_mcclure_weight(double e, double k) {
+  const double ratio = e / k;
+  const double share = 1.0 / (1.0 + ratio * ratio);
+  return share * share;
+}
+
 }  // namespace dynamic_icp::estimation

@@ -21,4 +21,10 @@ double tukey_loss(double e, double k);
 /// w = (1 - (e/k)^2)^2 for |e| <= k, 0 beyond.
 double tukey_weight(double e, double k);
 
+/// Geman and McClure: rho = e^2/2 k^2/(k^2 + e^2), which approaches k^2/2: far residuals have ever less pull.
+double geman_mcclure_loss(double e, double k);
+
+/// w = (k^2/(k^2 + e^2))^2.
+double geman_mcclure_weight(double e, double k);
+
 }  // namespace dynamic_icp::estimation

@@ -46,13 +46,21 @@ TEST_P(RobustKernel, IsLeastSquaresNearZero) {
 
 INSTANTIATE_TEST_SUITE_P(Kernels, RobustKernel,
                          ::testing::Values(Kernel{"huber", huber_loss, huber_weight},
-                                           Kernel{"tukey", tukey_loss, tukey_weight}),
+                                           Kernel{"tukey", tukey_loss, tukey_weight},
+                                           Kernel{"geman_mcclure", geman_mcclure_loss, geman_mcclure_weight}),
                          [](const auto& kernel) { return kernel.param.name; });
 
 TEST(TukeyWeight, VanishesBeyondTheScale) {
   EXPECT_EQ(tukey_weight(0.5, 0.5), 0.0);
   EXPECT_EQ(tukey_weight(-7.0, 0.5), 0.0);
   EXPECT_NEAR(tukey_weight(0.25, 0.5), 0.5625, 1e-15);
+}
+
+TEST(GemanMcClureWeight, FallsToAQuarterAtTheScaleAndNeverToZero) {
+  EXPECT_NEAR(geman_mcclure_weight(-0.5, 0.5), 0.25, 1e-15);
+  EXPECT_NEAR(geman_mcclure_weight(1.5, 0.5), 0.01, 1e-15);
+  EXPECT_GT(geman_mcclure_weight(500.0, 0.5), 0.0);
+  EXPECT_NEAR(geman_mcclure_loss(1e6, 0.5), 0.125, 1e-9);
 }
 
 }  // namespace

@@ -21,6 +21,20 @@ constexpr double kMostVoxels = 1 << 20;
 
 }  // namespace
 
+ConfigFields fields(DopplerIcpConfig& config) {
+  return {
+      {"doppler_weight", &config.doppler_weight, 0.0, 0.999, "", "doppler-icp: share of the Doppler term (lambda)"},
+      {"tukey_geometry_m", &config.tukey_geometry_m, 1e-6, 1e3, "m",
+       "doppler-icp: point-to-plane residuals beyond this have no weight"},
+      {"tukey_doppler_mps", &config.tukey_doppler_mps, 1e-6, 1e3, "m/s",
+       "doppler-icp: Doppler residuals beyond this have no weight"},
+      {"reject_doppler_mps", &config.reject_doppler_mps, 1e-6, 1e3, "m/s",
+       "doppler-icp: pairs with a larger Doppler residual are left out"},
+      {"robust_from_iteration", &config.robust_from_iteration, 0, 10000, "",
+       "doppler-icp: before this iteration (from 0) the Doppler term is least squares and no pair is left out"},
+  };
+}
+
 ConfigFields fields(Config& config) {
   ConfigFields all;
   append_fields(all, "preprocess.range", fields(config.preprocess.range));
@@ -34,6 +48,11 @@ ConfigFields fields(Config& config) {
                 {{"predict", &config.dynamics.predict, 0, 0, "",
                   "cluster moving points and predict them to the next scan; off: they are left out"}});
   append_fields(all, "registration", fields(config.registration));
+  append_fields(all, "icp",
+                {{"constant_velocity_start", &config.icp.constant_velocity_start, 0, 0, "",
+                  "point-to-point, point-to-plane, gicp, doppler-icp: start from the last motion, not the identity"}});
+  append_fields(all, "doppler_icp", fields(config.doppler_icp));
+  append_fields(all, "kiss_icp", fields(config.kiss));
   append_fields(all, "odometry",
                 {{"max_gap_s", &config.max_gap_s, 1e-3, 3600.0, "s",
                   "scans farther apart in time are not aligned; the last motion is continued"},
@@ -45,6 +64,7 @@ ConfigFields fields(Config& config) {
 void check(const Config& config) {
   Config copy = config;
   check_fields(fields(copy));
+  check(config.kiss);
   const double voxel = config.preprocess.voxel.voxel_size_m;
   const double max_range = config.preprocess.range.max_range_m;
   if (config.preprocess.range.min_range_m >= max_range) {

@@ -10,6 +10,7 @@
 #include "dynamic_icp/dynamics/object_velocity.hpp"
 #include "dynamic_icp/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/odometry/kiss_config.hpp"
 #include "dynamic_icp/preprocess/normals.hpp"
 #include "dynamic_icp/preprocess/range_crop.hpp"
 #include "dynamic_icp/preprocess/voxel_grid.hpp"
@@ -34,12 +35,31 @@ struct DynamicsConfig {
   dynamics::ObjectVelocityConfig velocity;
 };
 
+/// Of point-to-point, point-to-plane, gicp and doppler-icp. Gate and stopping rule are those of dynamic-icp.
+struct IcpConfig {
+  bool constant_velocity_start = false;  ///< start from the last motion instead of the identity
+};
+
+/// Of doppler-icp, with its published values.
+struct DopplerIcpConfig {
+  double doppler_weight = 0.01;
+  double tukey_geometry_m = 0.5;
+  double tukey_doppler_mps = 0.2;
+  double reject_doppler_mps = 2.0;
+  int robust_from_iteration = 2;
+};
+
+ConfigFields fields(DopplerIcpConfig& config);
+
 /// Everything the odometry can be told, stage by stage.
 struct Config {
   PreprocessConfig preprocess;
   EgoMotionConfig ego_motion;
   DynamicsConfig dynamics;
   registration::AlignConfig registration;
+  IcpConfig icp;
+  DopplerIcpConfig doppler_icp;
+  KissConfig kiss;
   double max_gap_s = 1.0;  ///< a longer time between two scans is bridged by the last motion, not by alignment
   int min_points = 6;      ///< a scan with fewer points after preprocessing cannot be aligned
 };

@@ -2,33 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/odometry/dynamic_icp.hpp"
 
-#include <fmt/format.h>
-
-#include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/dynamics/prediction.hpp"
+#include "dynamic_icp/odometry/frame_steps.hpp"
+#include "dynamic_icp/odometry/stage_clock.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
-
-using registration::AlignStatus;
-
-FrameStatus frame_status(AlignStatus status) {
-  switch (status) {
-    case AlignStatus::kConverged:
-      return FrameStatus::kConverged;
-    case AlignStatus::kIterationLimit:
-      return FrameStatus::kIterationLimit;
-    case AlignStatus::kTooFewCorrespondences:
-      return FrameStatus::kTooFewCorrespondences;
-    case AlignStatus::kDegenerate:
-      return FrameStatus::kDegenerate;
-    case AlignStatus::kNotRun:
-      break;
-  }
-  return FrameStatus::kNotRun;
-}
-
-bool aligned(FrameStatus status) { return status == FrameStatus::kConverged || status == FrameStatus::kIterationLimit; }
 
 void count_dynamics(Frame& frame, const std::vector<std::uint8_t>& is_dynamic,
                     const std::vector<std::int32_t>& labels) {
@@ -75,13 +54,10 @@ DynamicIcp& DynamicIcp::operator=(DynamicIcp&&) noexcept = default;
 // two calls: (i) ego motion and (ii) clustering of a scan run as soon as it is aligned, because the alignment gives the
 // prior of its velocity; (iii) prediction and (iv) matching run when the next scan is there and the time is known.
 Frame DynamicIcp::process(const RawScan& raw) {
-  if (last_stamp_ && raw.stamp <= *last_stamp_) {
-    throw DataError(fmt::format("the scan at {} s is not later than the one before, at {} s", format_seconds(raw.stamp),
-                                format_seconds(*last_stamp_)));
-  }
+  check_order(raw, last_stamp_);
   Frame frame;
   StageClock clock(frame.times);
-  const Scan scan = preprocess(raw, frame);
+  const Scan scan = preprocess(raw, config_.preprocess, frame);
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
   if (scan.size() < static_cast<std::size_t>(config_.min_points)) {
@@ -115,18 +91,6 @@ Frame DynamicIcp::process(const RawScan& raw) {
   return frame;
 }
 
-Scan DynamicIcp::preprocess(const RawScan& raw, Frame& frame) const {
-  const Scan measured = Scan::from_raw(raw, &frame.dropped);  // Eq. (1)
-  const Scan in_range = preprocess::crop_range(measured, config_.preprocess.range);
-  Scan scan = preprocess::voxel_grid(in_range, config_.preprocess.voxel);
-  frame.stamp = raw.stamp;
-  frame.points = raw.points.size();
-  frame.out_of_range = measured.size() - in_range.size();
-  frame.points_used = scan.size();
-  frame.labels.assign(frame.points, -1);
-  return scan;
-}
-
 void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const {
   const spatial::KdTree tree(scan.points(), workers_);
   const preprocess::Normals normals =
@@ -139,7 +103,7 @@ void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock
   frame.alignment = registration::align(source, target, predicted_motion(frame.stamp), config_.registration,
                                         workers_);  // Eq. (12)-(14)
   const FrameStatus status = frame_status(frame.alignment.status);
-  if (aligned(status)) {
+  if (is_aligned(status)) {
     frame.status = status;
     frame.T_target_source = frame.alignment.T_target_source;
     frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
@@ -169,7 +133,7 @@ Eigen::Vector3d DynamicIcp::velocity_prior(const Frame& frame) const {
   if (!last_) {
     return Eigen::Vector3d::Zero();
   }
-  if (!aligned(frame.status)) {
+  if (!is_aligned(frame.status)) {
     return last_->velocity_sensor;
   }
   const Eigen::Isometry3d& T = frame.T_target_source;

@@ -9,6 +9,7 @@
 #include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/odometry/config.hpp"
 #include "dynamic_icp/odometry/frame.hpp"
+#include "dynamic_icp/odometry/odometry.hpp"
 #include "dynamic_icp/odometry/stage_clock.hpp"
 
 namespace dynamic_icp::odometry {
@@ -19,23 +20,22 @@ namespace dynamic_icp::odometry {
 ///   for (const RawScan& scan : scans) { Frame frame = odometry.process(scan); ... frame.T_world_sensor ... }
 ///
 /// The same scans give the same bits for any number of threads.
-class DynamicIcp {
+class DynamicIcp final : public Odometry {
  public:
   /// `threads` = 0 takes as many as the machine has. Throws UsageError when the configuration is out of range.
   explicit DynamicIcp(const Config& config, int threads = 0);
-  ~DynamicIcp();
+  ~DynamicIcp() override;
   DynamicIcp(DynamicIcp&&) noexcept;
   DynamicIcp& operator=(DynamicIcp&&) noexcept;
 
   /// Takes the next scan. Throws DataError when its stamp is not later than that of the scan before; the state is
   /// unchanged then. A scan that cannot be aligned is no error: its frame says so and carries the predicted motion, and
   /// the next usable scan is aligned to the last usable one.
-  Frame process(const RawScan& raw);
+  Frame process(const RawScan& raw) override;
 
  private:
   struct Reference;
 
-  [[nodiscard]] Scan preprocess(const RawScan& raw, Frame& frame) const;
   void align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const;
   void continue_motion(Frame& frame, FrameStatus status) const;
   [[nodiscard]] Eigen::Isometry3d predicted_motion(Stamp stamp) const;

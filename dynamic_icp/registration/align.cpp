@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "dynamic_icp/registration/objective.hpp"
-
 namespace dynamic_icp::registration {
 namespace {
 
@@ -19,36 +17,31 @@ double typical_distance(const Scan& scan) {
   return scan.empty() ? 1.0 : std::max(1e-3, std::sqrt(sum / static_cast<double>(scan.size())));
 }
 
-bool enough(const Correspondences& correspondences, const AlignConfig& config) {
-  return correspondences.pairs.size() >= static_cast<std::size_t>(config.min_correspondences);
-}
+/// Two scans and what is minimised between them.
+class ScanToScan : public Problem {
+ public:
+  ScanToScan(const Source& source, const Target& target, const Objective& objective, double max_distance_m,
+             const Workers& workers)
+      : source_(source),
+        target_(target),
+        objective_(objective),
+        workers_(workers),
+        search_(source.scan, target, max_distance_m, objective.geometry == GeometryTerm::kPointToPlane, workers) {}
 
-bool stable(const Correspondences& before, const Correspondences& after, double tolerance) {
-  return std::abs(after.fitness - before.fitness) < tolerance &&
-         std::abs(after.inlier_rmse - before.inlier_rmse) < tolerance;
-}
+  Correspondences find(const Eigen::Isometry3d& T_target_source) override { return search_.find(T_target_source); }
 
-/// Keeps the rotation orthogonal after many small steps.
-void renormalise(Eigen::Isometry3d& T) { T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix(); }
-
-/// Fit, spread and covariance at the final pose.
-void describe_fit(Alignment& result, const Scan& source, const Target& target, const Correspondences& correspondences,
-                  double length_m, const AlignConfig& config, const Workers& workers) {
-  result.fitness = correspondences.fitness;
-  result.inlier_rmse = correspondences.inlier_rmse;
-  result.correspondences = correspondences.pairs.size();
-  const Linearisation fit = linearise(source, target, correspondences, result.T_target_source, config, workers);
-  result.geometry = fit.geometry;
-  result.doppler = fit.doppler;
-  const estimation::Solution solution = estimation::solve(fit.equations, length_m, config.rank_tolerance);
-  result.information_ratio = solution.information_ratio;
-  if (result.status == AlignStatus::kConverged || result.status == AlignStatus::kIterationLimit) {
-    if (solution.inverse) {
-      const Matrix6d covariance = *solution.inverse * fit.score * *solution.inverse;
-      result.covariance = 0.5 * (covariance + covariance.transpose());
-    }
+  [[nodiscard]] Linearisation linearise(const Correspondences& correspondences,
+                                        const Eigen::Isometry3d& T_target_source, int iteration) const override {
+    return registration::linearise(source_, target_, correspondences, T_target_source, objective_, iteration, workers_);
   }
-}
+
+ private:
+  const Source& source_;
+  const Target& target_;
+  const Objective& objective_;
+  const Workers& workers_;
+  CorrespondenceSearch search_;
+};
 
 }  // namespace
 
@@ -71,57 +64,29 @@ ConfigFields fields(AlignConfig& config) {
   };
 }
 
-std::string_view to_string(AlignStatus status) {
-  switch (status) {
-    case AlignStatus::kNotRun:
-      return "not_run";
-    case AlignStatus::kConverged:
-      return "converged";
-    case AlignStatus::kIterationLimit:
-      return "iteration_limit";
-    case AlignStatus::kTooFewCorrespondences:
-      return "too_few_correspondences";
-    case AlignStatus::kDegenerate:
-      return "degenerate";
-  }
-  return "unknown";
+Objective dynamic_icp_objective(const AlignConfig& config) {
+  Objective objective;
+  objective.doppler_weight = config.doppler_weight;
+  objective.tukey_geometry_m = config.tukey_geometry_m;
+  objective.tukey_doppler_mps = config.tukey_doppler_mps;
+  return objective;
+}
+
+StopRule stop_rule(const AlignConfig& config) {
+  return {config.max_iterations, config.tolerance, 0.0, config.min_correspondences, config.rank_tolerance};
+}
+
+Alignment align(const Source& source, const Target& target, const Eigen::Isometry3d& T_initial,
+                const Objective& objective, double max_correspondence_distance_m, const StopRule& stop,
+                const Workers& workers) {
+  ScanToScan problem(source, target, objective, max_correspondence_distance_m, workers);
+  return minimise(problem, T_initial, typical_distance(source.scan), stop);
 }
 
 Alignment align(const Scan& source, const Target& target, const Eigen::Isometry3d& T_initial, const AlignConfig& config,
                 const Workers& workers) {
-  Alignment result;
-  result.T_target_source = T_initial;
-  result.status = AlignStatus::kIterationLimit;
-  const double length_m = typical_distance(source);
-  CorrespondenceSearch search(source, target, config.max_correspondence_distance_m, workers);
-
-  Correspondences current = search.find(result.T_target_source);
-  while (result.iterations < config.max_iterations) {
-    if (!enough(current, config)) {
-      result.status = AlignStatus::kTooFewCorrespondences;
-      break;
-    }
-    const Linearisation linear = linearise(source, target, current, result.T_target_source, config, workers);
-    estimation::Solution step = estimation::solve(linear.equations, length_m, config.rank_tolerance);
-    if (!step.degenerate.empty()) {
-      result.status = AlignStatus::kDegenerate;
-      result.degenerate = std::move(step.degenerate);
-      break;
-    }
-    result.T_target_source = exp_se3(step.xi) * result.T_target_source;
-    ++result.iterations;
-    // The pairs at the new pose decide about stopping and are those of the next step.
-    Correspondences updated = search.find(result.T_target_source);
-    const bool converged = enough(updated, config) && stable(current, updated, config.tolerance);
-    current = std::move(updated);
-    if (converged) {
-      result.status = AlignStatus::kConverged;
-      break;
-    }
-  }
-  renormalise(result.T_target_source);
-  describe_fit(result, source, target, current, length_m, config, workers);
-  return result;
+  return align(Source{source}, target, T_initial, dynamic_icp_objective(config), config.max_correspondence_distance_m,
+               stop_rule(config), workers);
 }
 
 }  // namespace dynamic_icp::registration

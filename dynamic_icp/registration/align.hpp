@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-#include <string_view>
-#include <vector>
-
 #include "dynamic_icp/base/config_field.hpp"
 #include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/scan.hpp"
-#include "dynamic_icp/base/se3.hpp"
-#include "dynamic_icp/estimation/normal_equations.hpp"
+#include "dynamic_icp/registration/alignment.hpp"
 #include "dynamic_icp/registration/correspondences.hpp"
+#include "dynamic_icp/registration/gauss_newton.hpp"
+#include "dynamic_icp/registration/objective.hpp"
 
 namespace dynamic_icp::registration {
 
@@ -28,48 +25,23 @@ struct AlignConfig {
 
 ConfigFields fields(AlignConfig& config);
 
-enum class AlignStatus {
-  kNotRun,
-  kConverged,
-  kIterationLimit,
-  kTooFewCorrespondences,
-  kDegenerate,  ///< some directions are not constrained at all: see Alignment::degenerate
-};
+/// The paper's objective with the weights and scales of a configuration.
+Objective dynamic_icp_objective(const AlignConfig& config);
 
-std::string_view to_string(AlignStatus status);
+/// Its stopping rule: fitness and inlier RMSE both change by less than the tolerance.
+StopRule stop_rule(const AlignConfig& config);
 
-/// How one term of the objective fits at the final pose.
-struct TermStatistics {
-  std::size_t count = 0;    ///< residuals
-  std::size_t inliers = 0;  ///< those with a weight above zero
-  double rms = 0.0;         ///< of the inliers, in the unit of the term: m or m/s
-};
-
-/// The result of an alignment.
-struct Alignment {
-  AlignStatus status = AlignStatus::kNotRun;
-  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
-  int iterations = 0;
-  double fitness = 0.0;      ///< share of the source points with a correspondence
-  double inlier_rmse = 0.0;  ///< m, of the distances of the correspondences
-  std::size_t correspondences = 0;
-  TermStatistics geometry;         ///< point to plane, m
-  TermStatistics doppler;          ///< rotation-only Doppler, m/s; count 0 when the term is off
-  double information_ratio = 0.0;  ///< least over best constrained direction, of the scaled normal equations
-  std::vector<estimation::DegenerateDirection> degenerate;  ///< empty unless the status says so
-  /// Of the left perturbation [omega (rad); rho (m)] in the target frame; absent when it cannot be stated. It is
-  /// H^-1 (sum w^2 r^2 J J^T) H^-1 over the residuals of this pair, so it needs no noise model, but it takes the
-  /// residuals as independent and the correspondences as right: it is a lower bound.
-  std::optional<Matrix6d> covariance;
-};
+/// Aligns two scans: each iteration pairs every source point with its nearest target point within
+/// `max_correspondence_distance_m` and makes a Gauss-Newton step of the objective. The result is the same bits for any
+/// number of threads.
+Alignment align(const Source& source, const Target& target, const Eigen::Isometry3d& T_initial,
+                const Objective& objective, double max_correspondence_distance_m, const StopRule& stop,
+                const Workers& workers);
 
 /// Doppler-aware ICP matching of the paper, Eq. (12)-(14): minimises
 ///   sum (1 - lambda_v) rho_g(r_g) + lambda_v rho_v(r_v)
-/// over T_target_source by iteratively reweighted Gauss-Newton with Tukey weights. Each iteration pairs every source
-/// point with its nearest target point. It stops when fitness and inlier RMSE both change by less than the tolerance.
-///
-/// The source must have been predicted to the time of the target (dynamics/prediction). The result is the same bits
-/// for any number of threads.
+/// over T_target_source by iteratively reweighted Gauss-Newton with Tukey weights. The source must have been predicted
+/// to the time of the target (dynamics/prediction).
 Alignment align(const Scan& source, const Target& target, const Eigen::Isometry3d& T_initial, const AlignConfig& config,
                 const Workers& workers);
 

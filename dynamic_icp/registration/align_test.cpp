@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/registration/align.hpp"
 
+#include <limits>
 #include <random>
 
 #include <Eigen/Dense>
@@ -101,7 +102,7 @@ TEST(Align, FirstStepIsTheWeightedLeastSquaresStep) {
   AlignConfig config;
   config.max_iterations = 1;
   const Eigen::Isometry3d T0 = Eigen::Isometry3d::Identity();
-  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, workers).find(T0);
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, true, workers).find(T0);
   Eigen::Matrix<double, Eigen::Dynamic, 6> A(2 * static_cast<Eigen::Index>(pairs.pairs.size()), 6);
   Eigen::VectorXd b(A.rows());
   Eigen::Index row = 0;
@@ -130,8 +131,8 @@ TEST(Align, CostDoesNotChangeWhenBothScansAreTurned) {
   const Room room(3, 600, 0.03);
   const Eigen::Isometry3d T = motion(0.02, 0.1);
   const Scan source = room.moved(T);
-  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, workers).find(T);
-  const double expected = cost(source, room.target(), pairs, T, {});
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, true, workers).find(T);
+  const double expected = cost({source}, room.target(), pairs, T, {});
   const Eigen::Matrix3d Q = exp_so3({0.4, -1.1, 0.7});
   const auto turned = [&](const Scan& scan) {
     RawScan raw;
@@ -152,7 +153,7 @@ TEST(Align, CostDoesNotChangeWhenBothScansAreTurned) {
   T_turned.linear() = Q * T.linear() * Q.transpose();
   T_turned.translation() = Q * T.translation();
   const Target target{turned_scan, tree, normals, room.has_normal};
-  EXPECT_NEAR(cost(turned_source, target, pairs, T_turned, {}), expected, 1e-10 * expected);
+  EXPECT_NEAR(cost({turned_source}, target, pairs, T_turned, {}), expected, 1e-10 * expected);
 }
 
 TEST(Align, NormalEquationsAreTheGradientOfTheCost) {
@@ -160,12 +161,12 @@ TEST(Align, NormalEquationsAreTheGradientOfTheCost) {
   const Room room(4, 600, 0.05);
   const Scan source = room.moved(motion(0.01, 0.1));
   const Eigen::Isometry3d T = motion(0.012, 0.12);
-  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.5, workers).find(T);
-  const Linearisation linear = linearise(source, room.target(), pairs, T, {}, Workers(1));
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.5, true, workers).find(T);
+  const Linearisation linear = linearise({source}, room.target(), pairs, T, {}, 0, Workers(1));
   for (int k = 0; k < 6; ++k) {
     const Vector6d step = 1e-6 * Vector6d::Unit(k);
-    const double slope = (cost(source, room.target(), pairs, exp_se3(step) * T, {}) -
-                          cost(source, room.target(), pairs, exp_se3(-step) * T, {})) /
+    const double slope = (cost({source}, room.target(), pairs, exp_se3(step) * T, {}) -
+                          cost({source}, room.target(), pairs, exp_se3(-step) * T, {})) /
                          2e-6;
     EXPECT_NEAR(linear.equations.b[k], slope, 1e-4 * (1.0 + std::abs(slope))) << "component " << k;
   }
@@ -258,6 +259,119 @@ TEST(Align, SameBitsForAnyNumberOfThreads) {
     EXPECT_EQ(*one.covariance, *several.covariance);
     EXPECT_EQ(one.iterations, several.iterations);
   }
+}
+
+/// Minimises one geometry term by least squares.
+Alignment align_by(GeometryTerm term, const Room& room, const Scan& source, const std::vector<Vector3d>& normals,
+                   const Eigen::Isometry3d& T_initial) {
+  Objective objective;
+  objective.geometry = term;
+  objective.doppler = DopplerTerm::kNone;
+  objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
+  return align({source, normals, room.has_normal}, room.target(), T_initial, objective, 0.3, {200, 1e-12}, Workers(2));
+}
+
+std::vector<Vector3d> turned(const std::vector<Vector3d>& normals, const Eigen::Matrix3d& R) {
+  std::vector<Vector3d> result;
+  for (const Vector3d& normal : normals) {
+    result.push_back(R * normal);
+  }
+  return result;
+}
+
+TEST(AlignTerms, EveryGeometryTermRecoversTheMotionOfTheSamePoints) {
+  const Room room(1, 6000);
+  const Eigen::Isometry3d T = motion(0.004, 0.05);
+  const std::vector<Vector3d> normals = turned(room.normals, T.linear().transpose());
+  for (const GeometryTerm term :
+       {GeometryTerm::kPointToPoint, GeometryTerm::kPointToPlane, GeometryTerm::kPlaneToPlane}) {
+    const Alignment result = align_by(term, room, room.moved(T), normals, Eigen::Isometry3d::Identity());
+    EXPECT_EQ(result.status, AlignStatus::kConverged);
+    EXPECT_LT(translation_error(result.T_target_source, T), 1e-7) << static_cast<int>(term);
+    EXPECT_LT(rotation_angle(result.T_target_source.linear().transpose() * T.linear()), 1e-7);
+    EXPECT_EQ(result.doppler.count, 0U);
+  }
+}
+
+TEST(AlignTerms, PointToPointEndsWhereTheClosedFormDoes) {
+  // At a fixed point the pairs do not change, and the least squares over them has Umeyama's solution.
+  const Room room(1, 3000, 0.01);
+  const Room other(2, 3000, 0.01);
+  const Scan source = other.moved(motion(0.003, 0.03));
+  const Alignment result =
+      align_by(GeometryTerm::kPointToPoint, room, source, other.normals, Eigen::Isometry3d::Identity());
+  ASSERT_EQ(result.status, AlignStatus::kConverged);
+  const Workers workers(1);
+  const Correspondences pairs =
+      CorrespondenceSearch(source, room.target(), 0.3, false, workers).find(result.T_target_source);
+  Eigen::Matrix3Xd from(3, pairs.pairs.size());
+  Eigen::Matrix3Xd to(3, pairs.pairs.size());
+  for (std::size_t k = 0; k < pairs.pairs.size(); ++k) {
+    from.col(static_cast<Eigen::Index>(k)) = source.points()[pairs.pairs[k].source];
+    to.col(static_cast<Eigen::Index>(k)) = room.scan.points()[pairs.pairs[k].target];
+  }
+  const Eigen::Isometry3d expected(Eigen::umeyama(from, to, false));
+  EXPECT_LT(translation_error(result.T_target_source, expected), 1e-6);
+  EXPECT_LT(rotation_angle(result.T_target_source.linear().transpose() * expected.linear()), 1e-6);
+}
+
+TEST(AlignTerms, GicpGradientIsTheSlopeOfItsCost) {
+  const Room room(1, 600, 0.02);
+  const Eigen::Isometry3d T = motion(0.01, 0.05);
+  const Scan scan = room.moved(T);
+  const std::vector<Vector3d> normals = turned(room.normals, T.linear().transpose());
+  const Source source{scan, normals, room.has_normal};
+  Objective objective;
+  objective.geometry = GeometryTerm::kPlaneToPlane;
+  objective.doppler = DopplerTerm::kNone;
+  objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
+  const Workers workers(1);
+  const Correspondences pairs = CorrespondenceSearch(scan, room.target(), 0.3, false, workers).find(T);
+  const Linearisation linear = linearise(source, room.target(), pairs, T, objective, 0, workers);
+  // 1/2 sum e^T W e with the weights W held at T, as Gauss-Newton does.
+  const auto cost_at = [&](const Eigen::Isometry3d& X) {
+    double sum = 0.0;
+    for (const Correspondence& pair : pairs.pairs) {
+      const Vector3d e = X * scan.points()[pair.source] - room.scan.points()[pair.target];
+      Eigen::Matrix3d C = 2.0 * Eigen::Matrix3d::Identity();
+      const Vector3d n_source = T.linear() * normals[pair.source];
+      const Vector3d& n_target = room.normals[pair.target];
+      C -= 0.999 * (n_source * n_source.transpose() + n_target * n_target.transpose());
+      sum += 0.5 * e.dot(C.inverse() * e);
+    }
+    return sum;
+  };
+  for (int k = 0; k < 6; ++k) {
+    const Vector6d step = 1e-6 * Vector6d::Unit(k);
+    const double slope = (cost_at(exp_se3(step) * T) - cost_at(exp_se3(-step) * T)) / 2e-6;
+    EXPECT_NEAR(linear.equations.b[k], slope, 1e-5 * (1.0 + std::abs(slope)));
+  }
+}
+
+TEST(AlignTerms, PairsWithAWrongDopplerAreRejectedFromTheGivenIterationOn) {
+  const Room room(1, 300);
+  RawScan raw;
+  raw.points = room.scan.points();
+  raw.doppler = room.scan.doppler();
+  for (std::size_t i = 0; i < 100; ++i) {
+    raw.doppler[i] += 10.0;
+  }
+  const Scan scan = Scan::from_raw(raw);
+  const Source source{scan};
+  Objective objective;
+  objective.doppler = DopplerTerm::kSensorVelocity;
+  objective.vehicle.dt_s = 0.1;
+  objective.reject_doppler_mps = 2.0;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = -0.1 * room.velocity;  // the motion that the Doppler tells
+  const Workers workers(1);
+  Correspondences pairs;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    pairs.pairs.push_back({i, i, 0.0});
+  }
+  EXPECT_EQ(linearise(source, room.target(), pairs, T, objective, 1, workers).geometry.count, 300U);
+  EXPECT_EQ(linearise(source, room.target(), pairs, T, objective, 2, workers).geometry.count, 200U);
+  EXPECT_EQ(linearise(source, room.target(), pairs, T, objective, 2, workers).doppler.count, 200U);
 }
 
 }  // namespace

@@ -26,8 +26,13 @@ double squared_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }  // namespace
 
 CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& target, double max_distance_m,
-                                           const Workers& workers)
-    : source_(source), target_(target), max_distance_m_(max_distance_m), workers_(workers), known_(source.size()) {}
+                                           bool needs_normals, const Workers& workers)
+    : source_(source),
+      target_(target),
+      max_distance_m_(max_distance_m),
+      needs_normals_(needs_normals),
+      workers_(workers),
+      known_(source.size()) {}
 
 bool CorrespondenceSearch::still_known(std::size_t i, const Eigen::Vector3d& point) const {
   const Known& known = known_[i];
@@ -62,7 +67,7 @@ Correspondences CorrespondenceSearch::find(const Eigen::Isometry3d& T_target_sou
         look_up(i, point, found);
       }
       const std::uint32_t j = known_[i].nearest;
-      if (j != kNone && target_.has_normal[j] != 0) {
+      if (j != kNone && (!needs_normals_ || target_.has_normal[j] != 0)) {
         squared[i] = squared_distance(point, target_.scan.points()[j]);
       }
     }

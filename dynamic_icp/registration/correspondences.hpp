@@ -46,7 +46,9 @@ struct Correspondences {
 class CorrespondenceSearch {
  public:
   /// The scans must outlive the search.
-  CorrespondenceSearch(const Scan& source, const Target& target, double max_distance_m, const Workers& workers);
+  /// With `needs_normals`, pairs whose target point has no usable normal are left out.
+  CorrespondenceSearch(const Scan& source, const Target& target, double max_distance_m, bool needs_normals,
+                       const Workers& workers);
 
   Correspondences find(const Eigen::Isometry3d& T_target_source);
 
@@ -64,6 +66,7 @@ class CorrespondenceSearch {
   const Scan& source_;
   Target target_;
   double max_distance_m_;
+  bool needs_normals_;
   const Workers& workers_;
   std::vector<Known> known_;
 };

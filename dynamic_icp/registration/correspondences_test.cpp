@@ -35,7 +35,7 @@ struct TargetParts {
 
 Correspondences find_once(const Scan& source, const Target& target, const Eigen::Isometry3d& T, double gate) {
   const Workers workers(2);
-  return CorrespondenceSearch(source, target, gate, workers).find(T);
+  return CorrespondenceSearch(source, target, gate, true, workers).find(T);
 }
 
 TEST(Correspondences, RememberedAnswersAreThoseOfAFreshSearch) {
@@ -54,7 +54,7 @@ TEST(Correspondences, RememberedAnswersAreThoseOfAFreshSearch) {
   const Scan source = scan_of(points);
   const TargetParts parts(target);
   const Workers workers(2);
-  CorrespondenceSearch search(source, parts.target(), 0.3, workers);
+  CorrespondenceSearch search(source, parts.target(), 0.3, true, workers);
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   for (const double step : {0.0, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-2, 0.1, 1.0, 1e-3, 1e-5, 0.0}) {
     Vector6d xi;

@@ -134,10 +134,11 @@ std::string objects_line(std::size_t index, const Frame& frame) {
   return stamped(index, frame.stamp, {{"objects", objects_json(frame)}});
 }
 
-std::string pair_document(const Frame& source, const Frame& target) {
+std::string pair_document(const Frame& source, const Frame& target, const std::vector<std::string>& assumptions) {
   const registration::Alignment& alignment = target.alignment;
   const Json document = {{"status", to_string(target.status)},
                          {"converged", odometry::converged(target.status)},
+                         {"assumptions", assumptions},
                          {"dt", seconds_between(source.stamp, target.stamp)},
                          {"T_target_source", matrix_json(target.T_target_source.matrix())},
                          {"covariance", covariance_json(alignment)},

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "dynamic_icp/odometry/frame.hpp"
 #include "dynamic_icp/registration/align.hpp"
@@ -17,7 +18,8 @@ std::string frame_line(std::size_t index, const odometry::Frame& frame);
 std::string objects_line(std::size_t index, const odometry::Frame& frame);
 
 /// The frame of the second of two scans as an indented JSON document: what `register` prints. `source` is the frame of
-/// the first one.
-std::string pair_document(const odometry::Frame& source, const odometry::Frame& target);
+/// the first one, `assumptions` what the method had to take for granted.
+std::string pair_document(const odometry::Frame& source, const odometry::Frame& target,
+                          const std::vector<std::string>& assumptions = {});
 
 }  // namespace dynamic_icp::results

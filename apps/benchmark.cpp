@@ -1,0 +1,252 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cerrno>
+#include <cstdio>
+#include <cstring>
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/base/version.hpp"
+#include "dynamic_icp/benchmark/benchmark_folder.hpp"
+#include "dynamic_icp/benchmark/cell_plan.hpp"
+#include "dynamic_icp/benchmark/cell_queue.hpp"
+#include "dynamic_icp/benchmark/machine.hpp"
+#include "dynamic_icp/benchmark/sequences.hpp"
+#include "dynamic_icp/benchmark/tables.hpp"
+#include "dynamic_icp/benchmark/variants.hpp"
+#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/odometry/config.hpp"
+
+#include "apps/candidates.hpp"
+#include "apps/cell_progress.hpp"
+#include "apps/command_line.hpp"
+#include "apps/commands.hpp"
+
+namespace dynamic_icp::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kResultsName = "results.json";
+
+struct BenchmarkOptions {
+  std::vector<std::string> inputs;
+  std::string output;
+  std::string tables;
+  std::string methods = "all";
+  std::string ablations = "all";
+  int jobs = 1;
+  bool force = false;
+  bool quiet = false;
+  benchmark::RunSettings run;
+};
+
+benchmark::Program this_program() {
+  // The running program itself, even when its file is replaced while the benchmark goes on.
+  const fs::path path = "/proc/self/exe";
+  return {path, std::string(version()), benchmark::file_checksum(path), benchmark::describe_processor()};
+}
+
+benchmark::BenchmarkInfo describe(const BenchmarkOptions& options, const std::vector<benchmark::Sequence>& sequences) {
+  benchmark::BenchmarkInfo info;
+  info.version = std::string(version());
+  info.command = command_line();
+  info.machine = benchmark::describe_machine();
+  info.threads = options.run.threads;
+  info.jobs = options.jobs;
+  info.preset = options.run.preset;
+  info.settings = options.run.settings;
+  if (!options.run.config_file.empty()) {
+    info.settings.insert(info.settings.begin(), "the settings of " + options.run.config_file);
+  }
+  for (const benchmark::Sequence& sequence : sequences) {
+    info.sequences.emplace_back(sequence.label, sequence.path.string());
+  }
+  return info;
+}
+
+void print(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw DataError(fmt::format("standard output: cannot write: {}", std::strerror(errno)));
+  }
+}
+
+/// A folder without tables of earlier results, which the new ones may not replace.
+void make_tables_folder(const fs::path& folder) {
+  std::error_code fault;
+  fs::create_directories(folder, fault);
+  if (fault) {
+    throw DataError(fmt::format("{}: cannot create: {}", folder.string(), fault.message()));
+  }
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::string extension = entry.path().extension().string();
+    if (extension == ".md" || extension == ".csv" || extension == ".tex") {
+      fs::remove(entry.path(), fault);
+    }
+  }
+}
+
+/// Makes tables/ and tables.md from results.json and prints the latter.
+void write_tables(const fs::path& folder) {
+  const fs::path source = folder / kResultsName;
+  const benchmark::BenchmarkResults results = benchmark::results_from_json(formats::read_whole_file(source), source);
+  make_tables_folder(folder / "tables");
+  std::string all;
+  for (const benchmark::Table& table : benchmark::all_tables(results)) {
+    const std::string text = benchmark::markdown(table);
+    formats::write_whole_file(folder / "tables" / (table.name + ".md"), text);
+    formats::write_whole_file(folder / "tables" / (table.name + ".csv"), benchmark::csv(table));
+    formats::write_whole_file(folder / "tables" / (table.name + ".tex"), benchmark::latex(table));
+    all += (all.empty() ? "" : "\n") + text;
+  }
+  formats::write_whole_file(folder / "tables.md", all);
+  print(all);
+}
+
+std::string name_of(const benchmark::CellKey& key) {
+  return key.sequence + " " + key.method + (key.ablation == "none" ? "" : " " + key.ablation);
+}
+
+/// Runs the cells and saves results.json after each of them; how many failed.
+std::size_t run_plans(const BenchmarkOptions& options, const benchmark::BenchmarkFolder& folder,
+                      const benchmark::Program& program, const std::vector<benchmark::CellPlan>& plans,
+                      benchmark::BenchmarkResults results) {
+  std::vector<std::optional<benchmark::CellResult>> cells(plans.size());
+  const auto save = [&] {
+    results.cells.clear();
+    for (const auto& cell : cells) {
+      if (cell) {
+        results.cells.push_back(*cell);
+      }
+    }
+    formats::write_whole_file(folder.path() / kResultsName, benchmark::to_json(results));
+  };
+  CellProgress progress(plans.size(), options.quiet);
+  benchmark::QueueEvents events;
+  events.started = [&](std::size_t plan) { progress.start(name_of(plans[plan].key)); };
+  events.ended = [&](std::size_t plan, const benchmark::CellResult& result, bool saved) {
+    cells[plan] = result;
+    if (!saved) {
+      save();
+    }
+    const std::string outcome = !result.finished ? "failed: " + result.failure : saved ? "done before" : "done";
+    progress.end(name_of(result.key), outcome, !result.finished);
+  };
+  benchmark::run_cells(plans, {folder.path(), program.path, options.jobs, options.force}, events);
+  save();
+  return static_cast<std::size_t>(
+      std::count_if(cells.begin(), cells.end(), [](const auto& cell) { return !cell || !cell->finished; }));
+}
+
+int run_benchmark(BenchmarkOptions options) {
+  if (!options.run.config_file.empty()) {
+    options.run.config_file = fs::absolute(options.run.config_file).string();
+  }
+  const std::vector<Candidate> rivals = choose_candidates(options.methods, options.ablations, options.run);
+  const benchmark::Sequences opened = benchmark::open_sequences(options.inputs, options.run.format, options.output);
+  for (const std::string& reason : opened.skipped) {
+    fmt::print(stderr, "dynamic-icp: warning: left out: {}\n", reason);
+  }
+  const benchmark::BenchmarkFolder folder(options.output);
+  const benchmark::Program program = this_program();
+  std::vector<benchmark::CellPlan> plans;
+  for (const benchmark::Sequence& sequence : opened.sequences) {
+    for (const Candidate& rival : rivals) {
+      plans.push_back(
+          benchmark::plan_cell(program, sequence, rival.method, rival.ablation, options.run, rival.configuration));
+    }
+  }
+  const std::size_t failed = run_plans(options, folder, program, plans, {describe(options, opened.sequences), {}});
+  write_tables(folder.path());
+  if (failed > 0) {
+    throw DataError(fmt::format("{} of {} cells failed; messages are in {}", failed, plans.size(),
+                                (folder.path() / kResultsName).string()));
+  }
+  return 0;
+}
+
+int run(const BenchmarkOptions& options) {
+  const bool tables_only = !options.tables.empty();
+  if (tables_only != options.inputs.empty() || tables_only != options.output.empty()) {
+    throw UsageError("expected INPUT... with --output DIR, or --tables DIR alone");
+  }
+  if (tables_only) {
+    if (!fs::exists(fs::path(options.tables) / kResultsName)) {
+      throw DataError(fmt::format("{}: holds no {}; expected the folder of a benchmark", options.tables, kResultsName));
+    }
+    write_tables(options.tables);  // also while the benchmark is running: from what is there so far
+    return 0;
+  }
+  return run_benchmark(options);
+}
+
+void add_run_settings(CLI::App& command, benchmark::RunSettings& run) {
+  command
+      .add_option("--preset", run.preset,
+                  fmt::format("Configuration to start from: {} (default {})", fmt::join(odometry::preset_names(), ", "),
+                              run.preset))
+      ->type_name("NAME");
+  command.add_option("--config", run.config_file, "YAML file with configuration keys, for all methods")
+      ->type_name("FILE");
+  command.add_option("--set", run.settings, "Configuration key, for all methods; repeatable, wins over --config")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)  // what follows the value is an INPUT
+      ->take_all();
+  command
+      .add_option(
+          "--format", run.format,
+          fmt::format("Layout of the recordings: auto, {} (default auto)", fmt::join(datasets::known_formats(), ", ")))
+      ->type_name("NAME");
+  command.add_option("--start", run.start, "First scan, counted from 0 (default 0)")->type_name("N");
+  command.add_option("--max-frames", run.max_frames, "Most scans of a recording, 1 or more (default: all)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command.add_option("--threads", run.threads, "Number of threads of each run (default 0: all processors)")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+}
+
+}  // namespace
+
+void add_benchmark_command(CLI::App& app, std::function<int()>& selected) {
+  const auto options = std::make_shared<BenchmarkOptions>();
+  CLI::App* command = app.add_subcommand(
+      "benchmark", "Recordings through all methods under identical preprocessing; the paper's tables");
+  command->footer(
+      "Ended at any time, the same command goes on where it was: finished runs whose program, configuration and "
+      "recording are unchanged are not run again; failed ones are.");
+  command->add_option("INPUT", options->inputs, "Recordings, or folders whose sub-folders are recordings");
+  command
+      ->add_option("--output", options->output, "Folder for runs, results.json and tables; new, or that of a benchmark")
+      ->type_name("DIR");
+  command
+      ->add_option("--tables", options->tables, "Only make the tables of this benchmark again, from its results.json")
+      ->type_name("DIR");
+  command
+      ->add_option("--methods", options->methods,
+                   fmt::format("Methods, with commas: {} (default all)", fmt::join(known_methods(), ", ")))
+      ->type_name("LIST");
+  command
+      ->add_option("--ablations", options->ablations,
+                   fmt::format("Parts of {} to switch off, one at a time: none, {} (default all)",
+                               benchmark::kOurMethod, fmt::join(known_ablations(), ", ")))
+      ->type_name("LIST");
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Runs at the same time (default 1); more are faster together, but disturb each other's times")
+      ->type_name("N")
+      ->check(CLI::Range(1, 1024));
+  command->add_flag("--force", options->force, "Run finished cells again");
+  command->add_flag("--quiet", options->quiet, "Print failures and tables only");
+  add_run_settings(*command, options->run);
+  command->callback([options, &selected] { selected = [options] { return run(*options); }; });
+}
+
+}  // namespace dynamic_icp::apps

@@ -1,0 +1,48 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/benchmark/benchmark_folder.hpp"
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/benchmark/folder_test.hpp"
+
+namespace dynamic_icp::benchmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+using BenchmarkFolderTest = FolderTest;
+
+TEST_F(BenchmarkFolderTest, IsTakenByOneAtATime) {
+  const fs::path path = folder_ / "deep" / "bench";
+  {
+    const BenchmarkFolder first(path);
+    try {
+      const BenchmarkFolder second(path);
+      ADD_FAILURE() << "two at the same time";
+    } catch (const DataError& error) {
+      EXPECT_NE(std::string(error.what()).find(path.string() + ": another benchmark is running"), std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_NO_THROW(BenchmarkFolder{path}) << "free again";
+}
+
+TEST_F(BenchmarkFolderTest, IsNeverSomebodyElses) {
+  EXPECT_NO_THROW(BenchmarkFolder{folder_}) << "an empty folder";
+  write_file(folder_ / "other" / "thesis.txt", "years of work");
+  EXPECT_THROW(BenchmarkFolder{folder_ / "other"}, DataError);
+  EXPECT_THROW(BenchmarkFolder{folder_ / "other" / "thesis.txt"}, DataError);
+}
+
+TEST_F(BenchmarkFolderTest, LosesFilesThatWereLeftHalfWritten) {
+  const fs::path path = folder_ / "bench";
+  { const BenchmarkFolder folder(path); }
+  write_file(path / "results.json.partial-123", "{");
+  write_file(path / "results.json", "{}");
+  const BenchmarkFolder folder(path);
+  EXPECT_FALSE(fs::exists(path / "results.json.partial-123"));
+  EXPECT_TRUE(fs::exists(path / "results.json"));
+}
+
+}  // namespace
+}  // namespace dynamic_icp::benchmark

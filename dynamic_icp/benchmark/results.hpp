@@ -1,0 +1,87 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace dynamic_icp::benchmark {
+
+/// What is compared: one sequence through one method with one part of it switched off or none.
+struct CellKey {
+  std::string sequence;  ///< label of the input, unique in a benchmark
+  std::string method;
+  std::string ablation = "none";
+
+  bool operator==(const CellKey&) const = default;
+};
+
+/// Velocities of moving objects against the truth (evaluation/object_error.hpp).
+struct ObjectScores {
+  std::optional<double> along_mae_mps;    ///< mean absolute error along the true motion
+  std::optional<double> lateral_mae_mps;  ///< mean absolute error across it
+  std::optional<double> median_relative_error;
+  std::optional<double> estimated_share;  ///< of the true objects
+  std::optional<double> false_per_scan;   ///< reported objects where there is none
+};
+
+/// The saved result of one cell. Numbers that do not exist (no ground truth, no objects) are absent.
+struct CellResult {
+  CellKey key;
+  bool finished = false;
+  std::string failure;           ///< what the program said, when it did not finish
+  std::filesystem::path folder;  ///< of the cell, relative to the benchmark's folder
+
+  std::size_t frames = 0;
+  std::optional<double> rte_rmse_m;
+  std::optional<double> rre_rmse_deg;
+  std::optional<double> ate_rmse_m;
+  std::optional<double> path_length_m;
+  std::optional<double> mean_iterations;
+  std::optional<double> convergence_rate;  ///< 0 to 1
+  std::optional<double> ms_mean;
+  std::optional<double> ms_median;
+  std::optional<double> ms_p95;
+  std::optional<double> fps;
+  std::optional<double>
+      peak_memory_mib;  ///< of the process that ran the cell, reading included; at least that of the benchmark itself
+  std::optional<double> dynamic_ratio_max;
+  std::optional<double> dynamic_ratio_mean;
+  std::optional<double> clustered_ratio_mean;
+  std::optional<double> refined_ratio_mean;
+  ObjectScores objects;
+  std::vector<std::string> notes;  ///< what the run had to assume
+  std::size_t warnings = 0;        ///< of the run; they are in its run.json
+  int jobs = 1;                    ///< runs at the same time when this one was measured
+};
+
+/// Where and with what the cells were run.
+struct BenchmarkInfo {
+  std::string version;
+  std::string command;
+  std::string machine;  ///< processor, number of processors, memory, operating system
+  int threads = 0;      ///< of each run; 0: all processors
+  int jobs = 1;         ///< runs at the same time
+  std::string preset;
+  std::vector<std::string> settings;                           ///< changes to the configuration, key=value
+  std::vector<std::pair<std::string, std::string>> sequences;  ///< label and path of each input
+};
+
+/// Everything a table is made of.
+struct BenchmarkResults {
+  BenchmarkInfo info;
+  std::vector<CellResult> cells;  ///< in the order of sequences, methods, ablations
+};
+
+/// One cell as text and back, for the file beside its run. `cell_from_json` throws DataError naming `origin`.
+std::string to_json(const CellResult& result);
+CellResult cell_from_json(const std::string& text, const std::filesystem::path& origin);
+
+/// results.json and back. `results_from_json` throws DataError naming `origin` and what is missing or wrong.
+std::string to_json(const BenchmarkResults& results);
+BenchmarkResults results_from_json(const std::string& text, const std::filesystem::path& origin);
+
+}  // namespace dynamic_icp::benchmark

@@ -1,0 +1,45 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dynamic_icp/base/stamp.hpp"
+
+namespace dynamic_icp::benchmark {
+
+/// A recording that takes part, with what tells whether it is still the same.
+struct Sequence {
+  std::string label;           ///< name of its folder, unique in a benchmark
+  std::filesystem::path path;  ///< absolute
+  std::size_t scans = 0;
+  Stamp first_stamp;
+  Stamp last_stamp;
+  std::string content;                 ///< `content_checksum` of it
+  std::filesystem::path object_truth;  ///< objects.jsonl of a simulated recording; empty without
+};
+
+struct Sequences {
+  std::vector<Sequence> sequences;   ///< in the order of the inputs
+  std::vector<std::string> skipped;  ///< folders beside recordings that are none, with the reason
+};
+
+/// Opens the inputs. A folder that is no recording but whose direct sub-folders are counts as all of these, sorted by
+/// name. Two recordings of the same name get the name of their folder in front, or a number behind. Files in `output`
+/// do not count as part of a recording. Throws DataError for an input that is no recording and holds none; UsageError
+/// when a recording is given twice.
+Sequences open_sequences(const std::vector<std::string>& inputs, const std::string& format,
+                         const std::filesystem::path& output);
+
+/// A cheap checksum of a file or folder, 16 hexadecimal digits: names and sizes of all files in it, the whole content
+/// of small ones, and the beginning and end of the first and the last of the large ones in each folder. Hidden files
+/// and what lies in `except` are left out.
+std::string content_checksum(const std::filesystem::path& path, const std::filesystem::path& except = {});
+
+/// The checksum of a whole file.
+std::string file_checksum(const std::filesystem::path& path);
+
+}  // namespace dynamic_icp::benchmark

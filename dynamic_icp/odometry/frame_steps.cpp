@@ -1,0 +1,50 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/odometry/frame_steps.hpp"
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/base/error.hpp"
+
+namespace dynamic_icp::odometry {
+
+void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp) {
+  if (last_stamp && raw.stamp <= *last_stamp) {
+    throw DataError(fmt::format("the scan at {} s is not later than the one before, at {} s", format_seconds(raw.stamp),
+                                format_seconds(*last_stamp)));
+  }
+}
+
+Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame) {
+  const Scan measured = Scan::from_raw(raw, &frame.dropped);  // Eq. (1)
+  const Scan in_range = preprocess::crop_range(measured, config.range);
+  Scan scan = preprocess::voxel_grid(in_range, config.voxel);
+  frame.stamp = raw.stamp;
+  frame.points = raw.points.size();
+  frame.out_of_range = measured.size() - in_range.size();
+  frame.points_used = scan.size();
+  frame.labels.assign(frame.points, -1);
+  return scan;
+}
+
+FrameStatus frame_status(registration::AlignStatus status) {
+  switch (status) {
+    case registration::AlignStatus::kConverged:
+      return FrameStatus::kConverged;
+    case registration::AlignStatus::kIterationLimit:
+      return FrameStatus::kIterationLimit;
+    case registration::AlignStatus::kTooFewCorrespondences:
+      return FrameStatus::kTooFewCorrespondences;
+    case registration::AlignStatus::kDegenerate:
+      return FrameStatus::kDegenerate;
+    case registration::AlignStatus::kNotRun:
+      break;
+  }
+  return FrameStatus::kNotRun;
+}
+
+bool is_aligned(FrameStatus status) {
+  return status == FrameStatus::kConverged || status == FrameStatus::kIterationLimit;
+}
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,27 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+
+#include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/odometry/config.hpp"
+#include "dynamic_icp/odometry/frame.hpp"
+
+// The steps that every method makes with a scan.
+namespace dynamic_icp::odometry {
+
+/// Throws DataError when the scan is not later than the last one.
+void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp);
+
+/// Takes over what is finite, crops the range and thins by the voxel grid; fills stamp, counts and `labels` (-1 for all
+/// points) of the frame.
+Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame);
+
+/// What an alignment's status means for the frame.
+FrameStatus frame_status(registration::AlignStatus status);
+
+/// Whether the pose comes from an alignment, converged or not.
+bool is_aligned(FrameStatus status);
+
+}  // namespace dynamic_icp::odometry

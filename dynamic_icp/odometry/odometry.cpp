@@ -1,0 +1,45 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/odometry/odometry.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/odometry/dynamic_icp.hpp"
+#include "dynamic_icp/odometry/kiss_icp.hpp"
+#include "dynamic_icp/odometry/scan_to_scan_icp.hpp"
+
+namespace dynamic_icp::odometry {
+
+std::vector<std::string_view> method_names() {
+  return {"dynamic-icp", "doppler-icp", "point-to-point", "point-to-plane", "gicp", "kiss-icp"};
+}
+
+std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config, const Surroundings& surroundings,
+                                        int threads) {
+  const auto scan_to_scan = [&](ScanToScanMethod kind) {
+    return std::make_unique<ScanToScanIcp>(kind, config, surroundings, threads);
+  };
+  if (method == "dynamic-icp") {
+    return std::make_unique<DynamicIcp>(config, threads);
+  }
+  if (method == "doppler-icp") {
+    return scan_to_scan(ScanToScanMethod::kDopplerIcp);
+  }
+  if (method == "point-to-point") {
+    return scan_to_scan(ScanToScanMethod::kPointToPoint);
+  }
+  if (method == "point-to-plane") {
+    return scan_to_scan(ScanToScanMethod::kPointToPlane);
+  }
+  if (method == "gicp") {
+    return scan_to_scan(ScanToScanMethod::kGicp);
+  }
+  if (method == "kiss-icp") {
+    return std::make_unique<KissIcp>(config, threads);
+  }
+  throw UsageError(fmt::format("unknown method '{}'; known are: {}", method, fmt::join(method_names(), ", ")));
+}
+
+}  // namespace dynamic_icp::odometry

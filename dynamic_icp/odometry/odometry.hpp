@@ -1,0 +1,45 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/odometry/config.hpp"
+#include "dynamic_icp/odometry/frame.hpp"
+
+namespace dynamic_icp::odometry {
+
+/// A method over a stream of scans. The same scans give the same bits for any number of threads.
+class Odometry {
+ public:
+  virtual ~Odometry() = default;
+
+  /// Takes the next scan. Throws DataError when its stamp is not later than that of the scan before; the state is
+  /// unchanged then. A scan that cannot be aligned is no error: its frame says so.
+  virtual Frame process(const RawScan& raw) = 0;
+
+  /// What the method had to take for granted because it was not told, for all outputs; usually nothing.
+  [[nodiscard]] virtual std::vector<std::string> assumptions() const { return {}; }
+};
+
+/// What a method may know besides the scans.
+struct Surroundings {
+  std::optional<Eigen::Isometry3d> T_vehicle_sensor;  ///< mounting of the sensor, where the recording has it
+};
+
+/// dynamic-icp, doppler-icp, point-to-point, point-to-plane, gicp, kiss-icp.
+std::vector<std::string_view> method_names();
+
+/// The method of that name. `threads` = 0 takes as many as the machine has. Throws UsageError with the known names, or
+/// when the configuration is out of range.
+std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config, const Surroundings& surroundings,
+                                        int threads);
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,189 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/odometry/scan_to_scan_icp.hpp"
+
+#include <limits>
+
+#include "dynamic_icp/odometry/frame_steps.hpp"
+#include "dynamic_icp/odometry/stage_clock.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+/// The scan in the frame of the vehicle, lines of sight turned with it; the same rows.
+Scan in_vehicle(const Scan& scan, const Eigen::Isometry3d& T_vehicle_sensor) {
+  RawScan raw;
+  raw.stamp = scan.stamp();
+  raw.doppler = scan.doppler();
+  raw.times = scan.times();
+  for (std::size_t row = 0; row < scan.size(); ++row) {
+    raw.points.emplace_back(T_vehicle_sensor * scan.points()[row]);
+    raw.directions.emplace_back(T_vehicle_sensor.linear() * scan.directions()[row]);
+  }
+  return Scan::from_raw(raw);
+}
+
+/// Moves a twist [omega; rho] to another frame.
+Matrix6d adjoint(const Eigen::Isometry3d& T) {
+  Matrix6d result = Matrix6d::Zero();
+  result.topLeftCorner<3, 3>() = T.linear();
+  result.bottomRightCorner<3, 3>() = T.linear();
+  result.bottomLeftCorner<3, 3>() = skew(T.translation()) * T.linear();
+  return result;
+}
+
+/// An alignment of scans in the frame of the vehicle, told in the frame of the sensor.
+void tell_in_sensor_frame(registration::Alignment& alignment, const Eigen::Isometry3d& T_vehicle_sensor) {
+  const Eigen::Isometry3d T_sensor_vehicle = T_vehicle_sensor.inverse();
+  alignment.T_target_source = T_sensor_vehicle * alignment.T_target_source * T_vehicle_sensor;
+  if (alignment.covariance) {
+    const Matrix6d A = adjoint(T_sensor_vehicle);
+    alignment.covariance = A * *alignment.covariance * A.transpose();
+  }
+  for (estimation::DegenerateDirection& direction : alignment.degenerate) {
+    direction.direction.head<3>() = T_sensor_vehicle.linear() * direction.direction.head<3>().eval();
+    direction.direction.tail<3>() = T_sensor_vehicle.linear() * direction.direction.tail<3>().eval();
+  }
+}
+
+}  // namespace
+
+/// What is kept of a scan: the target of this alignment and the source of the next.
+struct ScanToScanIcp::Reference {
+  Scan scan;  // in the frame of the vehicle for Doppler-ICP, else of the sensor
+  preprocess::Normals normals;
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  Vector6d twist = Vector6d::Zero();  // of the last alignment, log(T_target_source) / dt, sensor frame
+};
+
+ScanToScanIcp::ScanToScanIcp(ScanToScanMethod method, const Config& config, const Surroundings& surroundings,
+                             int threads)
+    : method_(method), config_(config), T_vehicle_sensor_(surroundings.T_vehicle_sensor), workers_(threads) {
+  check(config_);
+}
+
+ScanToScanIcp::~ScanToScanIcp() = default;
+
+std::vector<std::string> ScanToScanIcp::assumptions() const {
+  if (method_ == ScanToScanMethod::kDopplerIcp && !T_vehicle_sensor_) {
+    return {"doppler-icp needs the mounting of the sensor and the recording has no calibration: the identity is taken"};
+  }
+  return {};
+}
+
+Frame ScanToScanIcp::process(const RawScan& raw) {
+  check_order(raw, last_stamp_);
+  Frame frame;
+  StageClock clock(frame.times);
+  const Scan scan = preprocess(raw, config_.preprocess, frame);
+  clock.finish(Stage::kPreprocess);
+  last_stamp_ = raw.stamp;
+  if (scan.size() < static_cast<std::size_t>(config_.min_points)) {
+    continue_motion(frame, FrameStatus::kTooFewPoints);
+    return frame;
+  }
+  for (const std::uint32_t record : scan.records()) {
+    frame.labels[record] = 0;
+  }
+
+  const bool in_vehicle_frame = method_ == ScanToScanMethod::kDopplerIcp && T_vehicle_sensor_;
+  auto now = std::make_unique<Reference>();
+  now->scan = in_vehicle_frame ? in_vehicle(scan, *T_vehicle_sensor_) : scan;
+  const spatial::KdTree tree(now->scan.points(), workers_);
+  if (method_ != ScanToScanMethod::kPointToPoint) {
+    now->normals = preprocess::estimate_normals(now->scan.points(), tree, config_.preprocess.normals, workers_);
+  }
+  clock.finish(Stage::kNormals);
+
+  if (!last_) {
+    frame.status = FrameStatus::kFirst;
+  } else if (seconds_between(last_->scan.stamp(), raw.stamp) > config_.max_gap_s) {
+    continue_motion(frame, FrameStatus::kTimeGap);
+  } else {
+    align_to_last(*now, tree, frame);
+  }
+  clock.finish(Stage::kRegistration);
+
+  now->T_world_sensor = frame.T_world_sensor;
+  if (last_) {
+    const double dt_s = seconds_between(last_->scan.stamp(), raw.stamp);
+    now->twist = log_se3(frame.T_target_source) / dt_s;
+    // These methods do not look for the velocity: it is the motion between the scans.
+    frame.ego.velocity_sensor = -frame.T_target_source.translation() / dt_s;
+  }
+  last_ = std::move(now);
+  return frame;
+}
+
+void ScanToScanIcp::align_to_last(const Reference& now, const spatial::KdTree& tree, Frame& frame) const {
+  const double dt_s = seconds_between(last_->scan.stamp(), frame.stamp);
+  const registration::Source source{last_->scan, last_->normals.vectors, last_->normals.valid};
+  const registration::Target target{now.scan, tree, now.normals.vectors, now.normals.valid};
+  Eigen::Isometry3d T_initial = predicted_motion(frame.stamp);
+  const bool in_vehicle_frame = method_ == ScanToScanMethod::kDopplerIcp && T_vehicle_sensor_;
+  if (in_vehicle_frame) {
+    T_initial = *T_vehicle_sensor_ * T_initial * T_vehicle_sensor_->inverse();
+  }
+  frame.alignment = registration::align(source, target, T_initial, objective(dt_s),
+                                        config_.registration.max_correspondence_distance_m,
+                                        stop_rule(config_.registration), workers_);
+  if (in_vehicle_frame) {
+    tell_in_sensor_frame(frame.alignment, *T_vehicle_sensor_);
+  }
+  const FrameStatus status = frame_status(frame.alignment.status);
+  if (is_aligned(status)) {
+    frame.status = status;
+    frame.T_target_source = frame.alignment.T_target_source;
+    frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
+  } else {
+    continue_motion(frame, status);
+  }
+}
+
+void ScanToScanIcp::continue_motion(Frame& frame, FrameStatus status) const {
+  frame.status = status;
+  if (last_) {
+    frame.T_target_source = predicted_motion(frame.stamp);
+    frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
+  }
+}
+
+Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
+  if (!config_.icp.constant_velocity_start) {
+    return Eigen::Isometry3d::Identity();
+  }
+  return exp_se3(seconds_between(last_->scan.stamp(), stamp) * last_->twist);
+}
+
+registration::Objective ScanToScanIcp::objective(double dt_s) const {
+  registration::Objective objective;
+  objective.doppler = registration::DopplerTerm::kNone;
+  objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
+  switch (method_) {
+    case ScanToScanMethod::kPointToPoint:
+      objective.geometry = registration::GeometryTerm::kPointToPoint;
+      break;
+    case ScanToScanMethod::kPointToPlane:
+      objective.geometry = registration::GeometryTerm::kPointToPlane;
+      break;
+    case ScanToScanMethod::kGicp:
+      objective.geometry = registration::GeometryTerm::kPlaneToPlane;
+      break;
+    case ScanToScanMethod::kDopplerIcp:
+      objective.doppler = registration::DopplerTerm::kSensorVelocity;
+      objective.doppler_weight = config_.doppler_icp.doppler_weight;
+      objective.tukey_geometry_m = config_.doppler_icp.tukey_geometry_m;
+      objective.tukey_doppler_mps = config_.doppler_icp.tukey_doppler_mps;
+      objective.tukey_doppler_from_iteration = config_.doppler_icp.robust_from_iteration;
+      objective.reject_doppler_mps = config_.doppler_icp.reject_doppler_mps;
+      objective.reject_from_iteration = config_.doppler_icp.robust_from_iteration;
+      objective.vehicle.dt_s = dt_s;
+      if (T_vehicle_sensor_) {
+        objective.vehicle.sensor_vehicle = T_vehicle_sensor_->translation();
+      }
+      break;
+  }
+  return objective;
+}
+
+}  // namespace dynamic_icp::odometry

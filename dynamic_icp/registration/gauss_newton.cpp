@@ -1,0 +1,79 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/registration/gauss_newton.hpp"
+
+#include <cmath>
+#include <utility>
+
+namespace dynamic_icp::registration {
+namespace {
+
+bool enough(const Correspondences& correspondences, const StopRule& stop) {
+  return correspondences.pairs.size() >= static_cast<std::size_t>(stop.min_correspondences);
+}
+
+bool stable(const Correspondences& before, const Correspondences& after, double tolerance) {
+  return std::abs(after.fitness - before.fitness) < tolerance &&
+         std::abs(after.inlier_rmse - before.inlier_rmse) < tolerance;
+}
+
+/// Keeps the rotation orthogonal after many small steps.
+void renormalise(Eigen::Isometry3d& T) { T.linear() = Eigen::Quaterniond(T.linear()).normalized().toRotationMatrix(); }
+
+/// Fit, spread and covariance at the final pose.
+void describe_fit(Alignment& result, const Problem& problem, const Correspondences& correspondences, double length_m,
+                  double rank_tolerance) {
+  result.fitness = correspondences.fitness;
+  result.inlier_rmse = correspondences.inlier_rmse;
+  result.correspondences = correspondences.pairs.size();
+  const Linearisation fit = problem.linearise(correspondences, result.T_target_source, result.iterations);
+  result.geometry = fit.geometry;
+  result.doppler = fit.doppler;
+  const estimation::Solution solution = estimation::solve(fit.equations, length_m, rank_tolerance);
+  result.information_ratio = solution.information_ratio;
+  if (result.status == AlignStatus::kConverged || result.status == AlignStatus::kIterationLimit) {
+    if (solution.inverse) {
+      const Matrix6d covariance = *solution.inverse * fit.score * *solution.inverse;
+      result.covariance = 0.5 * (covariance + covariance.transpose());
+    }
+  }
+}
+
+}  // namespace
+
+Alignment minimise(Problem& problem, const Eigen::Isometry3d& T_initial, double length_m, const StopRule& stop) {
+  Alignment result;
+  result.T_target_source = T_initial;
+  result.status = AlignStatus::kIterationLimit;
+
+  Correspondences current = problem.find(result.T_target_source);
+  while (result.iterations < stop.max_iterations) {
+    if (!enough(current, stop)) {
+      result.status = AlignStatus::kTooFewCorrespondences;
+      break;
+    }
+    const Linearisation linear = problem.linearise(current, result.T_target_source, result.iterations);
+    estimation::Solution step = estimation::solve(linear.equations, length_m, stop.rank_tolerance);
+    if (!step.degenerate.empty()) {
+      result.status = AlignStatus::kDegenerate;
+      result.degenerate = std::move(step.degenerate);
+      break;
+    }
+    result.T_target_source = exp_se3(step.xi) * result.T_target_source;
+    ++result.iterations;
+    // The pairs at the new pose decide about stopping and are those of the next step.
+    Correspondences updated = problem.find(result.T_target_source);
+    const bool converged =
+        enough(updated, stop) && (stable(current, updated, stop.tolerance) || step.xi.norm() < stop.min_step);
+    current = std::move(updated);
+    if (converged) {
+      result.status = AlignStatus::kConverged;
+      break;
+    }
+  }
+  renormalise(result.T_target_source);
+  describe_fit(result, problem, current, length_m, stop.rank_tolerance);
+  return result;
+}
+
+}  // namespace dynamic_icp::registration
