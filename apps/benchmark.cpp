@@ -22,12 +22,12 @@
 #include "dynamic_icp/benchmark/variants.hpp"
 #include "dynamic_icp/datasets/dataset.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
-#include "dynamic_icp/odometry/config.hpp"
 
 #include "apps/candidates.hpp"
 #include "apps/cell_progress.hpp"
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
+#include "apps/method_options.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -188,17 +188,7 @@ int run(const BenchmarkOptions& options) {
 }
 
 void add_run_settings(CLI::App& command, benchmark::RunSettings& run) {
-  command
-      .add_option("--preset", run.preset,
-                  fmt::format("Configuration to start from: {} (default {})", fmt::join(odometry::preset_names(), ", "),
-                              run.preset))
-      ->type_name("NAME");
-  command.add_option("--config", run.config_file, "YAML file with configuration keys, for all methods")
-      ->type_name("FILE");
-  command.add_option("--set", run.settings, "Configuration key, for all methods; repeatable, wins over --config")
-      ->type_name("KEY=VALUE")
-      ->allow_extra_args(false)  // what follows the value is an INPUT
-      ->take_all();
+  add_configuration_options(command, run.preset, run.config_file, run.settings, run.threads);
   command
       .add_option(
           "--format", run.format,
@@ -208,9 +198,6 @@ void add_run_settings(CLI::App& command, benchmark::RunSettings& run) {
   command.add_option("--max-frames", run.max_frames, "Most scans of a recording, 1 or more (default: all)")
       ->type_name("N")
       ->check(CLI::PositiveNumber);
-  command.add_option("--threads", run.threads, "Number of threads of each run (default 0: all processors)")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024));
 }
 
 }  // namespace

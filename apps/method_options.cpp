@@ -16,36 +16,39 @@
 
 namespace dynamic_icp::apps {
 
+void add_configuration_options(CLI::App& command, std::string& preset, std::string& config_file,
+                               std::vector<std::string>& settings, int& threads) {
+  command
+      .add_option("--preset", preset,
+                  fmt::format("Configuration to start from: {} (default {})", fmt::join(odometry::preset_names(), ", "),
+                              preset))
+      ->type_name("NAME");
+  command
+      .add_option("--config", config_file, "YAML file with configuration keys ('dynamic-icp config' prints them all)")
+      ->type_name("FILE");
+  command
+      .add_option("--set", settings,
+                  "Configuration key, e.g. preprocess.voxel.voxel_size_m=0.5 (m); repeatable, wins over --config")
+      ->type_name("KEY=VALUE")
+      ->allow_extra_args(false)  // what follows the value is another argument
+      ->take_all();
+  command
+      .add_option("--threads", threads, "Number of threads (default 0: all processors); results do not depend on it")
+      ->type_name("N")
+      ->check(CLI::Range(0, 1024));
+}
+
 void add_method_options(CLI::App& command, MethodOptions& options) {
   command
       .add_option("--method", options.method,
                   fmt::format("Method: {} (default dynamic-icp)", fmt::join(odometry::method_names(), ", ")))
       ->type_name("NAME");
   command
-      .add_option(
-          "--preset", options.preset,
-          fmt::format("Configuration to start from: {} (default default)", fmt::join(odometry::preset_names(), ", ")))
-      ->type_name("NAME");
-  command
       .add_option("--ablation", options.ablation,
-                  fmt::format("Part of the method to switch off: {} (default none)",
+                  fmt::format("Part of dynamic-icp to switch off: {} (default none)",
                               fmt::join(odometry::ablation_names(), ", ")))
       ->type_name("NAME");
-  command
-      .add_option("--config", options.config_file,
-                  "YAML file with configuration keys ('dynamic-icp config' prints them all)")
-      ->type_name("FILE");
-  command
-      .add_option("--set", options.settings,
-                  "Configuration key, e.g. preprocess.voxel.voxel_size_m=0.5 (m); repeatable, wins over --config")
-      ->type_name("KEY=VALUE")
-      ->expected(1)
-      ->take_all();
-  command
-      .add_option("--threads", options.threads,
-                  "Number of threads (default 0: all processors); results do not depend on it")
-      ->type_name("N")
-      ->check(CLI::Range(0, 1024));
+  add_configuration_options(command, options.preset, options.config_file, options.settings, options.threads);
 }
 
 odometry::Config make_config(const MethodOptions& options) {

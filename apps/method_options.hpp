@@ -23,6 +23,11 @@ struct MethodOptions {
   int threads = 0;
 };
 
+/// --preset, --config, --set, --threads, with the values as they are for defaults.
+void add_configuration_options(CLI::App& command, std::string& preset, std::string& config_file,
+                               std::vector<std::string>& settings, int& threads);
+
+/// Those, --method and --ablation.
 void add_method_options(CLI::App& command, MethodOptions& options);
 
 /// The configuration: the preset, then the file, then --set in their order, then the ablation. Throws UsageError or

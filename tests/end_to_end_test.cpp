@@ -78,6 +78,11 @@ TEST_F(EndToEnd, TheSameBytesForAnyNumberOfThreadsAndEveryRun) {
   }
 }
 
+TEST_F(EndToEnd, AnOptionTakesOneValueAndLeavesTheRest) {
+  run_and_summarise("--max-frames 2 --set registration.max_iterations=7 " + street().string());
+  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"]["registration.max_iterations"], 7);
+}
+
 TEST_F(EndToEnd, AblationsRunAndSayWhatTheyAre) {
   for (const char* ablation : {"no-vf", "no-dpp", "no-dr"}) {
     run_and_summarise(street().string() + " --preset paper --max-frames 3 --ablation " + ablation);
