@@ -21,6 +21,7 @@
 #include "dynamic_icp/benchmark/tables.hpp"
 #include "dynamic_icp/benchmark/variants.hpp"
 #include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 #include "apps/candidates.hpp"
@@ -80,11 +81,8 @@ void print(const std::string& text) {
 
 /// A folder without tables of earlier results, which the new ones may not replace.
 void make_tables_folder(const fs::path& folder) {
+  formats::make_folder(folder);
   std::error_code fault;
-  fs::create_directories(folder, fault);
-  if (fault) {
-    throw DataError(fmt::format("{}: cannot create: {}", folder.string(), fault.message()));
-  }
   for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
     const std::string extension = entry.path().extension().string();
     if (extension == ".md" || extension == ".csv" || extension == ".tex") {

@@ -17,4 +17,5 @@ for mode in instant swept; do
     done
   done
   "$program" benchmark "$folder/drives/$mode" --methods all --ablations all --preset paper --output "$folder/$mode"
+  "$program" benchmark "$folder/drives/$mode" --methods dynamic-icp --ablations none --output "$folder/$mode-default"
 done

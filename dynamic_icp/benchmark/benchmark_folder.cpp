@@ -12,6 +12,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/formats/binary_file.hpp"
 
 namespace dynamic_icp::benchmark {
 namespace {
@@ -53,11 +54,7 @@ int open_locked(const fs::path& path) {
 
 BenchmarkFolder::BenchmarkFolder(const fs::path& path) : path_(fs::absolute(path).lexically_normal()) {
   check_usable(path_);
-  std::error_code fault;
-  fs::create_directories(path_, fault);
-  if (fault) {
-    throw DataError(fmt::format("{}: cannot create: {}", path_.string(), fault.message()));
-  }
+  formats::make_folder(path_);
   lock_ = open_locked(path_ / kLockName);
   remove_partial_files(path_);
 }

@@ -10,6 +10,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/benchmark/benchmark_folder.hpp"
 #include "dynamic_icp/evaluation/object_error.hpp"
+#include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::benchmark {
@@ -99,14 +100,6 @@ std::string failure_of(const EndedChild& child, const fs::path& messages) {
   return said.empty() ? ending : fmt::format("{}: {}", ending, said);
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code fault;
-  fs::create_directories(folder, fault);
-  if (fault) {
-    throw DataError(fmt::format("{}: cannot create: {}", folder.string(), fault.message()));
-  }
-}
-
 }  // namespace
 
 std::optional<CellResult> saved_result(const fs::path& benchmark_folder, const CellPlan& plan) {
@@ -127,7 +120,7 @@ std::optional<CellResult> saved_result(const fs::path& benchmark_folder, const C
 
 pid_t start_cell(const fs::path& benchmark_folder, const fs::path& program, const CellPlan& plan) {
   const fs::path folder = benchmark_folder / plan.folder;
-  make_folder(folder);
+  formats::make_folder(folder);
   remove_partial_files(folder);
   std::error_code fault;
   fs::remove(folder / kResultName, fault);
