@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/dicp.hpp"
 #include "dynamic_icp/formats/xyzd_bin.hpp"
 #include "dynamic_icp/odometry/odometry.hpp"
 #include "dynamic_icp/results/frame_json.hpp"
@@ -20,6 +21,7 @@ namespace {
 struct RegisterOptions {
   std::string source;
   std::string target;
+  std::string calibration;
   double dt_s = 0.1;
   MethodOptions method;
 };
@@ -40,8 +42,12 @@ int register_pair(const RegisterOptions& options) {
   }
   const RawScan source = read_scan(options.source, Stamp{0});
   const RawScan target = read_scan(options.target, Stamp{std::llround(options.dt_s * 1e9)});
+  odometry::Surroundings surroundings;
+  if (!options.calibration.empty()) {
+    surroundings.T_vehicle_sensor = datasets::read_calibration(options.calibration);
+  }
   const std::unique_ptr<odometry::Odometry> odometry =
-      odometry::make_odometry(options.method.method, config, {}, options.method.threads);
+      odometry::make_odometry(options.method.method, config, surroundings, options.method.threads);
   for (const std::string& assumption : odometry->assumptions()) {
     fmt::print(stderr, "dynamic-icp: warning: {}\n", assumption);
   }
@@ -65,6 +71,10 @@ void add_register_command(CLI::App& app, std::function<int()>& selected) {
   command->add_option("TARGET", options->target, "Later scan; T_target_source maps points of SOURCE into it")
       ->required();
   command->add_option("--dt", options->dt_s, "Time between the two scans in s (default 0.1)")->type_name("SECONDS");
+  command
+      ->add_option("--calibration", options->calibration,
+                   "calibration.json with the mounting of the sensor, for doppler-icp (default: the identity)")
+      ->type_name("FILE");
   add_method_options(*command, options->method);
   command->callback([options, &selected] { selected = [options] { return register_pair(*options); }; });
 }

@@ -181,8 +181,9 @@ int run(const RunOptions& options) {
       progress.advance();
     }
   }
-  const results::RunSummary summary = writer.finish(
-      options.method.method, truth, run_json(options, *dataset, config, assumptions, truth_file, warnings));
+  const results::RunSummary summary =
+      writer.finish(options.method.method, truth, assumptions,
+                    run_json(options, *dataset, config, assumptions, truth_file, warnings));
   if (options.report) {
     write_report(output.path(), output.path() / "report.html");
   }

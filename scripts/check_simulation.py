@@ -11,7 +11,8 @@ Prints one row of a Markdown table for each sequence:
                    between two samples is off by up to 1e-3 m/s; the tests ask the trajectory itself)
   laid on next     median distance of static points of scan k, deskewed and moved by the true poses, from the planes
                    through the nearest points of scan k+1; with noise it is about the noise
-  range, Doppler   mean and standard deviation of measured minus true; Doppler without values off by more than 6 sigma
+  range, Doppler   mean and standard deviation of measured minus true, without values off by more than 6 sigma: mixed
+                   returns at edges and gross Doppler errors
   outliers         share of the Doppler values off by more than 6 sigma
 """
 import json
@@ -73,7 +74,7 @@ def distances_to_planes(points, cloud):
 def check(folder):
     folder = Path(folder)
     if not (folder / "truth").is_dir():
-        sys.exit(f"{folder}: no truth/; make the sequence with --point-truth")
+        sys.exit(f"{folder}: no truth/; make the sequence with --point-truth, one sensor and the layout dicp")
     scene = json.loads((folder / "scene.json").read_text())
     lidar = scene["rig"]["sensors"][0]
     motion = Motion(folder / "motion.csv")
@@ -82,6 +83,8 @@ def check(folder):
 
     static_doppler, laid = 0.0, []
     range_error, doppler_error = [], []
+    if len(scans) < 2 or any(len(scan.t) == 0 for scan in scans):
+        sys.exit(f"{folder}: expected at least two scans, none of them empty")
     for k, scan in enumerate(scans):
         inside = scan.t <= motion.t[-1]
         static = (scan.labels == 0) & inside

@@ -22,28 +22,6 @@ namespace fs = std::filesystem;
 constexpr std::int64_t kAssumedPeriodNs = 100'000'000;
 constexpr int kSearchDepth = 3;
 
-/// T_vehicle_sensor. The file calls it T_V_to_S, but it is applied to points of the sensor to get points of the
-/// vehicle.
-Eigen::Isometry3d read_calibration(const fs::path& path) {
-  try {
-    const nlohmann::json calibration = nlohmann::json::parse(formats::read_whole_file(path)).at("T_V_to_S");
-    const nlohmann::json& t = calibration.at("translation");
-    const nlohmann::json& q = calibration.at("quaternion");
-    const Eigen::Quaterniond rotation(q.at("w").get<double>(), q.at("x").get<double>(), q.at("y").get<double>(),
-                                      q.at("z").get<double>());
-    if (std::abs(rotation.norm() - 1.0) > 1e-3) {
-      throw DataError(fmt::format("{}: quaternion has length {:.4f}, expected 1", path.string(), rotation.norm()));
-    }
-    return Eigen::Translation3d(t.at("x").get<double>(), t.at("y").get<double>(), t.at("z").get<double>()) *
-           rotation.normalized();
-  } catch (const nlohmann::json::exception& error) {
-    throw DataError(
-        fmt::format("{}: expected {{\"T_V_to_S\": {{\"translation\": {{x, y, z}}, \"quaternion\": "
-                    "{{w, x, y, z}}}}}}: {}",
-                    path.string(), error.what()));
-  }
-}
-
 /// Seconds after the stamp, one float32 per point. Our own addition to the layout, for scans that take time.
 std::vector<double> read_times(const fs::path& path, std::size_t points) {
   const formats::RecordFile file = formats::read_record_file(path, sizeof(float));
@@ -157,6 +135,27 @@ fs::path find_dicp(const fs::path& input) {
     throw DataError(fmt::format("{}: holds several recordings, name one of them:{}", input.string(), names));
   }
   return found.empty() ? fs::path() : found.front();
+}
+
+Eigen::Isometry3d read_calibration(const fs::path& path) {
+  // The file calls it T_V_to_S, but it is applied to points of the sensor to get points of the vehicle.
+  try {
+    const nlohmann::json calibration = nlohmann::json::parse(formats::read_whole_file(path)).at("T_V_to_S");
+    const nlohmann::json& t = calibration.at("translation");
+    const nlohmann::json& q = calibration.at("quaternion");
+    const Eigen::Quaterniond rotation(q.at("w").get<double>(), q.at("x").get<double>(), q.at("y").get<double>(),
+                                      q.at("z").get<double>());
+    if (std::abs(rotation.norm() - 1.0) > 1e-3) {
+      throw DataError(fmt::format("{}: quaternion has length {:.4f}, expected 1", path.string(), rotation.norm()));
+    }
+    return Eigen::Translation3d(t.at("x").get<double>(), t.at("y").get<double>(), t.at("z").get<double>()) *
+           rotation.normalized();
+  } catch (const nlohmann::json::exception& error) {
+    throw DataError(
+        fmt::format("{}: expected {{\"T_V_to_S\": {{\"translation\": {{x, y, z}}, \"quaternion\": "
+                    "{{w, x, y, z}}}}}}: {}",
+                    path.string(), error.what()));
+  }
 }
 
 std::unique_ptr<Dataset> open_dicp(const fs::path& folder) { return std::make_unique<DicpDataset>(folder); }

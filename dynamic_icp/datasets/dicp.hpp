@@ -20,4 +20,7 @@ std::filesystem::path find_dicp(const std::filesystem::path& input);
 /// Scans are ordered by the number in their file name. Without ref_poses.txt a period of 0.1 s is assumed.
 std::unique_ptr<Dataset> open_dicp(const std::filesystem::path& folder);
 
+/// T_vehicle_sensor from a calibration.json of this layout. Throws DataError naming the file and what was expected.
+Eigen::Isometry3d read_calibration(const std::filesystem::path& path);
+
 }  // namespace dynamic_icp::datasets

@@ -112,6 +112,8 @@ std::string_view to_string(EgoVelocityStatus status) {
       return "iteration_limit";
     case EgoVelocityStatus::kTooFewPoints:
       return "too_few_points";
+    case EgoVelocityStatus::kFromMotion:
+      return "from_motion";
     case EgoVelocityStatus::kDegenerate:
       return "degenerate";
   }

@@ -25,6 +25,7 @@ enum class EgoVelocityStatus {
   kConverged,
   kIterationLimit,
   kTooFewPoints,  ///< fewer than three: the velocity is the prior
+  kFromMotion,    ///< not from the Doppler: the motion between two scans, for methods that do not look for it
   kDegenerate,    ///< the lines of sight leave directions open: along those the velocity is the prior's
 };
 

@@ -142,7 +142,7 @@ void for_each_line(const fs::path& path, const Use& use) {
 /// The ego velocity, NaN where it could not be estimated and zeros stand in the file.
 Eigen::Vector3d ego_velocity(const Row& row) {
   const std::string status = row.has("ego_velocity_status") ? row.text("ego_velocity_status") : "converged";
-  const bool estimated = status == "converged" || status == "iteration_limit";
+  const bool estimated = status == "converged" || status == "iteration_limit" || status == "from_motion";
   return estimated ? row.vector("ego_velocity") : unknown_vector();
 }
 

@@ -25,9 +25,9 @@ ConfigFields fields(DopplerIcpConfig& config) {
   return {
       {"doppler_weight", &config.doppler_weight, 0.0, 0.999, "", "doppler-icp: share of the Doppler term (lambda)"},
       {"tukey_geometry_m", &config.tukey_geometry_m, 1e-6, 1e3, "m",
-       "doppler-icp: point-to-plane residuals beyond this have no weight"},
+       "doppler-icp: point-to-plane residuals times the root of their share have no weight beyond this"},
       {"tukey_doppler_mps", &config.tukey_doppler_mps, 1e-6, 1e3, "m/s",
-       "doppler-icp: Doppler residuals beyond this have no weight"},
+       "doppler-icp: Doppler residuals times the root of their share have no weight beyond this"},
       {"reject_doppler_mps", &config.reject_doppler_mps, 1e-6, 1e3, "m/s",
        "doppler-icp: pairs with a larger Doppler residual are left out"},
       {"robust_from_iteration", &config.robust_from_iteration, 0, 10000, "",

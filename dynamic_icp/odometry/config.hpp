@@ -40,7 +40,8 @@ struct IcpConfig {
   bool constant_velocity_start = false;  ///< start from the last motion instead of the identity
 };
 
-/// Of doppler-icp, with its published values.
+/// Of doppler-icp, with its published values. The scales of the kernels are meant for residuals that are multiplied by
+/// the root of their share of the objective.
 struct DopplerIcpConfig {
   double doppler_weight = 0.01;
   double tukey_geometry_m = 0.5;

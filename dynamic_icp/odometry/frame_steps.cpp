@@ -43,6 +43,13 @@ FrameStatus frame_status(registration::AlignStatus status) {
   return FrameStatus::kNotRun;
 }
 
+void tell_velocity_from_motion(Frame& frame, double dt_s) {
+  if (is_aligned(frame.status)) {
+    frame.ego.status = ego_motion::EgoVelocityStatus::kFromMotion;
+    frame.ego.velocity_sensor = -frame.T_target_source.translation() / dt_s;
+  }
+}
+
 bool is_aligned(FrameStatus status) {
   return status == FrameStatus::kConverged || status == FrameStatus::kIterationLimit;
 }

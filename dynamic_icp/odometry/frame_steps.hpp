@@ -21,6 +21,10 @@ Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame
 /// What an alignment's status means for the frame.
 FrameStatus frame_status(registration::AlignStatus status);
 
+/// The velocity of the sensor as the motion from the last scan, where that was aligned: for methods that do not look
+/// for the velocity itself.
+void tell_velocity_from_motion(Frame& frame, double dt_s);
+
 /// Whether the pose comes from an alignment, converged or not.
 bool is_aligned(FrameStatus status);
 

@@ -6,9 +6,9 @@
 
 namespace dynamic_icp::odometry {
 
-/// The settings of KISS-ICP with the defaults its authors published.
+/// The settings of KISS-ICP with the defaults of its authors' releases 0.2.10 to 1.2.0.
 struct KissConfig {
-  bool deskew = true;
+  bool deskew = false;
   double min_range_m = 5.0;
   double max_range_m = 100.0;
   double voxel_size_m = 1.0;  ///< published: a hundredth of max_range_m

@@ -38,21 +38,14 @@ class ScanToMap final : public registration::Problem {
     workers_.for_each(source_.size(), kBlock, [&](std::size_t i) {
       nearest[i] = map_.nearest(T_world_source * source_.points()[i], max_distance_m_);
     });
-    registration::Correspondences result;
-    result.pairs.reserve(source_.size());
-    double sum = 0.0;
+    std::vector<registration::Correspondence> pairs;
+    pairs.reserve(source_.size());
     for (std::uint32_t i = 0; i < source_.size(); ++i) {
       if (nearest[i]) {
-        result.pairs.push_back({i, nearest[i]->index, nearest[i]->squared_distance});
-        sum += nearest[i]->squared_distance;
+        pairs.push_back({i, nearest[i]->index, nearest[i]->squared_distance});
       }
     }
-    if (!result.pairs.empty()) {
-      const auto count = static_cast<double>(result.pairs.size());
-      result.fitness = count / static_cast<double>(source_.size());
-      result.inlier_rmse = std::sqrt(sum / count);
-    }
-    return result;
+    return registration::judged(std::move(pairs), source_.size());
   }
 
   [[nodiscard]] registration::Linearisation linearise(const registration::Correspondences& correspondences,
@@ -88,15 +81,6 @@ const KissConfig& checked(const Config& config) {
   return config.kiss;
 }
 
-/// Root mean square distance of the points from the sensor; the scan is not empty.
-double typical_distance(const Scan& scan) {
-  double sum = 0.0;
-  for (const Eigen::Vector3d& point : scan.points()) {
-    sum += point.squaredNorm();
-  }
-  return std::max(1e-3, std::sqrt(sum / static_cast<double>(scan.size())));
-}
-
 }  // namespace
 
 ThinnedScan thin(const Scan& scan, double map_voxel_size_m) {
@@ -122,7 +106,7 @@ Frame KissIcp::process(const RawScan& raw) {
   frame.points_used = source.size();
   clock.finish(Stage::kPreprocess);
 
-  last_stamp_ = raw.stamp;
+  const std::optional<Stamp> before = std::exchange(last_stamp_, raw.stamp);
   const Eigen::Isometry3d T_world_predicted = T_world_last_.value_or(Eigen::Isometry3d::Identity()) * T_last_now_;
   frame.T_world_sensor = T_world_predicted;
   if (source.size() < static_cast<std::size_t>(min_points_)) {
@@ -141,6 +125,9 @@ Frame KissIcp::process(const RawScan& raw) {
     register_to_map(source, T_world_predicted, frame);
   }
   continue_from(T_world_last_.value_or(frame.T_world_sensor), frame);
+  if (before) {
+    tell_velocity_from_motion(frame, seconds_between(*before, raw.stamp));
+  }
   update_map(scan.map_points, frame.T_world_sensor);
   clock.finish(Stage::kRegistration);
   return frame;
@@ -165,7 +152,8 @@ void KissIcp::register_to_map(const Scan& source, const Eigen::Isometry3d& T_wor
   stop.max_iterations = config_.max_iterations;
   stop.min_step = config_.min_step;
   ScanToMap problem(source, map_, T_world_predicted, threshold_.sigma_m(), workers_);
-  frame.alignment = registration::minimise(problem, Eigen::Isometry3d::Identity(), typical_distance(source), stop);
+  frame.alignment =
+      registration::minimise(problem, Eigen::Isometry3d::Identity(), registration::typical_distance(source), stop);
   frame.status = frame_status(frame.alignment.status);
   Eigen::Isometry3d T_predicted_registered = Eigen::Isometry3d::Identity();
   if (is_aligned(frame.status)) {
@@ -186,7 +174,7 @@ void KissIcp::update_map(const Scan& points, const Eigen::Isometry3d& T_world_se
 }
 
 /// Makes the frame's pose the last one and its motion from `T_world_before` the prediction of the next.
-void KissIcp::continue_from(const Eigen::Isometry3d& T_world_before, Frame& frame) {
+void KissIcp::continue_from(Eigen::Isometry3d T_world_before, Frame& frame) {
   // Each pose is a product of the two before it: what a rotation lacks in orthogonality would grow exponentially.
   frame.T_world_sensor.linear() = Eigen::Quaterniond(frame.T_world_sensor.linear()).normalized().toRotationMatrix();
   T_last_now_ = T_world_before.inverse() * frame.T_world_sensor;

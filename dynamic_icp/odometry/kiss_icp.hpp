@@ -24,10 +24,11 @@ ThinnedScan thin(const Scan& scan, double map_voxel_size_m);
 /// preprocessing: of `Config` it takes `kiss` and `min_points` alone. It knows no time between scans, which are taken
 /// as evenly spaced; stamps only have to increase.
 ///
-/// In three details it is not its authors' program: voxels are told apart by rounding down, also below zero, and keep
-/// the first point in the order of the scan; a point without neighbours has no correspondence; and steps are taken
-/// about the predicted pose instead of the origin of the world, so that the stopping rule means the same all along a
-/// drive.
+/// Rules and defaults are those of its authors' releases 0.2.10 to 1.2.0. In details it is not their program: voxels
+/// are told apart by rounding down, also below zero, and keep the first point in the order of the scan; a point without
+/// neighbours has no correspondence; steps are taken about the predicted pose instead of the origin of the world, so
+/// that the stopping rule means the same all along a drive; deskewing begins with the third scan instead of the fourth;
+/// fewer than 6 correspondences are a failure.
 ///
 /// What its frames say:
 ///   - The pose is that of the sensor in the frame of the first usable scan. For a scan that is deskewed it is the pose
@@ -36,7 +37,7 @@ ThinnedScan thin(const Scan& scan, double map_voxel_size_m);
 ///   - `alignment` is that of the scan to the map in the frame of the predicted pose; its `T_target_source` is the
 ///     correction of the prediction.
 ///   - `points_used` and the label 0 stand for the points that are registered. More of them enter the map.
-///   - There are no objects and no velocity.
+///   - There are no objects; the velocity is the motion from the last scan.
 class KissIcp final : public Odometry {
  public:
   /// `threads` = 0 takes as many as the machine has. Throws UsageError when the configuration is out of range.
@@ -49,7 +50,7 @@ class KissIcp final : public Odometry {
   [[nodiscard]] Scan deskewed_in_range(const RawScan& raw, Frame& frame) const;
   void register_to_map(const Scan& source, const Eigen::Isometry3d& T_world_predicted, Frame& frame);
   void update_map(const Scan& points, const Eigen::Isometry3d& T_world_sensor);
-  void continue_from(const Eigen::Isometry3d& T_world_sensor, Frame& frame);
+  void continue_from(Eigen::Isometry3d T_world_before, Frame& frame);
 
   KissConfig config_;
   int min_points_;

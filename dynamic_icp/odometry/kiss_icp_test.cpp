@@ -273,9 +273,9 @@ TEST(KissIcp, RefusesConfigurationsOutOfRange) {
   EXPECT_THROW(KissIcp(config, 1), UsageError);
 }
 
-TEST(KissIcp, HasThePublishedDefaults) {
+TEST(KissIcp, HasTheDefaultsOfReleaseOneTwo) {
   const KissConfig kiss;
-  EXPECT_TRUE(kiss.deskew);
+  EXPECT_FALSE(kiss.deskew);
   EXPECT_EQ(kiss.min_range_m, 5.0);
   EXPECT_EQ(kiss.max_range_m, 100.0);
   EXPECT_EQ(kiss.voxel_size_m, kiss.max_range_m / 100.0);

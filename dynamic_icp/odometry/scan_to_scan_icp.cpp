@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/odometry/scan_to_scan_icp.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include "dynamic_icp/odometry/frame_steps.hpp"
@@ -41,8 +42,11 @@ void tell_in_sensor_frame(registration::Alignment& alignment, const Eigen::Isome
     alignment.covariance = A * *alignment.covariance * A.transpose();
   }
   for (estimation::DegenerateDirection& direction : alignment.degenerate) {
-    direction.direction.head<3>() = T_sensor_vehicle.linear() * direction.direction.head<3>().eval();
-    direction.direction.tail<3>() = T_sensor_vehicle.linear() * direction.direction.tail<3>().eval();
+    Vector6d xi = direction.direction;
+    xi.head<3>() /= alignment.length_m;
+    xi = adjoint(T_sensor_vehicle) * xi;
+    xi.head<3>() *= alignment.length_m;
+    direction.direction = xi.normalized();
   }
 }
 
@@ -66,7 +70,7 @@ ScanToScanIcp::~ScanToScanIcp() = default;
 
 std::vector<std::string> ScanToScanIcp::assumptions() const {
   if (method_ == ScanToScanMethod::kDopplerIcp && !T_vehicle_sensor_) {
-    return {"doppler-icp needs the mounting of the sensor and the recording has no calibration: the identity is taken"};
+    return {"doppler-icp needs the mounting of the sensor and was given no calibration: the identity is taken"};
   }
   return {};
 }
@@ -108,8 +112,7 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
   if (last_) {
     const double dt_s = seconds_between(last_->scan.stamp(), raw.stamp);
     now->twist = log_se3(frame.T_target_source) / dt_s;
-    // These methods do not look for the velocity: it is the motion between the scans.
-    frame.ego.velocity_sensor = -frame.T_target_source.translation() / dt_s;
+    tell_velocity_from_motion(frame, dt_s);
   }
   last_ = std::move(now);
   return frame;
@@ -172,8 +175,12 @@ registration::Objective ScanToScanIcp::objective(double dt_s) const {
     case ScanToScanMethod::kDopplerIcp:
       objective.doppler = registration::DopplerTerm::kSensorVelocity;
       objective.doppler_weight = config_.doppler_icp.doppler_weight;
-      objective.tukey_geometry_m = config_.doppler_icp.tukey_geometry_m;
-      objective.tukey_doppler_mps = config_.doppler_icp.tukey_doppler_mps;
+      // Published: a row is scaled by the root of its share before the kernel sees it. A residual without that factor
+      // meets a kernel that is wider by it.
+      objective.tukey_geometry_m = config_.doppler_icp.tukey_geometry_m / std::sqrt(1.0 - objective.doppler_weight);
+      if (objective.doppler_weight > 0.0) {
+        objective.tukey_doppler_mps = config_.doppler_icp.tukey_doppler_mps / std::sqrt(objective.doppler_weight);
+      }
       objective.tukey_doppler_from_iteration = config_.doppler_icp.robust_from_iteration;
       objective.reject_doppler_mps = config_.doppler_icp.reject_doppler_mps;
       objective.reject_from_iteration = config_.doppler_icp.robust_from_iteration;

@@ -91,6 +91,20 @@ TEST(ScanToScanIcp, DopplerIcpRecoversAStraightMotionWithATurnedAndOffsetMountin
   }
 }
 
+TEST(ScanToScanIcp, DopplerKernelIsMeantForTheScaledResidual) {
+  // 0.2 on a residual times sqrt(0.01) is 2 m/s: Dopplers that are off by 0.5 m/s still count.
+  const Hall hall(6000);
+  RawScan first = hall.scan({0}, Eigen::Isometry3d::Identity(), Vector3d::Zero());
+  for (double& doppler : first.doppler) {
+    doppler += 0.5;
+  }
+  ScanToScanIcp odometry(ScanToScanMethod::kDopplerIcp, dense(), {}, 1);
+  (void)odometry.process(first);
+  const Frame frame = odometry.process(hall.scan({100'000'000}, Eigen::Isometry3d::Identity(), Vector3d::Zero()));
+  ASSERT_GT(frame.alignment.iterations, 2);
+  EXPECT_GT(frame.alignment.doppler.inliers, 5900U);
+}
+
 TEST(ScanToScanIcp, DopplerIcpSaysWhenItHasNoMounting) {
   EXPECT_EQ(ScanToScanIcp(ScanToScanMethod::kDopplerIcp, {}, {}).assumptions().size(), 1U);
   EXPECT_TRUE(ScanToScanIcp(ScanToScanMethod::kGicp, {}, {}).assumptions().empty());

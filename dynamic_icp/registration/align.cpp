@@ -4,18 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace dynamic_icp::registration {
 namespace {
-
-/// Root mean square distance of the points from the sensor: the lever through which a rotation moves them.
-double typical_distance(const Scan& scan) {
-  double sum = 0.0;
-  for (const Eigen::Vector3d& point : scan.points()) {
-    sum += point.squaredNorm();
-  }
-  return scan.empty() ? 1.0 : std::max(1e-3, std::sqrt(sum / static_cast<double>(scan.size())));
-}
 
 /// Two scans and what is minimised between them.
 class ScanToScan : public Problem {
@@ -42,6 +34,22 @@ class ScanToScan : public Problem {
   const Workers& workers_;
   CorrespondenceSearch search_;
 };
+
+void check_inputs(const Source& source, const Target& target, const Objective& objective) {
+  const bool target_normals =
+      target.normals.size() == target.scan.size() && target.has_normal.size() == target.scan.size();
+  const bool source_normals =
+      source.normals.size() == source.scan.size() && source.has_normal.size() == source.scan.size();
+  if (objective.geometry != GeometryTerm::kPointToPoint && !target_normals) {
+    throw std::invalid_argument("align: this objective needs a normal for each target point");
+  }
+  if (objective.geometry == GeometryTerm::kPlaneToPlane && !(source_normals && objective.thickness > 0.0)) {
+    throw std::invalid_argument("align: plane-to-plane needs a normal for each source point and a thickness above 0");
+  }
+  if (objective.doppler == DopplerTerm::kSensorVelocity && !(objective.vehicle.dt_s > 0.0)) {
+    throw std::invalid_argument("align: the time between the scans must be above 0");
+  }
+}
 
 }  // namespace
 
@@ -79,6 +87,7 @@ StopRule stop_rule(const AlignConfig& config) {
 Alignment align(const Source& source, const Target& target, const Eigen::Isometry3d& T_initial,
                 const Objective& objective, double max_correspondence_distance_m, const StopRule& stop,
                 const Workers& workers) {
+  check_inputs(source, target, objective);
   ScanToScan problem(source, target, objective, max_correspondence_distance_m, workers);
   return minimise(problem, T_initial, typical_distance(source.scan), stop);
 }

@@ -33,7 +33,7 @@ StopRule stop_rule(const AlignConfig& config);
 
 /// Aligns two scans: each iteration pairs every source point with its nearest target point within
 /// `max_correspondence_distance_m` and makes a Gauss-Newton step of the objective. The result is the same bits for any
-/// number of threads.
+/// number of threads. Throws std::invalid_argument where normals are missing or the objective is impossible.
 Alignment align(const Source& source, const Target& target, const Eigen::Isometry3d& T_initial,
                 const Objective& objective, double max_correspondence_distance_m, const StopRule& stop,
                 const Workers& workers);

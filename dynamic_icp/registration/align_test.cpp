@@ -374,5 +374,41 @@ TEST(AlignTerms, PairsWithAWrongDopplerAreRejectedFromTheGivenIterationOn) {
   EXPECT_EQ(linearise(source, room.target(), pairs, T, objective, 2, workers).doppler.count, 200U);
 }
 
+TEST(AlignTerms, AStepThatLosesAllPairsIsNoAlignment) {
+  // Nearly parallel normals leave two translations and a rotation to noise: one step throws the scan far away.
+  Room room(1, 300, 0.05, true);
+  const Room other(2, 300, 0.05, true);
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  for (Vector3d& n : room.normals) {
+    n = (Vector3d::UnitZ() + 1e-4 * Vector3d(normal(random), normal(random), normal(random))).normalized();
+  }
+  AlignConfig config;
+  config.doppler_weight = 0.0;
+  config.max_iterations = 1;
+  config.max_correspondence_distance_m = 1.0;
+  config.rank_tolerance = 0.0;
+  const Alignment result = align(other.scan, room.target(), Eigen::Isometry3d::Identity(), config, Workers(1));
+  ASSERT_EQ(result.correspondences, 0U);
+  EXPECT_EQ(result.status, AlignStatus::kTooFewCorrespondences);
+}
+
+TEST(AlignTerms, MissingNormalsAndImpossibleObjectivesAreRefused) {
+  const Room room(1, 300);
+  const auto run = [&](const Objective& objective, const Target& target) {
+    (void)align(Source{room.scan}, target, Eigen::Isometry3d::Identity(), objective, 0.3, {}, Workers(1));
+  };
+  Objective objective;
+  const Target bare{room.scan, *room.tree, {}, {}};
+  EXPECT_THROW(run(objective, bare), std::invalid_argument);
+  objective.geometry = GeometryTerm::kPlaneToPlane;
+  EXPECT_THROW(run(objective, room.target()), std::invalid_argument) << "the source has no normals";
+  objective.geometry = GeometryTerm::kPointToPoint;
+  EXPECT_NO_THROW(run(objective, bare));
+  objective.doppler = DopplerTerm::kSensorVelocity;
+  objective.vehicle.dt_s = 0.0;
+  EXPECT_THROW(run(objective, bare), std::invalid_argument);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::registration

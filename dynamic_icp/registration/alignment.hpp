@@ -32,6 +32,7 @@ struct Alignment {
   std::size_t correspondences = 0;
   TermStatistics geometry;         ///< m
   TermStatistics doppler;          ///< m/s; count 0 when the term is off
+  double length_m = 1.0;           ///< makes rotations and translations comparable: typical distance of the points
   double information_ratio = 0.0;  ///< least over best constrained direction, of the scaled normal equations
   std::vector<estimation::DegenerateDirection> degenerate;  ///< empty unless the status says so
   /// Of the left perturbation [omega (rad); rho (m)] in the target frame; absent when it cannot be stated. It is

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace dynamic_icp::registration {
 namespace {
@@ -24,6 +25,21 @@ double squared_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
 }
 
 }  // namespace
+
+Correspondences judged(std::vector<Correspondence> pairs, std::size_t source_size) {
+  Correspondences result;
+  result.pairs = std::move(pairs);
+  double sum = 0.0;
+  for (const Correspondence& pair : result.pairs) {
+    sum += pair.squared_distance;
+  }
+  if (!result.pairs.empty()) {
+    const auto count = static_cast<double>(result.pairs.size());
+    result.fitness = count / static_cast<double>(source_size);
+    result.inlier_rmse = std::sqrt(sum / count);
+  }
+  return result;
+}
 
 CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& target, double max_distance_m,
                                            bool needs_normals, const Workers& workers)
@@ -72,21 +88,14 @@ Correspondences CorrespondenceSearch::find(const Eigen::Isometry3d& T_target_sou
       }
     }
   });
-  Correspondences result;
-  result.pairs.reserve(source_.size());
-  double sum = 0.0;
+  std::vector<Correspondence> pairs;
+  pairs.reserve(source_.size());
   for (std::uint32_t i = 0; i < source_.size(); ++i) {
     if (squared[i] >= 0.0 && squared[i] <= gate) {
-      result.pairs.push_back({i, known_[i].nearest, squared[i]});
-      sum += squared[i];
+      pairs.push_back({i, known_[i].nearest, squared[i]});
     }
   }
-  if (!result.pairs.empty()) {
-    const auto count = static_cast<double>(result.pairs.size());
-    result.fitness = count / static_cast<double>(source_.size());
-    result.inlier_rmse = std::sqrt(sum / count);
-  }
-  return result;
+  return judged(std::move(pairs), source_.size());
 }
 
 }  // namespace dynamic_icp::registration

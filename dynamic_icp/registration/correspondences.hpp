@@ -37,6 +37,9 @@ struct Correspondences {
   double inlier_rmse = 0.0;           ///< m, root mean square distance of the pairs; 0 without pairs
 };
 
+/// Pairs in the order of the source rows, with their fitness and inlier RMSE.
+Correspondences judged(std::vector<Correspondence> pairs, std::size_t source_size);
+
 /// Pairs each source point, moved by T_target_source, with the nearest target point at most `max_distance_m` away.
 /// A source point whose nearest target point has no normal stays alone: it gets no second choice.
 ///

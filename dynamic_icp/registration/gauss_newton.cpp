@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/registration/gauss_newton.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -41,10 +42,19 @@ void describe_fit(Alignment& result, const Problem& problem, const Correspondenc
 
 }  // namespace
 
+double typical_distance(const Scan& scan) {
+  double sum = 0.0;
+  for (const Eigen::Vector3d& point : scan.points()) {
+    sum += point.squaredNorm();
+  }
+  return scan.empty() ? 1.0 : std::max(1e-3, std::sqrt(sum / static_cast<double>(scan.size())));
+}
+
 Alignment minimise(Problem& problem, const Eigen::Isometry3d& T_initial, double length_m, const StopRule& stop) {
   Alignment result;
   result.T_target_source = T_initial;
   result.status = AlignStatus::kIterationLimit;
+  result.length_m = length_m;
 
   Correspondences current = problem.find(result.T_target_source);
   while (result.iterations < stop.max_iterations) {
@@ -70,6 +80,9 @@ Alignment minimise(Problem& problem, const Eigen::Isometry3d& T_initial, double 
       result.status = AlignStatus::kConverged;
       break;
     }
+  }
+  if (result.status == AlignStatus::kIterationLimit && !enough(current, stop)) {
+    result.status = AlignStatus::kTooFewCorrespondences;  // the last step threw the pose away
   }
   renormalise(result.T_target_source);
   describe_fit(result, problem, current, length_m, stop.rank_tolerance);

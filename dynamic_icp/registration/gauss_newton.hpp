@@ -32,6 +32,9 @@ struct StopRule {
   double rank_tolerance = 1e-12;
 };
 
+/// Root mean square distance of the points from the sensor: the lever through which a rotation moves them.
+double typical_distance(const Scan& scan);
+
 /// The ICP loop: correspondences, linearisation, one Gauss-Newton step, until a stopping rule holds. `length_m` is the
 /// distance through which a rotation typically moves the points; it makes rotations and translations comparable.
 Alignment minimise(Problem& problem, const Eigen::Isometry3d& T_initial, double length_m, const StopRule& stop);

@@ -100,13 +100,14 @@ Linearisation linearise(const Source& source, const Target& target, const Corres
   const double tukey_doppler = iteration >= objective.tukey_doppler_from_iteration
                                    ? objective.tukey_doppler_mps
                                    : std::numeric_limits<double>::infinity();
-  const bool rejects = iteration >= objective.reject_from_iteration && std::isfinite(objective.reject_doppler_mps);
+  const bool rejects = objective.doppler != DopplerTerm::kNone && iteration >= objective.reject_from_iteration &&
+                       std::isfinite(objective.reject_doppler_mps);
   const std::vector<Correspondence>& pairs = correspondences.pairs;
   const LinearisationSum sum =
       workers.sum_blocks(pairs.size(), kBlock, LinearisationSum{}, [&](std::size_t begin, std::size_t end) {
         LinearisationSum part;
         for (std::size_t k = begin; k < end; ++k) {
-          const Residual doppler = with_doppler ? terms.doppler(pairs[k]) : Residual{};
+          const Residual doppler = with_doppler || rejects ? terms.doppler(pairs[k]) : Residual{};
           if (rejects && std::abs(doppler.value) > objective.reject_doppler_mps) {
             continue;
           }

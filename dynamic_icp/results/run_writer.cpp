@@ -94,8 +94,9 @@ void RunWriter::add(std::size_t index, const odometry::Frame& frame) {
 }
 
 RunSummary RunWriter::finish(const std::string& method, const formats::Trajectory& ground_truth,
-                             const std::string& run_json) {
+                             const std::vector<std::string>& assumptions, const std::string& run_json) {
   RunSummary summary;
+  summary.assumptions = assumptions;
   summary.method = method;
   summary.frames = trajectory_.size();
   if (!ground_truth.empty() && !trajectory_.empty()) {
@@ -156,7 +157,8 @@ std::string summary_json(const RunSummary& summary) {
                                        {"clustered_ratio_mean", number(summary.clustered_ratio_mean)},
                                        {"refined_ratio_mean", number(summary.refined_ratio_mean)},
                                        {"matched_poses", accuracy.matched},
-                                       {"statuses", statuses}};
+                                       {"statuses", statuses},
+                                       {"assumptions", summary.assumptions}};
   return json.dump(2);
 }
 

@@ -30,6 +30,7 @@ struct RunSummary {
   std::optional<double> dynamic_ratio_max;
   std::optional<double> clustered_ratio_mean;  ///< clustered over dynamic candidates
   std::optional<double> refined_ratio_mean;    ///< in an accepted object over clustered, as the paper tabulates it
+  std::vector<std::string> assumptions;        ///< what had to be taken for granted about recording and method
   std::vector<std::pair<std::string, std::size_t>> status_counts;  ///< frames per status, as they first occurred
 };
 
@@ -43,7 +44,8 @@ class RunWriter {
   void add(std::size_t index, const odometry::Frame& frame);
 
   /// Writes what is left. `ground_truth` may be empty. `run_json` is the content of run.json.
-  RunSummary finish(const std::string& method, const formats::Trajectory& ground_truth, const std::string& run_json);
+  RunSummary finish(const std::string& method, const formats::Trajectory& ground_truth,
+                    const std::vector<std::string>& assumptions, const std::string& run_json);
 
  private:
   std::filesystem::path folder_;

@@ -66,7 +66,7 @@ TEST_F(RunWriterTest, WritesTheFilesOfTheContract) {
   writer.add(1, second);
   const formats::Trajectory truth = {{first.stamp, Eigen::Isometry3d::Identity()},
                                      {second.stamp, Eigen::Isometry3d(Eigen::Translation3d(1.1, 0.0, 0.0))}};
-  const RunSummary summary = writer.finish("dynamic-icp", truth, "{}\n");
+  const RunSummary summary = writer.finish("dynamic-icp", truth, {"taken for granted"}, "{}\n");
 
   EXPECT_NEAR(*summary.accuracy.rte_rmse_m, 0.1, 1e-12);
   EXPECT_EQ(*summary.mean_iterations, 7.0);
@@ -104,7 +104,7 @@ TEST_F(RunWriterTest, WritesTheFilesOfTheContract) {
 TEST_F(RunWriterTest, WithoutTruthOrFramesNumbersAreNull) {
   RunWriter writer(folder_, false);
   writer.add(0, frame_at(0, 0.0, odometry::FrameStatus::kFirst));
-  const json stored = json::parse(summary_json(writer.finish("dynamic-icp", {}, "{}\n")));
+  const json stored = json::parse(summary_json(writer.finish("dynamic-icp", {}, {}, "{}\n")));
   for (const char* key : {"rte_rmse_m", "rre_rmse_deg", "ate_rmse_m", "path_length_m", "mean_iterations",
                           "convergence_rate", "refined_ratio_mean"}) {
     EXPECT_TRUE(stored[key].is_null()) << key;

@@ -31,7 +31,7 @@ ConfigFields fields(FmcwLidarConfig& config) {
        "the angle of incidence counts towards detection; if not, all surfaces are met head-on"},
       {"dropout_rate", &config.dropout_rate, 0.0, 1.0, "", "share of returns that are lost whatever they met"},
       {"beam_divergence_mrad", &config.beam_divergence_mrad, 0.0, 100.0, "mrad",
-       "full width of the beam; at edges both surfaces return"},
+       "full width of the beam; at edges the stronger surface returns, or a mixture of both"},
       {"range_resolution_m", &config.range_resolution_m, 0.0, 100.0, "m",
        "two surfaces in one beam that are nearer to each other than this give one mixed return between them"},
       {"rain_rate", &config.rain_rate, 0.0, 1.0, "", "share of rays that meet a drop within a long way"},

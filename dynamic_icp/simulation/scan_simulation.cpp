@@ -87,7 +87,7 @@ class RayMeasurement {
     const double elevation = ray.elevation_rad + scatter(random, kScatterUp);
     const std::optional<Return> found = find_return(moment, azimuth, elevation, random);
     if (!found || random.uniform(kDropout) < config_.dropout_rate ||
-        random.uniform(kDetection) >= found_probability(*found)) {
+        !(random.uniform(kDetection) < found_probability(*found))) {
       return;
     }
     const double range = measured_range(*found, random);
@@ -210,7 +210,8 @@ class RayMeasurement {
     if (std::abs(on_axis.true_range - aside.true_range) > config_.range_resolution_m) {
       return stronger;
     }
-    const double w = power_aside / (power + power_aside);
+    const double both = power + power_aside;
+    const double w = both > 0.0 ? power_aside / both : share_aside;  // black surfaces have no power to compare
     stronger.kind = ReturnKind::kMixed;
     stronger.echo.range_m = (1.0 - w) * on_axis.true_range + w * aside.true_range;
     stronger.echo.beam_share = 1.0;

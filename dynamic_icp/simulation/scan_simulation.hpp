@@ -25,16 +25,17 @@ enum class ReturnKind : std::uint8_t {
 /// Label of returns that belong to no body and to no static surface.
 constexpr std::int32_t kNoBody = -1;
 
-/// A scan as measured, with the truth of each point. All columns have the same length, in the order of the pattern.
+/// A scan as measured, with the truth of each point: that of the surface or drop that is seen, at an edge of the
+/// stronger of two. All columns have the same length, in the order of the pattern.
 struct SimulatedScan {
   RawScan measured;                  ///< in the sensor frame at each ray's own time; `times` are filled
   std::vector<float> reflectivity;   ///< of the surface, see world::TriangleMesh; 0 for rain
   std::vector<float> intensity_db;   ///< strength of the return over a 10 % surface head-on at 1 m
   std::vector<std::uint16_t> lines;  ///< row of the pattern, 0 at the top
-  std::vector<std::int32_t> bodies;  ///< id of the body on the ray's axis; 0 static surface, kNoBody rain
+  std::vector<std::int32_t> bodies;  ///< id of the body seen; 0 static surface, kNoBody rain
   std::vector<ReturnKind> kinds;
-  std::vector<double> true_range;    ///< m, of what the ray's axis meets
-  std::vector<double> true_doppler;  ///< m/s, of what the ray's axis meets, positive away
+  std::vector<double> true_range;    ///< m, of what is seen
+  std::vector<double> true_doppler;  ///< m/s, of what is seen, positive away
 };
 
 /// The true range rate (m/s, positive away) of a surface point seen along `direction_world`:

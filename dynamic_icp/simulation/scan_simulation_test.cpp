@@ -339,6 +339,17 @@ TEST(SimulateScan, BeamsOnAnEdgeGiveMixedReturns) {
               share_error(2.0 / 3.0, static_cast<double>(mixed)));
 }
 
+TEST(SimulateScan, BlackSurfacesGiveFiniteReturnsAtEdges) {
+  Edge edge(0.6);
+  edge.world.statics = painted(edge.world.statics, 0.0);
+  edge.caster = std::make_unique<world::RayCaster>(edge.world);
+  const SimulatedScan scan = edge.scan();
+  EXPECT_GT(std::count(scan.kinds.begin(), scan.kinds.end(), ReturnKind::kMixed), 0);
+  for (std::size_t i = 0; i < scan.bodies.size(); ++i) {
+    ASSERT_TRUE(scan.measured.points[i].allFinite() && std::isfinite(scan.measured.doppler[i]));
+  }
+}
+
 TEST(SimulateScan, ResolvedSurfacesAreNotMixed) {
   Edge edge(5.0);
   const SimulatedScan scan = edge.scan();
