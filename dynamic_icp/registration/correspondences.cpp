@@ -18,12 +18,6 @@ constexpr double kReachOverGate = 1.25;
 // Far more than the rounding of the distances compared, far less than any distance that matters.
 constexpr double kRounding_m = 1e-9;
 
-/// The same sum in the same order as the search tree forms it, so that a remembered pair has the same bits.
-double squared_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Vector3d d = a - b;
-  return (d.x() * d.x() + d.y() * d.y()) + d.z() * d.z();
-}
-
 }  // namespace
 
 Correspondences judged(std::vector<Correspondence> pairs, std::size_t source_size) {
@@ -84,7 +78,7 @@ Correspondences CorrespondenceSearch::find(const Eigen::Isometry3d& T_target_sou
       }
       const std::uint32_t j = known_[i].nearest;
       if (j != kNone && (!needs_normals_ || target_.has_normal[j] != 0)) {
-        squared[i] = squared_distance(point, target_.scan.points()[j]);
+        squared[i] = spatial::squared_distance(point, target_.scan.points()[j]);
       }
     }
   });

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include <Eigen/Core>
+
 namespace dynamic_icp::spatial {
 
 /// A point found by a search.
@@ -31,6 +33,13 @@ inline void insert_ordered(Neighbour* first, Neighbour* last, const Neighbour& c
     *last = last[-1];
   }
   *last = candidate;
+}
+
+/// The square of the distance of two points (m^2), its terms added in the same order everywhere: a distance that is
+/// computed again has the same bits.
+inline double squared_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  const Eigen::Vector3d d = a - b;
+  return (d.x() * d.x() + d.y() * d.y()) + d.z() * d.z();
 }
 
 /// The square of the distance at which a search ends: negative when nothing can be found, for negative distances and

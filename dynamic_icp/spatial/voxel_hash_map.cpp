@@ -23,11 +23,6 @@ std::uint64_t hash(const std::array<std::int32_t, 3>& cell) {
   return mixed;
 }
 
-double squared_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
-  const Eigen::Vector3d d = a - b;
-  return (d.x() * d.x() + d.y() * d.y()) + d.z() * d.z();
-}
-
 /// The 27 steps from a voxel to itself and its neighbours, itself first: what it holds is likely to be nearest, and
 /// most neighbours are then too far away to be looked into.
 constexpr std::array<std::array<std::int32_t, 3>, 27> steps() {
