@@ -12,6 +12,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/figures/run_context.hpp"
 #include "dynamic_icp/figures/run_figures.hpp"
+#include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 #include "apps/commands.hpp"
@@ -35,14 +36,6 @@ drawing::Theme theme_of(const std::string& name) {
   return drawing::theme(name == "light" ? drawing::Ground::kLight : drawing::Ground::kDark);
 }
 
-void create_folder(const fs::path& folder) {
-  std::error_code fault;
-  fs::create_directories(folder, fault);
-  if (fault) {
-    throw DataError(fmt::format("{}: cannot create the folder: {}", folder.string(), fault.message()));
-  }
-}
-
 int plot(const PlotOptions& options) {
   const drawing::Theme theme = theme_of(options.theme);
   if (options.frame && *options.frame < 0) {
@@ -53,7 +46,7 @@ int plot(const PlotOptions& options) {
       options.frame ? std::optional(static_cast<std::size_t>(*options.frame)) : std::nullopt;
   const figures::RunContext context = figures::read_context(run, frame);
   const fs::path folder = options.output.empty() ? run.folder / "plots" : fs::path(options.output);
-  create_folder(folder);
+  formats::make_folder(folder);
   for (const figures::Figure& figure : figures::draw_figures(run, context, theme)) {
     const fs::path file = folder / (figure.name + ".svg");
     formats::write_whole_file(file, figure.svg.document());

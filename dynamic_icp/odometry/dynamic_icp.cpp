@@ -103,21 +103,15 @@ void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock
   frame.alignment = registration::align(source, target, predicted_motion(frame.stamp), config_.registration,
                                         workers_);  // Eq. (12)-(14)
   const FrameStatus status = frame_status(frame.alignment.status);
-  if (is_aligned(status)) {
-    frame.status = status;
-    frame.T_target_source = frame.alignment.T_target_source;
-    frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
-  } else {
-    continue_motion(frame, status);
-  }
+  set_motion(frame, status, last_->T_world_sensor,
+             is_aligned(status) ? frame.alignment.T_target_source : predicted_motion(frame.stamp));
   clock.finish(Stage::kRegistration);
 }
 
 void DynamicIcp::continue_motion(Frame& frame, FrameStatus status) const {
   frame.status = status;
   if (last_) {
-    frame.T_target_source = predicted_motion(frame.stamp);
-    frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
+    set_motion(frame, status, last_->T_world_sensor, predicted_motion(frame.stamp));
   }
 }
 

@@ -43,6 +43,13 @@ FrameStatus frame_status(registration::AlignStatus status) {
   return FrameStatus::kNotRun;
 }
 
+void set_motion(Frame& frame, FrameStatus status, const Eigen::Isometry3d& T_world_last,
+                const Eigen::Isometry3d& T_target_source) {
+  frame.status = status;
+  frame.T_target_source = T_target_source;
+  frame.T_world_sensor = T_world_last * T_target_source.inverse();
+}
+
 void tell_velocity_from_motion(Frame& frame, double dt_s) {
   if (is_aligned(frame.status)) {
     frame.ego.status = ego_motion::EgoVelocityStatus::kFromMotion;

@@ -21,6 +21,10 @@ Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame
 /// What an alignment's status means for the frame.
 FrameStatus frame_status(registration::AlignStatus status);
 
+/// Sets status and motion of a frame: `T_target_source` from the last usable scan, which stands at `T_world_last`.
+void set_motion(Frame& frame, FrameStatus status, const Eigen::Isometry3d& T_world_last,
+                const Eigen::Isometry3d& T_target_source);
+
 /// The velocity of the sensor as the motion from the last scan, where that was aligned: for methods that do not look
 /// for the velocity itself.
 void tell_velocity_from_motion(Frame& frame, double dt_s);

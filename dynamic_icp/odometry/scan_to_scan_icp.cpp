@@ -62,8 +62,11 @@ struct ScanToScanIcp::Reference {
 
 ScanToScanIcp::ScanToScanIcp(ScanToScanMethod method, const Config& config, const Surroundings& surroundings,
                              int threads)
-    : method_(method), config_(config), T_vehicle_sensor_(surroundings.T_vehicle_sensor), workers_(threads) {
+    : method_(method), config_(config), workers_(threads) {
   check(config_);
+  if (method == ScanToScanMethod::kDopplerIcp) {
+    T_vehicle_sensor_ = surroundings.T_vehicle_sensor;
+  }
 }
 
 ScanToScanIcp::~ScanToScanIcp() = default;
@@ -90,9 +93,8 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
     frame.labels[record] = 0;
   }
 
-  const bool in_vehicle_frame = method_ == ScanToScanMethod::kDopplerIcp && T_vehicle_sensor_;
   auto now = std::make_unique<Reference>();
-  now->scan = in_vehicle_frame ? in_vehicle(scan, *T_vehicle_sensor_) : scan;
+  now->scan = T_vehicle_sensor_ ? in_vehicle(scan, *T_vehicle_sensor_) : scan;
   const spatial::KdTree tree(now->scan.points(), workers_);
   if (method_ != ScanToScanMethod::kPointToPoint) {
     now->normals = preprocess::estimate_normals(now->scan.points(), tree, config_.preprocess.normals, workers_);
@@ -123,31 +125,24 @@ void ScanToScanIcp::align_to_last(const Reference& now, const spatial::KdTree& t
   const registration::Source source{last_->scan, last_->normals.vectors, last_->normals.valid};
   const registration::Target target{now.scan, tree, now.normals.vectors, now.normals.valid};
   Eigen::Isometry3d T_initial = predicted_motion(frame.stamp);
-  const bool in_vehicle_frame = method_ == ScanToScanMethod::kDopplerIcp && T_vehicle_sensor_;
-  if (in_vehicle_frame) {
+  if (T_vehicle_sensor_) {
     T_initial = *T_vehicle_sensor_ * T_initial * T_vehicle_sensor_->inverse();
   }
   frame.alignment = registration::align(source, target, T_initial, objective(dt_s),
                                         config_.registration.max_correspondence_distance_m,
                                         stop_rule(config_.registration), workers_);
-  if (in_vehicle_frame) {
+  if (T_vehicle_sensor_) {
     tell_in_sensor_frame(frame.alignment, *T_vehicle_sensor_);
   }
   const FrameStatus status = frame_status(frame.alignment.status);
-  if (is_aligned(status)) {
-    frame.status = status;
-    frame.T_target_source = frame.alignment.T_target_source;
-    frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
-  } else {
-    continue_motion(frame, status);
-  }
+  set_motion(frame, status, last_->T_world_sensor,
+             is_aligned(status) ? frame.alignment.T_target_source : predicted_motion(frame.stamp));
 }
 
 void ScanToScanIcp::continue_motion(Frame& frame, FrameStatus status) const {
   frame.status = status;
   if (last_) {
-    frame.T_target_source = predicted_motion(frame.stamp);
-    frame.T_world_sensor = last_->T_world_sensor * frame.T_target_source.inverse();
+    set_motion(frame, status, last_->T_world_sensor, predicted_motion(frame.stamp));
   }
 }
 

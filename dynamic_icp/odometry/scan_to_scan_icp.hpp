@@ -40,7 +40,7 @@ class ScanToScanIcp final : public Odometry {
 
   ScanToScanMethod method_;
   Config config_;
-  std::optional<Eigen::Isometry3d> T_vehicle_sensor_;
+  std::optional<Eigen::Isometry3d> T_vehicle_sensor_;  ///< of Doppler-ICP only: it then works in the vehicle frame
   Workers workers_;
   std::optional<Stamp> last_stamp_;
   std::unique_ptr<Reference> last_;  ///< the last usable scan; empty before the first

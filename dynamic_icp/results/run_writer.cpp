@@ -3,7 +3,6 @@
 #include "dynamic_icp/results/run_writer.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <numeric>
 
 #include <fmt/format.h>
@@ -11,6 +10,7 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/evaluation/statistics.hpp"
+#include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/tum.hpp"
 #include "dynamic_icp/results/frame_json.hpp"
 
@@ -22,18 +22,6 @@ std::optional<double> mean(const std::vector<double>& values) {
     return std::nullopt;
   }
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-}
-
-std::string label_bytes(const std::vector<std::int32_t>& labels) {
-  std::string bytes;
-  bytes.reserve(4 * labels.size());
-  for (const std::int32_t label : labels) {
-    const auto bits = static_cast<std::uint32_t>(label);
-    for (int k = 0; k < 4; ++k) {
-      bytes.push_back(static_cast<char>(bits >> (8 * k) & 0xffU));  // little-endian on every machine
-    }
-  }
-  return bytes;
 }
 
 void count_status(std::vector<std::pair<std::string, std::size_t>>& counts, std::string_view status) {
@@ -57,11 +45,7 @@ RunWriter::RunWriter(const std::filesystem::path& folder, bool save_labels)
       frames_file_(folder / "frames.jsonl"),
       objects_file_(folder / "objects.jsonl") {
   if (save_labels_) {
-    std::error_code fault;
-    std::filesystem::create_directories(folder_ / "labels", fault);
-    if (fault) {
-      throw DataError(fmt::format("{}: cannot create: {}", (folder_ / "labels").string(), fault.message()));
-    }
+    formats::make_folder(folder_ / "labels");
   }
 }
 
@@ -69,9 +53,7 @@ void RunWriter::add(std::size_t index, const odometry::Frame& frame) {
   frames_file_.write(frame_line(index, frame) + "\n");
   objects_file_.write(objects_line(index, frame) + "\n");
   if (save_labels_) {
-    formats::OutputFile file(folder_ / "labels" / fmt::format("{:05}.bin", index + 1));
-    file.write(label_bytes(frame.labels));
-    file.close();
+    formats::write_values<std::int32_t>(folder_ / "labels" / fmt::format("{:05}.bin", index + 1), frame.labels);
   }
   trajectory_.push_back({frame.stamp, frame.T_world_sensor});
   total_ms_.push_back(frame.times.total_ms);
