@@ -44,15 +44,25 @@ std::vector<std::string> chosen_names(const std::string& option, const std::stri
   return chosen;
 }
 
+std::vector<std::string> without_none(const std::vector<std::string_view>& names) {
+  std::vector<std::string> parts(names.begin(), names.end());
+  std::erase(parts, "none");
+  return parts;
+}
+
+odometry::Config configuration(const benchmark::RunSettings& settings, MethodOptions options) {
+  options.preset = settings.preset;
+  options.config_file = settings.config_file;
+  options.settings = settings.settings;
+  return make_config(options);
+}
+
 std::vector<std::string> resolved_configuration(const benchmark::RunSettings& settings, const std::string& method,
                                                 const std::string& ablation) {
   MethodOptions options;
   options.method = method;
   options.ablation = ablation;
-  options.preset = settings.preset;
-  options.config_file = settings.config_file;
-  options.settings = settings.settings;
-  odometry::Config config = make_config(options);
+  odometry::Config config = configuration(settings, options);
   std::vector<std::string> texts;
   for (const ConfigField& field : odometry::fields(config)) {
     texts.push_back(field.key + "=" + value_text(field));
@@ -67,20 +77,14 @@ std::vector<std::string> known_methods() {
   return {names.begin(), names.end()};
 }
 
-std::vector<std::string> known_ablations() {
-  std::vector<std::string> names;
-  for (const std::string_view name : odometry::ablation_names()) {
-    if (name != "none") {
-      names.emplace_back(name);
-    }
-  }
-  return names;
-}
+std::vector<std::string> known_ablations() { return without_none(odometry::ablation_names()); }
 
 std::vector<Candidate> choose_candidates(const std::string& method_list, const std::string& ablation_list,
                                          const benchmark::RunSettings& settings) {
   const std::vector<std::string> methods = chosen_names("--methods", method_list, known_methods(), false);
-  const std::vector<std::string> parts = chosen_names("--ablations", ablation_list, known_ablations(), true);
+  const std::vector<std::string> parts = ablation_list == "all"
+                                             ? without_none(odometry::ablation_names(configuration(settings, {})))
+                                             : chosen_names("--ablations", ablation_list, known_ablations(), true);
   if (ablation_list != "all" && !parts.empty() &&
       std::find(methods.begin(), methods.end(), benchmark::kOurMethod) == methods.end()) {
     throw UsageError(fmt::format("--ablations is about {}, which is not among --methods", benchmark::kOurMethod));

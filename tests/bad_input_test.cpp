@@ -65,7 +65,7 @@ class BadInput : public ProgramTest {
     std::vector<std::string> result;
     std::istringstream frames(read_file(folder_ / "out" / "frames.jsonl"));
     for (std::string line; std::getline(frames, line);) {
-      result.push_back(json::parse(line)["status"]);
+      result.push_back(json::parse(line)["reason"]);
     }
     return result;
   }
@@ -239,7 +239,7 @@ TEST_F(BadInput, RegisterReportsWhatItCannotAlign) {
        {(folder_ / "empty.bin").string() + " " + scan, scan + " " + (folder_ / "empty.bin").string()}) {
     const Outcome outcome = run_program("register " + pair + " 2>/dev/null");
     EXPECT_EQ(outcome.status, kDone);
-    EXPECT_EQ(json::parse(outcome.text)["status"], "too_few_points") << pair;
+    EXPECT_EQ(json::parse(outcome.text)["reason"], "too_few_points") << pair;
   }
   EXPECT_EQ(run_program("register " + scan + " " + scan + " --dt 0").status, kWrongUsage);
   EXPECT_EQ(run_program("register " + scan + " " + scan + ".missing").status, kFailed);

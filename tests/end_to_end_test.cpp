@@ -137,7 +137,7 @@ TEST_F(EndToEnd, RunRecordsWhatItDid) {
   std::string first;
   std::getline(frames, first);
   EXPECT_EQ(json::parse(first)["index"], 2);
-  EXPECT_EQ(json::parse(first)["status"], "first");
+  EXPECT_EQ(json::parse(first)["reason"], "first");
 }
 
 TEST_F(EndToEnd, RegisterPrintsThePairAsJson) {

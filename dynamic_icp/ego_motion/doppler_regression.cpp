@@ -102,24 +102,6 @@ ConfigFields fields(DopplerRegressionConfig& config) {
   };
 }
 
-std::string_view to_string(EgoVelocityStatus status) {
-  switch (status) {
-    case EgoVelocityStatus::kNotRun:
-      return "not_run";
-    case EgoVelocityStatus::kConverged:
-      return "converged";
-    case EgoVelocityStatus::kIterationLimit:
-      return "iteration_limit";
-    case EgoVelocityStatus::kTooFewPoints:
-      return "too_few_points";
-    case EgoVelocityStatus::kFromMotion:
-      return "from_motion";
-    case EgoVelocityStatus::kDegenerate:
-      return "degenerate";
-  }
-  return "unknown";
-}
-
 EgoVelocity estimate_velocity(const Scan& scan, const Eigen::Vector3d& prior_sensor,
                               const DopplerRegressionConfig& config, const Workers& workers) {
   EgoVelocity result;

@@ -23,6 +23,16 @@ std::vector<double> compensated_doppler(const Scan& scan, const Eigen::Vector3d&
   return compensated;
 }
 
+std::vector<double> compensated_doppler(const Scan& scan, const EgoVelocity& ego) {
+  std::vector<double> compensated(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const double after = scan.has_times() ? scan.times()[i] - ego.reference_time_s : 0.0;
+    const Eigen::Vector3d velocity = ego.velocity_sensor + after * ego.acceleration_sensor;
+    compensated[i] = scan.doppler()[i] - ego.bias_mps + scan.directions()[i].dot(velocity);
+  }
+  return compensated;
+}
+
 std::vector<std::uint8_t> dynamic_mask(const Scan& scan, const std::vector<double>& compensated,
                                        const VelocityFilterConfig& config) {
   std::vector<std::uint8_t> mask(scan.size(), 0);

@@ -9,6 +9,7 @@
 
 #include "dynamic_icp/base/config_field.hpp"
 #include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/ego_motion/ego_velocity.hpp"
 
 namespace dynamic_icp::ego_motion {
 
@@ -23,6 +24,10 @@ ConfigFields fields(VelocityFilterConfig& config);
 /// Doppler velocity with the sensor's own motion taken out, s~_i = s_i + u_i . v, of the paper's Eq. (4): the residual
 /// r_i of the velocity filter and the measurement of the object velocities (m/s, positive away from the sensor).
 std::vector<double> compensated_doppler(const Scan& scan, const Eigen::Vector3d& velocity_sensor);
+
+/// The same with all that is known of the sensor's motion: its acceleration during the scan and the bias of the
+/// Doppler, s_i + u_i . v(tau_i) - bias.
+std::vector<double> compensated_doppler(const Scan& scan, const EgoVelocity& ego);
 
 /// Which points move: 1 where |r_i| > tau(d_i) = tau_0 + kappa d_i with the distance d_i of the point, 0 elsewhere.
 std::vector<std::uint8_t> dynamic_mask(const Scan& scan, const std::vector<double>& compensated,

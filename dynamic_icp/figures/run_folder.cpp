@@ -157,7 +157,7 @@ FrameRow frame_row(const Row& row) {
   frame.dynamic_refined = row.number("dynamic_refined");
   frame.iterations = row.number("iterations");
   frame.converged = row.truth("converged");
-  frame.status = row.text("status");
+  frame.status = row.text(row.has("reason") ? "reason" : "status");
   frame.fitness = row.number("fitness");
   frame.inlier_rmse = row.number("inlier_rmse");
   const Json& stages = row.get("ms");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/odometry/config.hpp"
 
+#include <algorithm>
 #include <string>
 
 #include <fmt/format.h>
@@ -42,6 +43,13 @@ ConfigFields fields(Config& config) {
   append_fields(all, "preprocess.normals", fields(config.preprocess.normals));
   append_fields(all, "ego_motion.regression", fields(config.ego_motion.regression));
   append_fields(all, "ego_motion.filter", fields(config.ego_motion.filter));
+  append_fields(all, "ego_motion.consensus", fields(config.ego_motion.consensus));
+  append_fields(all, "ego_motion.drift", fields(config.ego_motion.drift));
+  append_fields(all, "ego_motion",
+                {{"use_consensus", &config.ego_motion.use_consensus, 0, 0, "",
+                  "find the static scene by consensus; off: Huber regression, as from scan to scan"},
+                 {"static_deviations", &config.ego_motion.static_deviations, 0.0, 100.0, "",
+                  "with a local map a point moves only beyond so many deviations of the static Doppler"}});
   append_fields(all, "dynamics.clustering", fields(config.dynamics.clustering));
   append_fields(all, "dynamics.velocity", fields(config.dynamics.velocity));
   append_fields(all, "dynamics",
@@ -53,6 +61,24 @@ ConfigFields fields(Config& config) {
                   "point-to-point, point-to-plane, gicp, doppler-icp: start from the last motion, not the identity"}});
   append_fields(all, "doppler_icp", fields(config.doppler_icp));
   append_fields(all, "kiss_icp", fields(config.kiss));
+  append_fields(all, "sweep", fields(config.sweep));
+  append_fields(all, "mapping", fields(config.mapping));
+  append_fields(all, "registration.map", fields(config.map_align));
+  append_fields(all, "turn", fields(config.turn));
+  append_fields(all, "tracking", fields(config.tracking));
+  append_fields(
+      all, "odometry",
+      {{"scan_to_scan", &config.scan_to_scan, 0, 0, "",
+        "dynamic-icp as in the paper, from scan to scan; off: with Doppler displacement and a local map"},
+       {"use_displacement", &config.use_displacement, 0, 0, "",
+        "with a local map: the way between scans by the Doppler velocities is a term of the alignment"},
+       {"displacement_deviation_mps", &config.displacement_deviation_mps, 0.0, 10.0, "m/s",
+        "what the way between scans may be off besides the errors of the velocities, over the time between them"},
+       {"search_start", &config.search_start, 0, 0, "", "with a local map: try several turns for the first two scans"},
+       {"lost_match", &config.lost_match, 0.0, 1.0, "",
+        "with a local map: lost when less than this share of the usual number of points fits the map"},
+       {"unknown_deviation_m", &config.unknown_deviation_m, 1e-6, 1e3, "m",
+        "with a local map: motions known worse than this are reported as degenerate"}});
   append_fields(all, "odometry",
                 {{"max_gap_s", &config.max_gap_s, 1e-3, 3600.0, "s",
                   "scans farther apart in time are not aligned; the last motion is continued"},
@@ -84,9 +110,10 @@ void check(const Config& config) {
 Config preset(std::string_view name) {
   Config config;  // the initialisers of the configuration structs are the paper's values
   if (name == "default") {
-    // One gross Doppler error in a cluster is enough to make least squares report tens of m/s across the line of sight.
-    config.dynamics.velocity.huber_delta_mps = 0.15;
-    config.dynamics.velocity.max_deviation_mps = 1.0;
+    config.scan_to_scan = false;
+    // Static Doppler scatters by the noise alone once the regression is not biased.
+    config.ego_motion.filter.tau_0_mps = 0.2;
+    config.ego_motion.filter.kappa_per_s = 0.0;
   } else if (name != "paper") {
     throw_unknown("preset", name, preset_names());
   }
@@ -96,17 +123,44 @@ Config preset(std::string_view name) {
 std::vector<std::string_view> preset_names() { return {"paper", "default"}; }
 
 void apply_ablation(Config& config, std::string_view name) {
+  const auto has = [&](const std::vector<std::string_view>& names) {
+    return std::find(names.begin(), names.end(), name) != names.end();
+  };
+  if (!has(ablation_names())) {
+    throw_unknown("ablation", name, ablation_names());
+  }
+  if (!has(ablation_names(config))) {
+    throw UsageError(
+        fmt::format("ablation '{}' is about a part that dynamic-icp from scan to scan (preset paper) does "
+                    "not have; it has: {}",
+                    name, fmt::join(ablation_names(config), ", ")));
+  }
   if (name == "no-vf") {
     config.ego_motion.filter.enabled = false;
   } else if (name == "no-dpp") {
     config.dynamics.predict = false;
   } else if (name == "no-dr") {
     config.registration.doppler_weight = 0.0;
-  } else if (name != "none") {
-    throw_unknown("ablation", name, ablation_names());
+    config.use_displacement = false;
+  } else if (name == "no-consensus") {
+    config.ego_motion.use_consensus = false;
+  } else if (name == "no-bias") {
+    config.ego_motion.consensus.estimate_bias = false;
+  } else if (name == "no-deskew") {
+    config.sweep.undo = false;
+  } else if (name == "no-map") {
+    config.mapping.memory_scans = 0.0;
+  } else if (name == "no-search") {
+    config.search_start = false;
   }
 }
 
-std::vector<std::string_view> ablation_names() { return {"none", "no-vf", "no-dpp", "no-dr"}; }
+std::vector<std::string_view> ablation_names() {
+  return {"none", "no-vf", "no-dpp", "no-dr", "no-consensus", "no-bias", "no-deskew", "no-map", "no-search"};
+}
+
+std::vector<std::string_view> ablation_names(const Config& config) {
+  return config.scan_to_scan ? std::vector<std::string_view>{"none", "no-vf", "no-dpp", "no-dr"} : ablation_names();
+}
 
 }  // namespace dynamic_icp::odometry

@@ -8,13 +8,20 @@
 #include "dynamic_icp/base/config_field.hpp"
 #include "dynamic_icp/dynamics/hdbscan.hpp"
 #include "dynamic_icp/dynamics/object_velocity.hpp"
+#include "dynamic_icp/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/ego_motion/doppler_regression.hpp"
+#include "dynamic_icp/ego_motion/ego_filter.hpp"
 #include "dynamic_icp/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/mapping/plane_map.hpp"
 #include "dynamic_icp/odometry/kiss_config.hpp"
+#include "dynamic_icp/odometry/turn_filter.hpp"
+#include "dynamic_icp/preprocess/declared_times.hpp"
 #include "dynamic_icp/preprocess/normals.hpp"
 #include "dynamic_icp/preprocess/range_crop.hpp"
 #include "dynamic_icp/preprocess/voxel_grid.hpp"
 #include "dynamic_icp/registration/align.hpp"
+#include "dynamic_icp/registration/map_alignment.hpp"
+#include "dynamic_icp/tracking/tracker_config.hpp"
 
 namespace dynamic_icp::odometry {
 
@@ -27,6 +34,12 @@ struct PreprocessConfig {
 struct EgoMotionConfig {
   ego_motion::DopplerRegressionConfig regression;
   ego_motion::VelocityFilterConfig filter;
+
+  // Beyond the paper.
+  bool use_consensus = true;  ///< off: Huber regression also with the local map (ablation "no-consensus")
+  ego_motion::ConsensusRegressionConfig consensus;
+  ego_motion::DriftConfig drift;
+  double static_deviations = 4.0;  ///< a point moves only beyond so many deviations of the static Doppler
 };
 
 struct DynamicsConfig {
@@ -61,6 +74,20 @@ struct Config {
   IcpConfig icp;
   DopplerIcpConfig doppler_icp;
   KissConfig kiss;
+
+  // Of dynamic-icp beyond the paper, with a local map.
+  bool scan_to_scan = true;  ///< the paper's pipeline; off: preset `default`
+  preprocess::SweepConfig sweep;
+  mapping::PlaneMapConfig mapping;
+  registration::MapAlignConfig map_align;
+  TurnFilterConfig turn;
+  tracking::TrackerConfig tracking;
+  bool use_displacement = true;               ///< the way between scans from the Doppler, as a term of the alignment
+  double displacement_deviation_mps = 0.003;  ///< error of the integrated velocity over the time between two scans
+  bool search_start = true;                   ///< try several turns for the first pair of scans
+  double lost_match = 0.5;                    ///< lost when less than this share of the usual number of points fits
+  double unknown_deviation_m = 0.1;           ///< directions known worse than this are degenerate
+
   double max_gap_s = 1.0;  ///< a longer time between two scans is bridged by the last motion, not by alignment
   int min_points = 6;      ///< a scan with fewer points after preprocessing cannot be aligned
 };
@@ -72,16 +99,22 @@ ConfigFields fields(Config& config);
 void check(const Config& config);
 
 /// A named configuration: "paper" is the paper's method with its published values and nothing added; "default" is the
-/// best this program can do: so far the same with robust object velocities. Throws UsageError for other names.
+/// best this program can do. Throws UsageError for other names.
 Config preset(std::string_view name);
 
 std::vector<std::string_view> preset_names();
 
-/// Switches parts off as the paper's ablation study does: "none"; "no-vf" (no velocity filter: all points count as
-/// static), "no-dpp" (no prediction: moving points are left out), "no-dr" (no Doppler residual). Throws UsageError for
-/// other names.
+/// Switches a part off: "none"; as in the paper's ablation study "no-vf" (no velocity filter: all points count as
+/// static), "no-dpp" (no prediction: moving points are left out; with the local map: no tracking), "no-dr" (no Doppler
+/// term in the alignment); with the local map also "no-consensus" (Huber regression of the ego velocity), "no-bias" (no
+/// Doppler bias), "no-deskew", "no-map" (only the last scan), "no-search" (first pair from one start). Throws
+/// UsageError for other names, and for parts the configuration does not have.
 void apply_ablation(Config& config, std::string_view name);
 
+/// The parts that dynamic-icp has with this configuration, "none" first.
+std::vector<std::string_view> ablation_names(const Config& config);
+
+/// All of them.
 std::vector<std::string_view> ablation_names();
 
 }  // namespace dynamic_icp::odometry

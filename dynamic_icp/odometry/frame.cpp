@@ -22,8 +22,28 @@ std::string_view to_string(FrameStatus status) {
       return "too_few_points";
     case FrameStatus::kTimeGap:
       return "time_gap";
+    case FrameStatus::kLost:
+      return "lost";
   }
   return "unknown";
+}
+
+std::string_view verdict(FrameStatus status) {
+  switch (status) {
+    case FrameStatus::kFirst:
+    case FrameStatus::kConverged:
+    case FrameStatus::kIterationLimit:
+      return "ok";
+    case FrameStatus::kDegenerate:
+      return "degenerate";
+    case FrameStatus::kNotRun:
+    case FrameStatus::kTooFewCorrespondences:
+    case FrameStatus::kTooFewPoints:
+    case FrameStatus::kTimeGap:
+    case FrameStatus::kLost:
+      break;
+  }
+  return "lost";
 }
 
 std::string_view to_string(Stage stage) {

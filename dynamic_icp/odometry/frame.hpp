@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include "dynamic_icp/dynamics/object_velocity.hpp"
 #include "dynamic_icp/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/registration/align.hpp"
+#include "dynamic_icp/tracking/tracked_object.hpp"
 
 namespace dynamic_icp::odometry {
 
@@ -22,12 +24,18 @@ enum class FrameStatus {
   kConverged,              ///< aligned
   kIterationLimit,         ///< aligned, but still moving after the last iteration
   kTooFewCorrespondences,  ///< not aligned: the predicted motion is kept
-  kDegenerate,             ///< not aligned: the predicted motion is kept
-  kTooFewPoints,           ///< not aligned: (almost) empty scan, the predicted motion is kept
-  kTimeGap,                ///< not aligned: too long after the last scan, the predicted motion is kept
+  /// Some directions are not known, see Alignment::degenerate. Methods from scan to scan keep the predicted motion
+  /// then; with a local map the pose is still the most likely one.
+  kDegenerate,
+  kTooFewPoints,  ///< not aligned: (almost) empty scan, the predicted motion is kept
+  kTimeGap,       ///< not aligned: too long after the last scan, the predicted motion is kept
+  kLost,          ///< nothing fits the local map: the predicted motion is kept, the map begins anew
 };
 
 std::string_view to_string(FrameStatus status);
+
+/// The same in one word: "ok", "degenerate" or "lost". A frame is lost when its pose is only predicted.
+std::string_view verdict(FrameStatus status);
 
 /// Whether the pose comes from an alignment that met its stopping rule.
 inline bool converged(FrameStatus status) { return status == FrameStatus::kConverged; }
@@ -43,6 +51,13 @@ struct StageTimes {
   double total_ms = 0.0;
 };
 
+/// How the sensor moves at the stamp of a scan, in its own axes.
+struct Twist {
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();   ///< m/s over ground
+  Matrix6d covariance = Matrix6d::Zero();             ///< of [angular; linear]
+};
+
 /// All that the odometry says of one scan.
 struct Frame {
   FrameStatus status = FrameStatus::kNotRun;
@@ -52,7 +67,9 @@ struct Frame {
   registration::Alignment alignment;                                  ///< of that pair; not run for the first scan
 
   ego_motion::EgoVelocity ego;                     ///< of this scan
+  std::optional<Twist> twist;                      ///< where the method states one
   std::vector<dynamics::ObjectEstimate> clusters;  ///< of this scan, accepted and rejected
+  std::vector<tracking::TrackedObject> tracked;    ///< confirmed objects, where the method tracks them
   std::size_t dynamic_candidates = 0;              ///< points that the velocity filter flags
   std::size_t dynamic_clustered = 0;               ///< of those, in a cluster
   std::size_t dynamic_refined = 0;                 ///< of those, in an accepted object
@@ -62,7 +79,7 @@ struct Frame {
   Scan::Dropped dropped;
   std::size_t out_of_range = 0;
   /// Per point of the scan as read: -1 not used (dropped, not kept by the voxel grid, or moving without an object),
-  /// 0 static, k > 0 a member of the k-th accepted object.
+  /// 0 static, k > 0 a member of the k-th accepted object or of the tracked object with this id.
   std::vector<std::int32_t> labels;
   StageTimes times;
 };

@@ -15,15 +15,19 @@ void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp) {
   }
 }
 
-Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame) {
+Scan take_over(const RawScan& raw, const PreprocessConfig& config, Frame& frame) {
   const Scan measured = Scan::from_raw(raw, &frame.dropped);  // Eq. (1)
-  const Scan in_range = preprocess::crop_range(measured, config.range);
-  Scan scan = preprocess::voxel_grid(in_range, config.voxel);
+  Scan in_range = preprocess::crop_range(measured, config.range);
   frame.stamp = raw.stamp;
   frame.points = raw.points.size();
   frame.out_of_range = measured.size() - in_range.size();
-  frame.points_used = scan.size();
   frame.labels.assign(frame.points, -1);
+  return in_range;
+}
+
+Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame) {
+  Scan scan = preprocess::voxel_grid(take_over(raw, config, frame), config.voxel);
+  frame.points_used = scan.size();
   return scan;
 }
 

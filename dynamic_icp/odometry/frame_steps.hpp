@@ -14,8 +14,10 @@ namespace dynamic_icp::odometry {
 /// Throws DataError when the scan is not later than the last one.
 void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp);
 
-/// Takes over what is finite, crops the range and thins by the voxel grid; fills stamp, counts and `labels` (-1 for all
-/// points) of the frame.
+/// Takes over what is finite and in range; fills stamp, counts and `labels` (-1 for all points) of the frame.
+Scan take_over(const RawScan& raw, const PreprocessConfig& config, Frame& frame);
+
+/// Takes over the scan and thins it by the voxel grid.
 Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame);
 
 /// What an alignment's status means for the frame.

@@ -8,6 +8,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/odometry/dynamic_icp.hpp"
 #include "dynamic_icp/odometry/kiss_icp.hpp"
+#include "dynamic_icp/odometry/map_odometry.hpp"
 #include "dynamic_icp/odometry/scan_to_scan_icp.hpp"
 
 namespace dynamic_icp::odometry {
@@ -22,7 +23,10 @@ std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& c
     return std::make_unique<ScanToScanIcp>(kind, config, surroundings, threads);
   };
   if (method == "dynamic-icp") {
-    return std::make_unique<DynamicIcp>(config, threads);
+    if (config.scan_to_scan) {
+      return std::make_unique<DynamicIcp>(config, threads);
+    }
+    return std::make_unique<MapOdometry>(config, threads);
   }
   if (method == "doppler-icp") {
     return scan_to_scan(ScanToScanMethod::kDopplerIcp);

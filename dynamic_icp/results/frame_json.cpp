@@ -66,6 +66,15 @@ Json covariance_json(const registration::Alignment& alignment) {
   return alignment.covariance ? matrix_json(*alignment.covariance) : Json(nullptr);
 }
 
+Json twist_json(const std::optional<odometry::Twist>& twist) {
+  if (!twist) {
+    return nullptr;
+  }
+  return {{"angular", vector_json(twist->angular)},
+          {"linear", vector_json(twist->linear)},
+          {"covariance", matrix_json(twist->covariance)}};
+}
+
 Json term_json(const registration::TermStatistics& term) {
   return {{"count", term.count}, {"inliers", term.inliers}, {"rms", term.rms}};
 }
@@ -79,8 +88,33 @@ Json object_json(std::size_t id, const dynamics::ObjectEstimate& object) {
           {"points", object.members.size()}};
 }
 
+Json box_json(const tracking::OrientedBox& box) {
+  const Eigen::Quaterniond orientation(box.axes);
+  return {{"center", vector_json(box.centre)},
+          {"size", vector_json(box.size)},
+          {"orientation_xyzw", vector_json(orientation.coeffs())}};
+}
+
+Json tracked_json(const tracking::TrackedObject& object) {
+  return {{"id", object.id},
+          {"velocity", vector_json(object.velocity_sensor)},
+          {"velocity_covariance", matrix_json(object.covariance)},
+          {"tangential_observed", object.tangential_observed},
+          {"yaw_rate", object.yaw_rate_rps},
+          {"centroid", vector_json(object.centroid)},
+          {"extent", vector_json(object.extent)},
+          {"box", box_json(object.box)},
+          {"status", to_string(object.status)},
+          {"age_scans", object.age_scans},
+          {"points", object.members.size()}};
+}
+
+/// Tracked objects, or the accepted clusters of methods that do not track.
 Json objects_json(const Frame& frame) {
   Json objects = Json::array();
+  for (const tracking::TrackedObject& object : frame.tracked) {
+    objects.push_back(tracked_json(object));
+  }
   for (const dynamics::ObjectEstimate& cluster : frame.clusters) {
     if (cluster.verdict == dynamics::ClusterVerdict::kAccepted) {
       objects.push_back(object_json(objects.size() + 1, cluster));
@@ -120,10 +154,13 @@ std::string frame_line(std::size_t index, const Frame& frame) {
                      {"clusters_rejected", rejected_json(frame)},
                      {"iterations", alignment.iterations},
                      {"converged", odometry::converged(frame.status)},
-                     {"status", to_string(frame.status)},
+                     {"status", verdict(frame.status)},
+                     {"reason", to_string(frame.status)},
                      {"fitness", alignment.fitness},
                      {"inlier_rmse", alignment.inlier_rmse},
                      {"pose_covariance", covariance_json(alignment)},
+                     {"twist", twist_json(frame.twist)},
+                     {"doppler_bias", frame.ego.bias_mps},
                      {"information_ratio", alignment.information_ratio},
                      {"degenerate", degenerate_json(alignment)},
                      {"ms", times_json(frame.times)}};
@@ -136,7 +173,8 @@ std::string objects_line(std::size_t index, const Frame& frame) {
 
 std::string pair_document(const Frame& source, const Frame& target, const std::vector<std::string>& assumptions) {
   const registration::Alignment& alignment = target.alignment;
-  const Json document = {{"status", to_string(target.status)},
+  const Json document = {{"status", verdict(target.status)},
+                         {"reason", to_string(target.status)},
                          {"converged", odometry::converged(target.status)},
                          {"assumptions", assumptions},
                          {"dt", seconds_between(source.stamp, target.stamp)},

@@ -1,0 +1,28 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "dynamic_icp/base/config_field.hpp"
+#include "dynamic_icp/ego_motion/consensus_regression.hpp"
+
+namespace dynamic_icp::ego_motion {
+
+struct DriftConfig {
+  double start_acceleration_mps2 = 3.0;  ///< deviation of the acceleration at the first scan
+  double start_bias_mps = 0.2;           ///< deviation of the Doppler bias at the first scan
+  double jerk_mps3 = 5.0;                ///< deviation of the change of acceleration
+  double bias_drift_mps = 0.003;         ///< deviation of the change of the bias in one second
+};
+
+ConfigFields fields(DriftConfig& config);
+
+/// Before the first scan.
+EgoPrior first_prior(const DriftConfig& config);
+
+/// What a scan says of one that is taken `dt_s` later: a Kalman filter's prediction of velocity, acceleration (both in
+/// the axes of the sensor, which hardly turn between two scans) and bias, with a white change of acceleration. In a
+/// scan that sweeps, time is azimuth, and acceleration, velocity and bias are hard to tell apart; over several scans
+/// they are not.
+EgoPrior predict(const EgoVelocity& ego, double dt_s, const DriftConfig& config);
+
+}  // namespace dynamic_icp::ego_motion

@@ -1,0 +1,352 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/odometry/map_odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dynamic_icp/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/ego_motion/doppler_regression.hpp"
+#include "dynamic_icp/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/odometry/frame_steps.hpp"
+#include "dynamic_icp/odometry/motion_uncertainty.hpp"
+#include "dynamic_icp/registration/gauss_newton.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+constexpr std::size_t kVelocitySamples = 3;
+
+// The usual share of points that agree with the map follows the last scans with this weight for the newest.
+constexpr double kUsualMatchGain = 0.2;
+
+// With the first turn known the first scan is made straight and the second aligned again: each round leaves about
+// a tenth of the error.
+constexpr int kStraighteningRounds = 4;
+constexpr double kStraighteningGate_m = 0.5;
+
+// A displacement that is known no better is not known.
+constexpr double kUnknown_m = 100.0;
+
+// Where no scan tells, a vehicle changes its velocity by no more than this.
+constexpr double kBlindAcceleration_mps2 = 3.0;
+
+double middle_of(const std::vector<double>& times) {
+  if (times.empty()) {
+    return 0.0;
+  }
+  const auto [low, high] = std::minmax_element(times.begin(), times.end());
+  return 0.5 * (*low + *high);
+}
+
+/// The scan with the times that count: its own, declared ones where it has none, or none at all.
+RawScan with_times(const RawScan& raw, const preprocess::SweepConfig& config) {
+  RawScan timed = raw;
+  if (!config.undo) {
+    timed.times.clear();
+  } else if (timed.times.empty() && config.declared_duration_s > 0.0) {
+    timed.times = preprocess::declared_times(timed.points, config);
+  }
+  return timed;
+}
+
+registration::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
+  registration::SweepMotion sweep;
+  sweep.velocity = ego.velocity_sensor - middle_s * ego.acceleration_sensor;
+  sweep.acceleration = ego.acceleration_sensor;
+  return sweep;
+}
+
+double match(const registration::MapAlignment& found) {
+  return found.points > 0 ? found.matched / static_cast<double>(found.points) : 0.0;
+}
+
+/// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
+ego_motion::VelocityFilterConfig filter_for(const EgoMotionConfig& config, const ego_motion::EgoVelocity& ego) {
+  ego_motion::VelocityFilterConfig filter = config.filter;
+  filter.tau_0_mps = std::max(filter.tau_0_mps, config.static_deviations * ego.inlier_rms_mps);
+  return filter;
+}
+
+Scan static_part(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) {
+  std::vector<std::uint32_t> rows;
+  rows.reserve(scan.size());
+  for (std::uint32_t row = 0; row < scan.size(); ++row) {
+    if (is_dynamic[row] == 0) {
+      rows.push_back(row);
+    }
+  }
+  return scan.select(rows);
+}
+
+}  // namespace
+
+MapOdometry::MapOdometry(const Config& config, int threads)
+    : config_(config), workers_(threads), map_(config.mapping), tracker_(config.tracking) {
+  check(config_);
+}
+
+Frame MapOdometry::process(const RawScan& raw) {
+  check_order(raw, last_stamp_);
+  Frame frame;
+  StageClock clock(frame.times);
+  const Scan whole = take_over(with_times(raw, config_.sweep), config_.preprocess, frame);
+  const Scan scan = preprocess::voxel_grid(whole, config_.preprocess.voxel);
+  frame.points_used = scan.size();
+  clock.finish(Stage::kPreprocess);
+  last_stamp_ = raw.stamp;
+  if (scan.size() < static_cast<std::size_t>(config_.min_points)) {
+    frame.status = FrameStatus::kTooFewPoints;
+    if (state_) {
+      extrapolate(seconds_between(*first_stamp_, raw.stamp), FrameStatus::kTooFewPoints, frame);
+    }
+    return frame;
+  }
+  if (!first_stamp_) {
+    first_stamp_ = raw.stamp;
+  }
+  Moment now;
+  now.stamp_s = seconds_between(*first_stamp_, raw.stamp);
+  now.middle_s = middle_of(scan.times());
+  now.ego = estimate_ego(scan, now.stamp_s);
+  frame.ego = now.ego;
+  now.still = static_part(scan, ego_motion::dynamic_mask(scan, ego_motion::compensated_doppler(scan, now.ego),
+                                                         filter_for(config_.ego_motion, now.ego)));
+  frame.dynamic_candidates = scan.size() - now.still.size();
+  clock.finish(Stage::kEgoMotion);
+
+  if (!state_) {
+    frame.status = FrameStatus::kFirst;
+    begin(now, Eigen::Isometry3d::Identity());
+  } else if (now.stamp_s - state_->stamp_s > config_.max_gap_s) {
+    extrapolate(now.stamp_s, FrameStatus::kTimeGap, frame);
+    begin(now, frame.T_world_sensor);
+  } else {
+    go_on(now, frame);
+  }
+  add_to_map(now);
+  frame.twist = twist_at_stamp(state_->turn, now.ego, now.middle_s);
+  clock.finish(Stage::kRegistration);
+
+  track_objects(whole, frame);
+  clock.finish(Stage::kDynamics);
+  return frame;
+}
+
+ego_motion::EgoVelocity MapOdometry::estimate_ego(const Scan& scan, double stamp_s) const {
+  const EgoMotionConfig& config = config_.ego_motion;
+  if (!config.use_consensus) {
+    const Eigen::Vector3d start = state_ ? state_->ego.velocity_sensor : Eigen::Vector3d::Zero();
+    ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, start, config.regression, workers_);
+    ego.reference_time_s = middle_of(scan.times());
+    return ego;
+  }
+  const ego_motion::EgoPrior prior =
+      state_ ? ego_motion::predict(state_->ego, stamp_s + middle_of(scan.times()) - state_->velocities.back().time_s,
+                                   config.drift)
+             : ego_motion::first_prior(config.drift);
+  return ego_motion::estimate_velocity(scan, prior, config.consensus, workers_);
+}
+
+/// A new map with this scan as its first, at a known place.
+void MapOdometry::begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor) {
+  map_.clear();
+  State state;
+  state.stamp_s = now.stamp_s;
+  state.ego = now.ego;
+  state.T_map_sensor = T_map_sensor;
+  state.turn = first_turn_state(config_.turn);
+  state.turn.R_map_sensor = T_map_sensor.linear();
+  state.sweep = straight_sweep(now.ego, now.middle_s);
+  state.first = now;
+  state.velocities = {
+      {now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, state.turn.R_map_sensor}};
+  state_ = std::move(state);
+}
+
+std::vector<VelocitySample> MapOdometry::velocities_with(const Moment& now) const {
+  std::vector<VelocitySample> samples = state_->velocities;
+  samples.push_back({now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, {}});
+  if (samples.size() > kVelocitySamples) {
+    samples.erase(samples.begin());
+  }
+  return samples;
+}
+
+/// Where the scan should be: the turn as it was expected, the way by the velocities of this and the last scans.
+registration::MotionPrior MapOdometry::motion_prior(const Moment& now,
+                                                    const std::vector<VelocitySample>& velocities) const {
+  const double dt_s = now.stamp_s - state_->stamp_s;
+  const TurnState turn = predict(state_->turn, dt_s, config_.turn);
+  registration::MotionPrior prior;
+  prior.R_map_sensor = turn.R_map_sensor;
+  prior.sweep = straight_sweep(now.ego, now.middle_s);
+  prior.sweep.omega = turn.omega;
+  prior.sweep.alpha = turn.alpha;
+  prior.covariance = turn.covariance;
+
+  std::vector<VelocitySample> samples = velocities;
+  const Eigen::Matrix3d R_stamp_middle = prior.sweep.rotation(now.middle_s);
+  samples.back().R_map_sensor = prior.R_map_sensor * R_stamp_middle;
+  const Displacement displacement = displacement_between(samples, state_->stamp_s, now.stamp_s);
+  prior.displacement_fixed = state_->T_map_sensor.translation() + displacement.fixed_map;
+  prior.displacement_turned = displacement.last_weight_s * (R_stamp_middle * now.ego.velocity_sensor);
+  const double integration_m = config_.use_displacement ? config_.displacement_deviation_mps * dt_s : kUnknown_m;
+  prior.translation_covariance = state_->position_covariance + displacement.covariance_map +
+                                 integration_m * integration_m * Eigen::Matrix3d::Identity();
+  return prior;
+}
+
+void MapOdometry::go_on(const Moment& now, Frame& frame) {
+  std::vector<VelocitySample> velocities = velocities_with(now);
+  const registration::MotionPrior prior = motion_prior(now, velocities);
+  registration::MapAlignment found =
+      state_->scans_in_map == 1 ? align_second(now, prior)
+                                : registration::align_to_map(now.still, map_, prior, config_.map_align, workers_);
+  const double least_match = config_.lost_match * state_->usual_match;
+  if (match(found) < least_match) {
+    found = registration::search_and_align(now.still, map_, prior, config_.map_align, workers_);
+  }
+  if (match(found) < least_match) {
+    lose(now, prior, frame);
+    return;
+  }
+  describe(prior, found, registration::typical_distance(now.still), frame);
+
+  state_->usual_match = state_->scans_in_map == 1
+                            ? match(found)
+                            : state_->usual_match + kUsualMatchGain * (match(found) - state_->usual_match);
+  state_->stamp_s = now.stamp_s;
+  state_->T_map_sensor = found.T_map_sensor;
+  state_->turn = turn_state(found);
+  state_->sweep = found.sweep;
+  state_->ego = now.ego;
+  // The map is the mean of its last scans: a position drifts away from it only as long as it remembers.
+  const double memory = config_.mapping.memory_scans;
+  state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);
+  state_->position_information = position_information(found.geometry_information);
+  velocities.back().R_map_sensor = found.T_map_sensor.linear() * found.sweep.rotation(now.middle_s);
+  state_->velocities = std::move(velocities);
+}
+
+/// What the frame says of an alignment.
+void MapOdometry::describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
+                           double length_m, Frame& frame) const {
+  MotionEvidence evidence;
+  evidence.source_rotation_covariance = state_->turn.covariance.topLeftCorner<3, 3>();
+  evidence.target_rotation_covariance = found.covariance.topLeftCorner<3, 3>();
+  evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
+  evidence.source_position_information = state_->position_information;
+  evidence.target_position_information = position_information(found.geometry_information);
+
+  registration::Alignment& alignment = frame.alignment;
+  alignment.iterations = found.iterations;
+  alignment.fitness = match(found);
+  alignment.inlier_rmse = found.rms_m;
+  alignment.correspondences = found.on_planes;
+  alignment.geometry = {found.points, found.on_planes, found.rms_m};
+  alignment.length_m = length_m;
+  alignment.covariance = motion_covariance(evidence, found.T_map_sensor.linear());
+  alignment.degenerate = unknown_directions(*alignment.covariance, length_m, config_.unknown_deviation_m);
+  alignment.information_ratio = information_ratio(*alignment.covariance, length_m);
+  alignment.T_target_source = found.T_map_sensor.inverse() * state_->T_map_sensor;
+  alignment.status =
+      found.converged ? registration::AlignStatus::kConverged : registration::AlignStatus::kIterationLimit;
+  FrameStatus status = found.converged ? FrameStatus::kConverged : FrameStatus::kIterationLimit;
+  if (!alignment.degenerate.empty()) {
+    alignment.status = registration::AlignStatus::kDegenerate;
+    status = FrameStatus::kDegenerate;
+  }
+  set_motion(frame, status, state_->T_map_sensor, alignment.T_target_source);
+}
+
+/// Nothing fits the map: the motion is the one expected, and the map begins anew.
+void MapOdometry::lose(const Moment& now, const registration::MotionPrior& prior, Frame& frame) {
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  T_map_sensor.linear() = prior.R_map_sensor;
+  T_map_sensor.translation() = prior.displacement_fixed + prior.R_map_sensor * prior.displacement_turned;
+  set_motion(frame, FrameStatus::kLost, state_->T_map_sensor, T_map_sensor.inverse() * state_->T_map_sensor);
+  MotionEvidence evidence;
+  evidence.target_rotation_covariance = prior.covariance.topLeftCorner<3, 3>();
+  evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
+  frame.alignment.covariance = motion_covariance(evidence, prior.R_map_sensor);
+  const registration::SweepMotion sweep = prior.sweep;
+  begin(now, T_map_sensor);
+  state_->turn.omega = sweep.omega;
+  state_->sweep = sweep;
+}
+
+/// A scan that cannot be used, or one after a long gap: the last motion goes on.
+void MapOdometry::extrapolate(double stamp_s, FrameStatus status, Frame& frame) const {
+  const double dt_s = stamp_s - state_->stamp_s;
+  registration::SweepMotion steady = state_->sweep;
+  steady.alpha.setZero();
+  steady.acceleration.setZero();
+  const Eigen::Isometry3d T_target_source = steady.pose(dt_s).inverse();
+  set_motion(frame, status, state_->T_map_sensor, T_target_source);
+  const double turned_rad = config_.turn.start_omega_rad_s * dt_s;
+  const double moved_m = 0.5 * kBlindAcceleration_mps2 * dt_s * dt_s;
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal().head<3>().setConstant(turned_rad * turned_rad);
+  covariance.diagonal().tail<3>().setConstant(moved_m * moved_m);
+  frame.alignment.covariance = covariance;
+}
+
+/// The first scan was laid down as if the sensor did not turn. With the turn that the second shows it is laid down
+/// again, until both agree.
+registration::MapAlignment MapOdometry::align_second(const Moment& now, const registration::MotionPrior& prior) {
+  registration::MapAlignment found =
+      config_.search_start ? registration::search_and_align(now.still, map_, prior, config_.map_align, workers_)
+                           : registration::align_to_map(now.still, map_, prior, config_.map_align, workers_);
+  if (!state_->first.still.has_times()) {
+    return found;
+  }
+  const Moment first = state_->first;
+  const double dt_s = now.stamp_s - first.stamp_s;
+  registration::MotionPrior straightened = prior;
+  for (int round = 0; round < kStraighteningRounds; ++round) {
+    const Eigen::Matrix3d R_first_now = state_->T_map_sensor.linear().transpose() * found.T_map_sensor.linear();
+    state_->sweep.omega = log_so3(R_first_now) / dt_s;
+    straightened.sweep.omega = state_->sweep.omega;
+    map_.clear();
+    add_to_map(first);
+    found = registration::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), kStraighteningGate_m,
+                                       config_.map_align, workers_);
+  }
+  state_->scans_in_map = 1;
+  return found;
+}
+
+void MapOdometry::add_to_map(const Moment& now) {
+  std::vector<Eigen::Vector3d> points = registration::undo_sweep(now.still, state_->sweep).points();
+  for (Eigen::Vector3d& point : points) {
+    point = state_->T_map_sensor * point;
+  }
+  map_.add(points, state_->T_map_sensor.translation(), workers_);
+  ++state_->scans_in_map;
+}
+
+void MapOdometry::track_objects(const Scan& scan, Frame& frame) {
+  const std::vector<double> radial = ego_motion::compensated_doppler(scan, frame.ego);
+  const std::vector<std::uint8_t> is_moving =
+      ego_motion::dynamic_mask(scan, radial, filter_for(config_.ego_motion, frame.ego));
+  for (std::size_t row = 0; row < scan.size(); ++row) {
+    frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0;
+  }
+  if (!config_.dynamics.predict) {
+    return;
+  }
+  const Scan at_stamp = registration::undo_sweep(scan, state_->sweep);
+  for (tracking::TrackedObject& object : tracker_.update(at_stamp, radial, is_moving, frame.T_world_sensor, workers_)) {
+    if (object.status != tracking::TrackStatus::kConfirmed) {
+      continue;
+    }
+    for (const std::uint32_t row : object.members) {
+      frame.labels[scan.records()[row]] = static_cast<std::int32_t>(object.id);
+    }
+    frame.tracked.push_back(std::move(object));
+  }
+}
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,81 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "dynamic_icp/base/parallel.hpp"
+#include "dynamic_icp/ego_motion/ego_filter.hpp"
+#include "dynamic_icp/mapping/plane_map.hpp"
+#include "dynamic_icp/odometry/config.hpp"
+#include "dynamic_icp/odometry/displacement.hpp"
+#include "dynamic_icp/odometry/frame.hpp"
+#include "dynamic_icp/odometry/odometry.hpp"
+#include "dynamic_icp/odometry/stage_clock.hpp"
+#include "dynamic_icp/odometry/turn_filter.hpp"
+#include "dynamic_icp/registration/map_alignment.hpp"
+#include "dynamic_icp/tracking/object_tracker.hpp"
+
+namespace dynamic_icp::odometry {
+
+/// Preset `default` of Dynamic-ICP. The Doppler of the static scene gives the velocity, and the velocities of three
+/// scans the way from one to the next; the static points, aligned to a local map of planes, give the turn and hold the
+/// position. Moving objects are tracked beside it. See docs/method.md, "Beyond the paper".
+///
+/// The same scans give the same bits for any number of threads.
+class MapOdometry final : public Odometry {
+ public:
+  /// `threads` = 0 takes as many as the machine has. Throws UsageError when the configuration is out of range.
+  explicit MapOdometry(const Config& config, int threads = 0);
+
+  Frame process(const RawScan& raw) override;
+
+ private:
+  /// A scan at hand, with its times.
+  struct Moment {
+    Scan still;             ///< its static points, thinned
+    double stamp_s = 0.0;   ///< after the first scan
+    double middle_s = 0.0;  ///< of the sweep, after the stamp
+    ego_motion::EgoVelocity ego;
+  };
+
+  /// What is known of the sensor at the last usable scan.
+  struct State {
+    double stamp_s = 0.0;
+    Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+    Eigen::Matrix3d position_covariance = Eigen::Matrix3d::Zero();   ///< m^2, against the map
+    Eigen::Matrix3d position_information = Eigen::Matrix3d::Zero();  ///< 1/m^2, from the points of the scan
+    registration::SweepMotion sweep;
+    TurnState turn;
+    std::vector<VelocitySample> velocities;  ///< of the last scans, at most three
+    ego_motion::EgoVelocity ego;
+    double usual_match = 0.0;  ///< share of the points that agree with the map, as it was lately
+    int scans_in_map = 0;
+    Moment first;  ///< the only scan in the map, until the next one shows how it turned
+  };
+
+  [[nodiscard]] ego_motion::EgoVelocity estimate_ego(const Scan& scan, double stamp_s) const;
+  void begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor);
+  void go_on(const Moment& now, Frame& frame);
+  void lose(const Moment& now, const registration::MotionPrior& prior, Frame& frame);
+  void extrapolate(double stamp_s, FrameStatus status, Frame& frame) const;
+  void describe(const registration::MotionPrior& prior, const registration::MapAlignment& found, double length_m,
+                Frame& frame) const;
+  [[nodiscard]] std::vector<VelocitySample> velocities_with(const Moment& now) const;
+  [[nodiscard]] registration::MotionPrior motion_prior(const Moment& now,
+                                                       const std::vector<VelocitySample>& velocities) const;
+  [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
+  void add_to_map(const Moment& now);
+  void track_objects(const Scan& scan, Frame& frame);
+
+  Config config_;
+  Workers workers_;
+  mapping::PlaneMap map_;
+  tracking::ObjectTracker tracker_;
+  std::optional<Stamp> first_stamp_;
+  std::optional<Stamp> last_stamp_;
+  std::optional<State> state_;  ///< empty before the first usable scan
+};
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,38 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/base/config_field.hpp"
+#include "dynamic_icp/registration/map_alignment.hpp"
+
+namespace dynamic_icp::odometry {
+
+struct TurnFilterConfig {
+  double start_omega_rad_s = 0.5;  ///< deviation of the rate of turn at the first scan
+  double alpha_rad_s2 = 1.0;       ///< deviation of the angular acceleration of a vehicle
+  double alpha_time_s = 0.5;       ///< how long an angular acceleration lasts
+};
+
+ConfigFields fields(TurnFilterConfig& config);
+
+/// How the sensor stands and turns at the stamp of a scan, and how well that is known.
+struct TurnState {
+  Eigen::Matrix3d R_map_sensor = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();                     ///< rad/s, sensor axes
+  Eigen::Vector3d alpha = Eigen::Vector3d::Zero();                     ///< rad/s^2, sensor axes
+  registration::Matrix9d covariance = registration::Matrix9d::Zero();  ///< of [rotation (map axes); omega; alpha]
+};
+
+/// At the first scan: the map's axes are those of the sensor, nothing is known of the turn.
+TurnState first_turn_state(const TurnFilterConfig& config);
+
+/// `dt_s` later. The angular acceleration fades with its time constant and is driven by noise that keeps its deviation
+/// (a first order Gauss-Markov process); rotation and rate follow from it.
+TurnState predict(const TurnState& state, double dt_s, const TurnFilterConfig& config);
+
+/// The state that an alignment found.
+TurnState turn_state(const registration::MapAlignment& alignment);
+
+}  // namespace dynamic_icp::odometry

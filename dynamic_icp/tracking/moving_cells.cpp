@@ -1,0 +1,178 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tracking/moving_cells.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "dynamic_icp/dynamics/disjoint_sets.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
+constexpr std::size_t kBlock = 4096;
+constexpr double kCellsEachWay = 1 << 20;
+
+/// Three cell coordinates of 21 bits each; points beyond the reach of the numbers share the outermost cells.
+std::uint64_t cell_key(const Eigen::Vector3d& point, double size) {
+  std::uint64_t key = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double cell = std::clamp(std::floor(point[axis] / size), -kCellsEachWay, kCellsEachWay - 1.0);
+    key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(cell) + (1 << 20));
+  }
+  return key;
+}
+
+/// Gives keys the numbers 0, 1, ... in the order in which they come: open addressing.
+class KeyNumbers {
+ public:
+  explicit KeyNumbers(std::size_t most) : keys_(std::bit_ceil(2 * most + 1), kEmpty), numbers_(keys_.size()) {}
+
+  std::uint32_t number(std::uint64_t key) {
+    const std::size_t mask = keys_.size() - 1;
+    std::size_t slot = ((key ^ key >> 31) * 0x9e3779b97f4a7c15ULL >> 29) & mask;
+    while (keys_[slot] != kEmpty && keys_[slot] != key) {
+      slot = (slot + 1) & mask;
+    }
+    if (keys_[slot] == kEmpty) {
+      keys_[slot] = key;
+      numbers_[slot] = count_++;
+    }
+    return numbers_[slot];
+  }
+
+ private:
+  std::vector<std::uint64_t> keys_;
+  std::vector<std::uint32_t> numbers_;
+  std::uint32_t count_ = 0;
+};
+
+void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& cell) {
+  cell.centroid += scan.points()[row];
+  cell.direction += scan.directions()[row];
+  cell.radial_mps += radial;
+  cell.time_s += scan.has_times() ? scan.times()[row] : 0.0;
+  ++cell.count;
+}
+
+/// From sums to means.
+void take_means(MovingCell& cell) {
+  const auto count = static_cast<double>(cell.count);
+  cell.centroid /= count;
+  cell.direction /= count;
+  cell.radial_mps /= count;
+  cell.time_s /= count;
+}
+
+/// Whether a cell may lie beside the gap where the radial velocity of its body passes zero.
+bool beside_gap(const MovingCell& cell, const GroupingConfig& config) {
+  return std::abs(cell.radial_mps) <= config.bridge_velocity_mps;
+}
+
+/// The longest link of a cell to a cell that is farther from the sensor.
+double longest_link(const MovingCell& cell, double range, const GroupingConfig& config) {
+  const double link = config.link_distance_m + config.link_growth * range;
+  return beside_gap(cell, config) ? std::max(link, config.bridge_m) : link;
+}
+
+/// Whether two cells are neighbours on one body; `range` is that of the nearer one.
+bool linked(const MovingCell& a, const MovingCell& b, double range, const GroupingConfig& config) {
+  const bool gap = a.radial_mps * b.radial_mps < 0.0 && beside_gap(a, config) && beside_gap(b, config);
+  const double link = config.link_distance_m + config.link_growth * range;
+  const double longest = gap ? std::max(link, config.bridge_m) : link;
+  const double squared = (a.centroid - b.centroid).squaredNorm();
+  return squared <= longest * longest &&
+         std::abs(a.radial_mps - b.radial_mps) <= config.link_velocity_mps + config.link_shear_rps * std::sqrt(squared);
+}
+
+}  // namespace
+
+ConfigFields fields(GroupingConfig& config) {
+  return {
+      {"cell_size_m", &config.cell_size_m, 0.01, 10.0, "m", "edge of the cubes that thin moving points for grouping"},
+      {"link_distance_m", &config.link_distance_m, 0.0, 100.0, "m",
+       "moving cells of one object are at most link_distance + link_growth * range apart"},
+      {"link_growth", &config.link_growth, 0.0, 1.0, "m/m", "growth of that distance with the range"},
+      {"link_velocity_mps", &config.link_velocity_mps, 0.0, 100.0, "m/s",
+       "radial velocities of neighbours on one object differ by at most link_velocity + link_shear * distance"},
+      {"link_shear_rps", &config.link_shear_rps, 0.0, 100.0, "(m/s)/m", "growth of that difference with the distance"},
+      {"bridge_m", &config.bridge_m, 0.0, 100.0, "m", "longest gap in an object where its radial velocity passes zero"},
+      {"bridge_velocity_mps", &config.bridge_velocity_mps, 0.0, 100.0, "m/s",
+       "largest radial speed of moving cells beside such a gap"},
+  };
+}
+
+MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
+                         const GroupingConfig& config, const Workers& workers) {
+  MovingCells result;
+  for (std::uint32_t row = 0; row < scan.size(); ++row) {
+    if (is_moving[row] != 0) {
+      result.rows.push_back(row);
+    }
+  }
+  const std::size_t n = result.rows.size();
+  std::vector<std::uint64_t> keys(n);
+  workers.for_each(n, kBlock,
+                   [&](std::size_t i) { keys[i] = cell_key(scan.points()[result.rows[i]], config.cell_size_m); });
+  KeyNumbers numbers(n);
+  result.cell_of.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::uint32_t cell = numbers.number(keys[i]);
+    if (cell == result.cells.size()) {
+      result.cells.emplace_back();
+    }
+    result.cell_of[i] = cell;
+    add_point(scan, result.rows[i], radial[result.rows[i]], result.cells[cell]);
+  }
+  for (MovingCell& cell : result.cells) {
+    take_means(cell);
+  }
+  return result;
+}
+
+std::vector<std::uint32_t> group_cells(std::span<const MovingCell> cells, const GroupingConfig& config) {
+  std::vector<std::uint32_t> order(cells.size());
+  std::iota(order.begin(), order.end(), 0u);
+  // Along the sorted axis only cells within the reach of a link have to be looked at.
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
+    const double xa = cells[a].centroid.x();
+    const double xb = cells[b].centroid.x();
+    return xa != xb ? xa < xb : a < b;
+  });
+  std::vector<double> ranges(cells.size());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    ranges[i] = cells[i].centroid.norm();
+  }
+  dynamics::DisjointSets sets(cells.size());
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const MovingCell& a = cells[order[i]];
+    const double reach = longest_link(a, ranges[order[i]], config);
+    for (std::size_t k = i + 1; k < order.size(); ++k) {
+      const MovingCell& b = cells[order[k]];
+      // The nearer cell decides how far a link may reach, so none of `a` is longer than this.
+      if (b.centroid.x() - a.centroid.x() > reach) {
+        break;
+      }
+      if (linked(a, b, std::min(ranges[order[i]], ranges[order[k]]), config)) {
+        sets.unite(order[i], order[k]);
+      }
+    }
+  }
+  std::vector<std::uint32_t> number_of_root(cells.size(), ~0u);
+  std::vector<std::uint32_t> groups(cells.size());
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    std::uint32_t& number = number_of_root[sets.find(i)];
+    if (number == ~0u) {
+      number = count++;
+    }
+    groups[i] = number;
+  }
+  return groups;
+}
+
+}  // namespace dynamic_icp::tracking

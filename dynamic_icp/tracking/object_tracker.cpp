@@ -1,0 +1,329 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tracking/object_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+#include <utility>
+
+#include "dynamic_icp/tracking/cell_groups.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::int32_t kNobody = -1;
+constexpr double kWidest = 2.0;       // new objects are not wider than so many vehicles
+constexpr double kLeastSignal = 2.0;  // of the radial velocities of a new object over their spread
+
+double sweep_duration(const Scan& scan) {
+  return scan.times().empty() ? 0.0 : *std::max_element(scan.times().begin(), scan.times().end());
+}
+
+/// Whether a point that stands cannot be part of a body that makes it expect a radial velocity.
+bool contradicts(double expected_mps, double radial_mps, const TrackerConfig& config) {
+  return std::abs(expected_mps) > config.same_velocity_mps &&
+         std::abs(radial_mps - expected_mps) > config.same_velocity_mps;
+}
+
+}  // namespace
+
+/// A track with what is known of it besides its motion.
+struct ObjectTracker::Entry {
+  std::int64_t id;
+  Track track;      ///< at the mean time of its last sighting
+  Track predicted;  ///< at the stamp of the present scan
+  bool confirmed = false;
+  int age = 0;
+  int seen = 0;
+  int missed = 0;
+  std::vector<std::uint32_t> members = {};
+};
+
+ObjectTracker::ObjectTracker(const TrackerConfig& config) : config_(config) { check_fields(fields(config_)); }
+ObjectTracker::~ObjectTracker() = default;
+ObjectTracker::ObjectTracker(ObjectTracker&&) noexcept = default;
+ObjectTracker& ObjectTracker::operator=(ObjectTracker&&) noexcept = default;
+
+std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<const double> radial,
+                                                 std::span<const std::uint8_t> is_moving,
+                                                 const Eigen::Isometry3d& T_world_sensor, const Workers& workers) {
+  if (radial.size() != scan.size() || is_moving.size() != scan.size()) {
+    throw std::invalid_argument("radial velocities and moving flags must have one value per point of the scan");
+  }
+  if (!std::all_of(radial.begin(), radial.end(), [](double r) { return std::isfinite(r); }) ||
+      !T_world_sensor.matrix().allFinite()) {
+    throw std::invalid_argument("radial velocities and the pose of the sensor must be finite");
+  }
+  if (last_stamp_ && scan.stamp() <= *last_stamp_) {
+    throw std::invalid_argument("scans must come in the order of their stamps");
+  }
+  first_stamp_ = first_stamp_.value_or(scan.stamp());
+  const SensorMotion sensor =
+      last_stamp_ ? continued_motion(T_world_last_, T_world_sensor, seconds_between(*last_stamp_, scan.stamp()))
+                  : SensorMotion{T_world_sensor};
+  last_stamp_ = scan.stamp();
+  T_world_last_ = T_world_sensor;
+
+  TrackingInput input{scan,
+                      radial,
+                      is_moving,
+                      sensor,
+                      seconds_between(*first_stamp_, scan.stamp()),
+                      sweep_duration(scan),
+                      {},
+                      {},
+                      RangeImage(scan, workers)};
+  input.moving = gather_cells(scan, radial, is_moving, config_.grouping, workers);
+  input.groups = group_cells(input.moving.cells, config_.grouping);
+  for (Entry& entry : entries_) {
+    entry.predicted = entry.track;
+    entry.predicted.predict(input.stamp_s, config_.track);
+  }
+  std::vector<std::int32_t> owner(input.moving.cells.size(), kNobody);
+  assign(input, owner);
+  adopt(input, owner);
+  collect_members(input, owner, workers);
+  give_birth(input, owner);
+  bury();
+  std::vector<TrackedObject> objects;
+  for (const Entry& entry : entries_) {
+    objects.push_back(report(entry, sensor));
+  }
+  return objects;
+}
+
+/// Gives each cell to the track whose box and velocity fit it best.
+void ObjectTracker::assign(const TrackingInput& input, std::vector<std::int32_t>& owner) const {
+  std::vector<double> best(owner.size(), 1.0);
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    const Expectation expected(entries_[k].predicted, input.sensor, config_);
+    const double reach = 0.5 * expected.box.size.norm() + expected.gate_m;
+    for (std::size_t i = 0; i < owner.size(); ++i) {
+      const MovingCell& cell = input.moving.cells[i];
+      const Vector3d point = input.sensor.T_world_sensor * cell.centroid;
+      if ((point - cell.time_s * expected.velocity - expected.box.centre).squaredNorm() > reach * reach) {
+        continue;
+      }
+      const Vector3d direction = input.sensor.direction_world(cell.direction, cell.time_s);
+      const double score = std::max(expected.outside(point, cell.time_s) / expected.gate_m,
+                                    expected.deviation(direction, cell.radial_mps));
+      if (score < best[i]) {
+        best[i] = score;
+        owner[i] = static_cast<std::int32_t>(k);
+      }
+    }
+  }
+}
+
+/// Cells that are linked to those of a track and not far from its box become part of it: sides that come into view.
+void ObjectTracker::adopt(const TrackingInput& input, std::vector<std::int32_t>& owner) const {
+  std::vector<std::vector<std::int32_t>> owners_of_group;
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    if (input.groups[i] >= owners_of_group.size()) {
+      owners_of_group.resize(input.groups[i] + 1);
+    }
+    std::vector<std::int32_t>& owners = owners_of_group[input.groups[i]];
+    if (owner[i] != kNobody && std::find(owners.begin(), owners.end(), owner[i]) == owners.end()) {
+      owners.push_back(owner[i]);
+    }
+  }
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    if (owner[i] != kNobody) {
+      continue;
+    }
+    const MovingCell& cell = input.moving.cells[i];
+    double nearest = config_.growth_m;
+    for (const std::int32_t k : owners_of_group[input.groups[i]]) {
+      const Expectation expected(entries_[static_cast<std::size_t>(k)].predicted, input.sensor, config_);
+      const double outside = expected.outside(input.sensor.T_world_sensor * cell.centroid, cell.time_s);
+      const Vector3d direction = input.sensor.direction_world(cell.direction, cell.time_s);
+      if (outside < nearest && expected.deviation(direction, cell.radial_mps) < 2.0) {
+        nearest = outside;
+        owner[i] = k;
+      }
+    }
+  }
+}
+
+/// Adds to slow tracks the points in their boxes that are not among the moving ones but move as they do.
+void ObjectTracker::gather_still(const TrackingInput& input) {
+  std::vector<std::size_t> slow;
+  std::vector<Expectation> expectations;
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    const Expectation expected(entries_[k].predicted, input.sensor, config_);
+    if (expected.may_look_still(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
+      slow.push_back(k);
+      expectations.push_back(expected);
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> still(slow.size());
+  std::vector<std::size_t> contradictions(slow.size(), 0);
+  visit_still_points(input, expectations, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+    if (expectations[i].deviation(direction, input.radial[row]) < 1.0) {
+      still[i].push_back(row);
+    }
+    contradictions[i] += contradicts(expectations[i].W.dot(direction), input.radial[row], config_) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    std::vector<std::uint32_t>& members = entries_[slow[i]].members;
+    if (contradictions[i] > members.size() + still[i].size()) {
+      members.clear();
+      continue;
+    }
+    const auto middle = static_cast<std::ptrdiff_t>(members.size());
+    members.insert(members.end(), still[i].begin(), still[i].end());
+    std::inplace_merge(members.begin(), members.begin() + middle, members.end());
+  }
+}
+
+/// Lets each track take in its points.
+void ObjectTracker::collect_members(const TrackingInput& input, const std::vector<std::int32_t>& owner,
+                                    const Workers& workers) {
+  for (Entry& entry : entries_) {
+    entry.members.clear();
+  }
+  for (std::size_t i = 0; i < input.moving.rows.size(); ++i) {
+    const std::int32_t k = owner[input.moving.cell_of[i]];
+    if (k != kNobody) {
+      entries_[static_cast<std::size_t>(k)].members.push_back(input.moving.rows[i]);
+    }
+  }
+  gather_still(input);
+  workers.for_each(entries_.size(), 1, [&](std::size_t k) {
+    Entry& entry = entries_[k];
+    ++entry.age;
+    if (entry.members.size() < 3) {
+      ++entry.missed;
+      entry.members.clear();
+      return;
+    }
+    Track corrected = entry.track;
+    corrected.correct(make_sighting(input.scan, input.radial, entry.members, input.sensor, &input.view), input.stamp_s,
+                      config_.track);
+    if (corrected.best().spread_mps() > config_.max_spread_mps) {
+      ++entry.missed;
+      entry.members.clear();
+      return;
+    }
+    entry.track = corrected;
+    entry.missed = 0;
+    ++entry.seen;
+    const bool seen_often =
+        entry.seen >= config_.confirm_scans || entry.members.size() >= static_cast<std::size_t>(config_.confirm_points);
+    entry.confirmed = entry.confirmed || (seen_often && is_credible(entry));
+  });
+}
+
+/// Whether the velocity is worth reporting: known well enough, or as well as it will be.
+bool ObjectTracker::is_credible(const Entry& entry) const {
+  const double variance = entry.track.velocity_covariance().topLeftCorner<2, 2>().trace();
+  return variance < config_.confirm_deviation_mps * config_.confirm_deviation_mps ||
+         entry.seen >= config_.confirm_anyway_scans;
+}
+
+/// Groups nobody owns become tracks.
+void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner) {
+  std::vector<std::uint32_t> unowned;
+  for (std::uint32_t cell = 0; cell < owner.size(); ++cell) {
+    if (owner[cell] == kNobody) {
+      unowned.push_back(cell);
+    }
+  }
+  std::vector<Entry> newborn;
+  std::vector<Expectation> expectations;
+  for (CellGroup& group :
+       vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping)) {
+    const Track track(make_sighting(input.scan, input.radial, group.rows, input.sensor, &input.view), input.stamp_s,
+                      config_.track);
+    // Errors around zero have more spread than signal.
+    const double spread = track.best().spread_mps();
+    const bool plausible = track.box().size.y() <= kWidest * config_.track.largest_width_m;
+    if (plausible && spread <= config_.max_spread_mps && track.best().signal_mps() >= kLeastSignal * spread) {
+      newborn.push_back({0, track, track});
+      newborn.back().predicted.predict(input.stamp_s, config_.track);
+      newborn.back().members = std::move(group.rows);
+      expectations.emplace_back(newborn.back().predicted, input.sensor, config_);
+    }
+  }
+  // Where many points stand still, some that seem to move are errors of measurement.
+  std::vector<std::size_t> contradictions(newborn.size(), 0);
+  visit_still_points(input, expectations, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+    contradictions[i] += contradicts(expectations[i].W.dot(direction), input.radial[row], config_) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < newborn.size(); ++i) {
+    Entry& entry = newborn[i];
+    const std::size_t points = entry.members.size();
+    if (contradictions[i] > points) {
+      continue;
+    }
+    entry.id = next_id_++;
+    entry.age = 1;
+    entry.seen = 1;
+    const bool seen_often = points >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
+    entry.confirmed = seen_often && is_credible(entry);
+    entries_.push_back(std::move(entry));
+  }
+}
+
+/// Ends tracks that stand and those not seen for long, tentative ones at once, and makes one of those that share a
+/// place.
+void ObjectTracker::bury() {
+  std::vector<Entry> living;
+  for (Entry& entry : entries_) {
+    const bool lost = entry.missed > (entry.confirmed ? config_.coast_scans : 0);
+    if (lost || entry.track.motion().velocity().norm() < config_.least_speed_mps) {
+      continue;
+    }
+    const auto same = std::find_if(living.begin(), living.end(), [&](const Entry& older) {
+      return distance_outside(older.track.box(), entry.track.motion().position()) <= 0.0 ||
+             distance_outside(entry.track.box(), older.track.motion().position()) <= 0.0;
+    });
+    if (same == living.end()) {
+      living.push_back(std::move(entry));
+    } else if (entry.members.size() > same->members.size()) {
+      // The name of the older one goes on with the state of what is seen more of.
+      same->track = entry.track;
+      same->members = std::move(entry.members);
+      same->confirmed = same->confirmed || entry.confirmed;
+      same->missed = entry.missed;
+    }
+  }
+  entries_ = std::move(living);
+}
+
+TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sensor) const {
+  Track track = entry.track;
+  const double stamp_s = seconds_between(*first_stamp_, *last_stamp_);
+  track.predict(stamp_s, config_.track);
+  const MotionFilter& motion = track.motion();
+  const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
+  const Eigen::Matrix3d R = T_sensor_world.linear();
+  TrackedObject object;
+  object.id = entry.id;
+  object.status = !entry.confirmed   ? TrackStatus::kTentative
+                  : entry.missed > 0 ? TrackStatus::kCoasting
+                                     : TrackStatus::kConfirmed;
+  object.velocity_sensor = R * motion.velocity();
+  object.covariance = R * track.velocity_covariance() * R.transpose();
+  object.yaw_rate_rps = motion.yaw_rate();
+  object.yaw_rate_variance = motion.covariance()(6, 6);
+  object.box = track.box();
+  object.box.centre = T_sensor_world * object.box.centre;
+  object.box.axes = R * object.box.axes;
+  object.centroid = object.box.centre;
+  object.extent = aligned_extent(object.box);
+  const Vector3d sight = object.centroid.normalized();
+  const Vector3d across = R.col(2).cross(sight).normalized();
+  object.tangential_observed =
+      across.dot(object.covariance * across) < config_.tangential_deviation_mps * config_.tangential_deviation_mps;
+  object.age_scans = entry.age;
+  object.scans_seen = entry.seen;
+  object.members = entry.members;
+  return object;
+}
+
+}  // namespace dynamic_icp::tracking

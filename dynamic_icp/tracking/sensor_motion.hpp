@@ -1,0 +1,26 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+namespace dynamic_icp::tracking {
+
+/// Where the sensor is during one scan: a pose at the stamp and a constant twist after it.
+struct SensorMotion {
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();   ///< at the stamp
+  Eigen::Vector3d velocity_world = Eigen::Vector3d::Zero();           ///< m/s
+  Eigen::Vector3d angular_velocity_sensor = Eigen::Vector3d::Zero();  ///< rad/s
+
+  [[nodiscard]] Eigen::Vector3d position(double time_s) const;  ///< in the world, so long after the stamp
+
+  /// A line of sight measured so long after the stamp, in world axes.
+  [[nodiscard]] Eigen::Vector3d direction_world(const Eigen::Vector3d& direction, double time_s) const;
+};
+
+/// The motion from the pose one scan earlier, `dt_s` > 0 before, taken as going on.
+SensorMotion continued_motion(const Eigen::Isometry3d& T_world_earlier, const Eigen::Isometry3d& T_world_sensor,
+                              double dt_s);
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,42 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/tracking/expectation.hpp"
+#include "dynamic_icp/tracking/moving_cells.hpp"
+#include "dynamic_icp/tracking/range_image.hpp"
+#include "dynamic_icp/tracking/sensor_motion.hpp"
+
+namespace dynamic_icp::tracking {
+
+/// One scan, prepared for tracking.
+struct TrackingInput {
+  const Scan& scan;
+  std::span<const double> radial;           ///< m/s over ground, for each row
+  std::span<const std::uint8_t> is_moving;  ///< for each row
+  SensorMotion sensor;
+  double stamp_s = 0.0;  ///< since the first scan
+  double sweep_s = 0.0;  ///< largest time of a point
+  MovingCells moving;
+  std::vector<std::uint32_t> groups;  ///< of the cells
+  RangeImage view;
+};
+
+/// Called with the number of an expectation, a row, and the row's line of sight in world axes.
+using StillVisitor = std::function<void(std::size_t expectation, std::uint32_t row, const Eigen::Vector3d& direction)>;
+
+/// Visits each point that is not among the moving ones in the box of each expectation, without the lowest part of the
+/// box, where the ground may be. In the order of the rows.
+void visit_still_points(const TrackingInput& input, std::span<const Expectation> expectations,
+                        const StillVisitor& visit);
+
+}  // namespace dynamic_icp::tracking
