@@ -2,7 +2,20 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/ego_motion/ego_filter.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 namespace dynamic_icp::ego_motion {
+namespace {
+
+constexpr double kCalibratedVariance = 0.005 * 0.005;  // (m/s)^2, of a sensor that counts as calibrated
+
+/// Logarithm of the normal density at a distance from its mean, without the constant that cancels.
+double log_density(double distance, double variance) {
+  return -0.5 * (distance * distance / variance + std::log(variance));
+}
+
+}  // namespace
 
 ConfigFields fields(DriftConfig& config) {
   return {
@@ -38,6 +51,30 @@ EgoPrior predict(const EgoVelocity& ego, double dt_s, const DriftConfig& config)
   prior.covariance = F * ego.joint_covariance * F.transpose() + config.jerk_mps3 * config.jerk_mps3 * G * G.transpose();
   prior.covariance(6, 6) += config.bias_drift_mps * config.bias_drift_mps * dt_s;
   return prior;
+}
+
+EgoVelocity weigh_calibration(const EgoVelocity& filtered, const DriftConfig& config) {
+  const double variance = filtered.bias_variance;
+  if (!(variance > 0.0)) {
+    return filtered;
+  }
+  const double presumed = config.start_bias_mps * config.start_bias_mps;
+  const double log_odds = log_density(filtered.bias_mps, variance + kCalibratedVariance) - log_density(0.0, presumed);
+  const double probability = 1.0 / (1.0 + std::exp(std::clamp(-log_odds, -50.0, 50.0)));
+
+  // Given that the bias is zero, the rest follows along its regression on the bias.
+  const Vector7d gain = filtered.joint_covariance.col(6) / filtered.joint_covariance(6, 6);
+  const Vector7d apart = -filtered.bias_mps * gain;
+  const double known = std::min(variance, kCalibratedVariance);
+  EgoVelocity weighed = filtered;
+  weighed.velocity_sensor += probability * apart.head<3>();
+  weighed.acceleration_sensor += probability * apart.segment<3>(3);
+  weighed.bias_mps += probability * apart[6];
+  weighed.joint_covariance += probability * (known - variance) * gain * gain.transpose() +
+                              probability * (1.0 - probability) * apart * apart.transpose();
+  weighed.covariance = weighed.joint_covariance.topLeftCorner<3, 3>();
+  weighed.bias_variance = weighed.joint_covariance(6, 6);
+  return weighed;
 }
 
 }  // namespace dynamic_icp::ego_motion

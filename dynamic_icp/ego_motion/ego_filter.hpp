@@ -25,4 +25,14 @@ EgoPrior first_prior(const DriftConfig& config);
 /// they are not.
 EgoPrior predict(const EgoVelocity& ego, double dt_s, const DriftConfig& config);
 
+/// Takes into account that the sensor may well be calibrated. The filter knows of the bias that it is about
+/// `start_bias_mps` or less; half of all sensors have none at all. How much more likely that is by now follows from the
+/// filter's estimate alone (Savage and Dickey): odds = N(0; bias, variance) / N(0; 0, start_bias^2). The result is the
+/// mean and covariance of both cases, the filter's estimate and the same given that the bias is zero (within 5 mm/s).
+/// Where velocity and bias can be told apart this changes nothing; in a narrow view, in a jam, or in the first scan of
+/// a sweep it keeps a bias that nobody has seen from spoiling the velocity.
+///
+/// For use, not for the filter: what it is given is to be carried on.
+EgoVelocity weigh_calibration(const EgoVelocity& filtered, const DriftConfig& config);
+
 }  // namespace dynamic_icp::ego_motion

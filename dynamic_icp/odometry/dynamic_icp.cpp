@@ -24,6 +24,9 @@ void label_points(Frame& frame, const Scan& scan, const std::vector<std::uint8_t
   frame.labels.assign(frame.points, -1);
   for (std::size_t row = 0; row < scan.size(); ++row) {
     frame.labels[scan.records()[row]] = is_dynamic[row] != 0 ? -1 : 0;
+    if (is_dynamic[row] == 0) {
+      frame.static_points.push_back(scan.points()[row]);
+    }
   }
   std::int32_t id = 0;
   for (const dynamics::ObjectEstimate& object : frame.clusters) {

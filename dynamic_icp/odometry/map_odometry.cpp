@@ -32,12 +32,18 @@ constexpr double kUnknown_m = 100.0;
 // Where no scan tells, a vehicle changes its velocity by no more than this.
 constexpr double kBlindAcceleration_mps2 = 3.0;
 
-double middle_of(const std::vector<double>& times) {
-  if (times.empty()) {
-    return 0.0;
+/// When the points of a scan were taken, s after its stamp.
+struct TimeSpan {
+  double middle_s = 0.0;
+  double duration_s = 0.0;
+};
+
+TimeSpan time_span(const Scan& scan) {
+  if (!scan.has_times()) {
+    return {};
   }
-  const auto [low, high] = std::minmax_element(times.begin(), times.end());
-  return 0.5 * (*low + *high);
+  const auto [low, high] = std::minmax_element(scan.times().begin(), scan.times().end());
+  return {0.5 * (*low + *high), *high - *low};
 }
 
 /// The scan with the times that count: its own, declared ones where it has none, or none at all.
@@ -108,8 +114,10 @@ Frame MapOdometry::process(const RawScan& raw) {
   }
   Moment now;
   now.stamp_s = seconds_between(*first_stamp_, raw.stamp);
-  now.middle_s = middle_of(scan.times());
-  now.ego = estimate_ego(scan, now.stamp_s);
+  now.middle_s = time_span(scan).middle_s;
+  now.duration_s = time_span(scan).duration_s;
+  now.filtered = estimate_ego(whole, now.stamp_s);
+  now.ego = ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift);
   frame.ego = now.ego;
   now.still = static_part(scan, ego_motion::dynamic_mask(scan, ego_motion::compensated_doppler(scan, now.ego),
                                                          filter_for(config_.ego_motion, now.ego)));
@@ -137,14 +145,14 @@ Frame MapOdometry::process(const RawScan& raw) {
 ego_motion::EgoVelocity MapOdometry::estimate_ego(const Scan& scan, double stamp_s) const {
   const EgoMotionConfig& config = config_.ego_motion;
   if (!config.use_consensus) {
-    const Eigen::Vector3d start = state_ ? state_->ego.velocity_sensor : Eigen::Vector3d::Zero();
+    const Eigen::Vector3d start = state_ ? state_->filtered.velocity_sensor : Eigen::Vector3d::Zero();
     ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, start, config.regression, workers_);
-    ego.reference_time_s = middle_of(scan.times());
+    ego.reference_time_s = time_span(scan).middle_s;
     return ego;
   }
   const ego_motion::EgoPrior prior =
-      state_ ? ego_motion::predict(state_->ego, stamp_s + middle_of(scan.times()) - state_->velocities.back().time_s,
-                                   config.drift)
+      state_ ? ego_motion::predict(state_->filtered,
+                                   stamp_s + time_span(scan).middle_s - state_->velocities.back().time_s, config.drift)
              : ego_motion::first_prior(config.drift);
   return ego_motion::estimate_velocity(scan, prior, config.consensus, workers_);
 }
@@ -154,7 +162,7 @@ void MapOdometry::begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor
   map_.clear();
   State state;
   state.stamp_s = now.stamp_s;
-  state.ego = now.ego;
+  state.filtered = now.filtered;
   state.T_map_sensor = T_map_sensor;
   state.turn = first_turn_state(config_.turn);
   state.turn.R_map_sensor = T_map_sensor.linear();
@@ -212,16 +220,18 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
     lose(now, prior, frame);
     return;
   }
-  describe(prior, found, registration::typical_distance(now.still), frame);
+  const TurnState expected = predict(state_->turn, now.stamp_s - state_->stamp_s, config_.turn);
+  const TurnState turn = turn_state(found, expected, now.duration_s, config_.turn);
+  describe(prior, found, turn.covariance.topLeftCorner<3, 3>(), registration::typical_distance(now.still), frame);
 
   state_->usual_match = state_->scans_in_map == 1
                             ? match(found)
                             : state_->usual_match + kUsualMatchGain * (match(found) - state_->usual_match);
   state_->stamp_s = now.stamp_s;
   state_->T_map_sensor = found.T_map_sensor;
-  state_->turn = turn_state(found);
+  state_->turn = turn;
   state_->sweep = found.sweep;
-  state_->ego = now.ego;
+  state_->filtered = now.filtered;
   // The map is the mean of its last scans: a position drifts away from it only as long as it remembers.
   const double memory = config_.mapping.memory_scans;
   state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);
@@ -232,10 +242,10 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
 
 /// What the frame says of an alignment.
 void MapOdometry::describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
-                           double length_m, Frame& frame) const {
+                           const Eigen::Matrix3d& rotation_covariance, double length_m, Frame& frame) const {
   MotionEvidence evidence;
   evidence.source_rotation_covariance = state_->turn.covariance.topLeftCorner<3, 3>();
-  evidence.target_rotation_covariance = found.covariance.topLeftCorner<3, 3>();
+  evidence.target_rotation_covariance = rotation_covariance;
   evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
   evidence.source_position_information = state_->position_information;
   evidence.target_position_information = position_information(found.geometry_information);
@@ -307,8 +317,9 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
   registration::MotionPrior straightened = prior;
   for (int round = 0; round < kStraighteningRounds; ++round) {
     const Eigen::Matrix3d R_first_now = state_->T_map_sensor.linear().transpose() * found.T_map_sensor.linear();
-    state_->sweep.omega = log_so3(R_first_now) / dt_s;
-    straightened.sweep.omega = state_->sweep.omega;
+    const Eigen::Vector3d mean_omega = log_so3(R_first_now) / dt_s;
+    state_->sweep.omega = mean_omega;
+    straightened.sweep.omega = mean_omega;
     map_.clear();
     add_to_map(first);
     found = registration::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), kStraighteningGate_m,
@@ -318,13 +329,16 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
   return found;
 }
 
-void MapOdometry::add_to_map(const Moment& now) {
+/// Returns the points that were added, in sensor axes at the stamp.
+std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
   std::vector<Eigen::Vector3d> points = registration::undo_sweep(now.still, state_->sweep).points();
-  for (Eigen::Vector3d& point : points) {
+  std::vector<Eigen::Vector3d> in_map = points;
+  for (Eigen::Vector3d& point : in_map) {
     point = state_->T_map_sensor * point;
   }
-  map_.add(points, state_->T_map_sensor.translation(), workers_);
+  map_.add(in_map, state_->T_map_sensor.translation(), workers_);
   ++state_->scans_in_map;
+  return points;
 }
 
 void MapOdometry::track_objects(const Scan& scan, Frame& frame) {

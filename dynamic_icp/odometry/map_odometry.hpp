@@ -34,10 +34,12 @@ class MapOdometry final : public Odometry {
  private:
   /// A scan at hand, with its times.
   struct Moment {
-    Scan still;             ///< its static points, thinned
-    double stamp_s = 0.0;   ///< after the first scan
-    double middle_s = 0.0;  ///< of the sweep, after the stamp
+    Scan still;               ///< its static points, thinned
+    double stamp_s = 0.0;     ///< after the first scan
+    double middle_s = 0.0;    ///< of the sweep, after the stamp
+    double duration_s = 0.0;  ///< of the sweep
     ego_motion::EgoVelocity ego;
+    ego_motion::EgoVelocity filtered;  ///< the same as the filter carries it on, see weigh_calibration
   };
 
   /// What is known of the sensor at the last usable scan.
@@ -49,7 +51,7 @@ class MapOdometry final : public Odometry {
     registration::SweepMotion sweep;
     TurnState turn;
     std::vector<VelocitySample> velocities;  ///< of the last scans, at most three
-    ego_motion::EgoVelocity ego;
+    ego_motion::EgoVelocity filtered;
     double usual_match = 0.0;  ///< share of the points that agree with the map, as it was lately
     int scans_in_map = 0;
     Moment first;  ///< the only scan in the map, until the next one shows how it turned
@@ -60,13 +62,13 @@ class MapOdometry final : public Odometry {
   void go_on(const Moment& now, Frame& frame);
   void lose(const Moment& now, const registration::MotionPrior& prior, Frame& frame);
   void extrapolate(double stamp_s, FrameStatus status, Frame& frame) const;
-  void describe(const registration::MotionPrior& prior, const registration::MapAlignment& found, double length_m,
-                Frame& frame) const;
+  void describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
+                const Eigen::Matrix3d& rotation_covariance, double length_m, Frame& frame) const;
   [[nodiscard]] std::vector<VelocitySample> velocities_with(const Moment& now) const;
   [[nodiscard]] registration::MotionPrior motion_prior(const Moment& now,
                                                        const std::vector<VelocitySample>& velocities) const;
   [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
-  void add_to_map(const Moment& now);
+  std::vector<Eigen::Vector3d> add_to_map(const Moment& now);
   void track_objects(const Scan& scan, Frame& frame);
 
   Config config_;

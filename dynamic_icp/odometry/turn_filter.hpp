@@ -11,7 +11,7 @@ namespace dynamic_icp::odometry {
 
 struct TurnFilterConfig {
   double start_omega_rad_s = 0.5;  ///< deviation of the rate of turn at the first scan
-  double alpha_rad_s2 = 1.0;       ///< deviation of the angular acceleration of a vehicle
+  double alpha_rad_s2 = 0.5;       ///< deviation of the angular acceleration of a vehicle
   double alpha_time_s = 0.5;       ///< how long an angular acceleration lasts
 };
 
@@ -23,6 +23,7 @@ struct TurnState {
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();                     ///< rad/s, sensor axes
   Eigen::Vector3d alpha = Eigen::Vector3d::Zero();                     ///< rad/s^2, sensor axes
   registration::Matrix9d covariance = registration::Matrix9d::Zero();  ///< of [rotation (map axes); omega; alpha]
+  double liveliness = 1.0;  ///< variance of the angular acceleration over the configured one, as the last scans show it
 };
 
 /// At the first scan: the map's axes are those of the sensor, nothing is known of the turn.
@@ -32,7 +33,10 @@ TurnState first_turn_state(const TurnFilterConfig& config);
 /// (a first order Gauss-Markov process); rotation and rate follow from it.
 TurnState predict(const TurnState& state, double dt_s, const TurnFilterConfig& config);
 
-/// The state that an alignment found.
-TurnState turn_state(const registration::MapAlignment& alignment);
+/// The state that an alignment found from a prediction. How far it is from the prediction tells how lively the turn is.
+/// Within a sweep that takes `duration_s` the turn is no exact parabola: what the noise of the angular acceleration
+/// leaves to the fit is added to the covariance.
+TurnState turn_state(const registration::MapAlignment& alignment, const TurnState& predicted, double duration_s,
+                     const TurnFilterConfig& config);
 
 }  // namespace dynamic_icp::odometry
