@@ -78,6 +78,9 @@ struct Frame {
   std::size_t points_used = 0;  ///< after range crop and voxel grid
   Scan::Dropped dropped;
   std::size_t out_of_range = 0;
+  /// Points that stand still, thinned, in the sensor frame at the stamp (m): what a map is made of. Empty for methods
+  /// that do not tell them from moving ones.
+  std::vector<Eigen::Vector3d> static_points;
   /// Per point of the scan as read: -1 not used (dropped, not kept by the voxel grid, or moving without an object),
   /// 0 static, k > 0 a member of the k-th accepted object or of the tracked object with this id.
   std::vector<std::int32_t> labels;
