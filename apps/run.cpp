@@ -15,6 +15,7 @@
 #include "dynamic_icp/formats/output_folder.hpp"
 #include "dynamic_icp/formats/tum.hpp"
 #include "dynamic_icp/odometry/odometry.hpp"
+#include "dynamic_icp/results/map_writer.hpp"
 #include "dynamic_icp/results/run_writer.hpp"
 
 #include "apps/command_line.hpp"
@@ -36,6 +37,8 @@ struct RunOptions {
   std::string ground_truth;
   std::size_t start = 0;
   std::optional<std::size_t> max_frames;
+  std::optional<std::string> map_file;
+  double map_voxel_m = 0.1;
   bool save_labels = false;
   bool report = false;
   bool force = false;
@@ -66,6 +69,72 @@ Selection select_scans(const datasets::Dataset& dataset, const RunOptions& optio
   return selection;
 }
 
+/// The map to be made, if one is asked for. What cannot be is refused before anything is computed.
+std::optional<results::MapWriter> make_map(const RunOptions& options) {
+  if (!options.map_file) {
+    return std::nullopt;
+  }
+  results::check_map_file(*options.map_file);
+  if (options.method.method != "dynamic-icp") {
+    throw UsageError(fmt::format("--save-map: only dynamic-icp tells static points from moving ones, {} does not",
+                                 options.method.method));
+  }
+  return results::MapWriter(options.map_voxel_m);
+}
+
+/// What was found and done about the time that scans take: as in the first usable scan, and whether the others agree.
+struct SweepRecord {
+  std::optional<odometry::SweepReport> first;
+  bool same_times = true;
+  bool all_undone = true;
+
+  void add(const odometry::Frame& frame, const RawScan& scan) {
+    if (frame.status == odometry::FrameStatus::kTooFewPoints) {
+      return;
+    }
+    const odometry::SweepReport report = frame.sweep.value_or(odometry::sweep_in_data(scan));
+    first = first.value_or(report);
+    same_times = same_times && report.times == first->times;
+    all_undone = all_undone && report.undone;
+  }
+
+  [[nodiscard]] bool undone() const { return first && all_undone; }
+
+  [[nodiscard]] std::string times() const {
+    if (!same_times) {
+      return "mixed";
+    }
+    switch (first.value_or(odometry::SweepReport{}).times) {
+      case odometry::SweepTimes::kInData:
+        return "in the data";
+      case odometry::SweepTimes::kDeclared:
+        return "declared";
+      case odometry::SweepTimes::kNone:
+        break;
+    }
+    return "none";
+  }
+
+  [[nodiscard]] std::optional<double> duration_s() const { return first ? first->duration_s : std::nullopt; }
+};
+
+nlohmann::ordered_json sweep_json(const SweepRecord& sweep) {
+  nlohmann::ordered_json json = {{"times", sweep.times()}, {"duration_s", nullptr}, {"undone", sweep.undone()}};
+  if (sweep.duration_s()) {
+    json["duration_s"] = *sweep.duration_s();
+  }
+  return json;
+}
+
+nlohmann::ordered_json map_json(const std::optional<results::MapWriter>& map, const RunOptions& options) {
+  if (!map) {
+    return nullptr;
+  }
+  return {{"path", fs::absolute(*options.map_file).string()},
+          {"points", map->size()},
+          {"voxel_size_m", options.map_voxel_m}};
+}
+
 nlohmann::ordered_json configuration_json(odometry::Config config) {
   nlohmann::ordered_json json;
   for (const ConfigField& field : odometry::fields(config)) {
@@ -89,9 +158,16 @@ struct Warnings {
   }
 };
 
+/// What a run found and made beside the files of every run.
+struct Findings {
+  Warnings warnings;
+  std::vector<std::string> assumptions;
+  SweepRecord sweep;
+  std::optional<results::MapWriter> map;
+};
+
 std::string run_json(const RunOptions& options, const datasets::Dataset& dataset, const odometry::Config& config,
-                     const std::vector<std::string>& assumptions, const fs::path& ground_truth,
-                     const Warnings& warnings) {
+                     const fs::path& ground_truth, const Findings& findings) {
   nlohmann::ordered_json json = {
       {"version", version()},
       {"command", command_line()},
@@ -110,8 +186,10 @@ std::string run_json(const RunOptions& options, const datasets::Dataset& dataset
   if (!ground_truth.empty()) {
     json["ground_truth"] = fs::absolute(ground_truth).string();
   }
-  json["assumptions"] = assumptions;
-  json["warnings"] = warnings.texts;
+  json["sweep"] = sweep_json(findings.sweep);
+  json["map"] = map_json(findings.map, options);
+  json["assumptions"] = findings.assumptions;
+  json["warnings"] = findings.warnings.texts;
   json["configuration"] = configuration_json(config);
   // File names need not be UTF-8.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -125,9 +203,18 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f} %", 100.0 * *share) : "-";
 }
 
-void print_summary(const results::RunSummary& summary, const std::string& output) {
+std::string sweep_text(const SweepRecord& sweep) {
+  if (sweep.times() == "none") {
+    return "none: the points have no times";
+  }
+  return fmt::format("{}, {} s, times {}", sweep.undone() ? "undone" : "not undone", cell(sweep.duration_s(), 3),
+                     sweep.times());
+}
+
+void print_summary(const results::RunSummary& summary, const Findings& findings, const RunOptions& options) {
   const evaluation::RunAccuracy& accuracy = summary.accuracy;
   fmt::print("scans        {}\n", summary.frames);
+  fmt::print("sweep        {}\n", sweep_text(findings.sweep));
   fmt::print("converged    {}   iterations {}\n", percent(summary.convergence_rate), cell(summary.mean_iterations, 1));
   fmt::print("time         {} ms a scan (median {}, p95 {})\n", cell(summary.ms_mean, 1), cell(summary.ms_median, 1),
              cell(summary.ms_p95, 1));
@@ -146,11 +233,33 @@ void print_summary(const results::RunSummary& summary, const std::string& output
       fmt::print("note         {} scan{} with status {}\n", count, count == 1 ? "" : "s", status);
     }
   }
-  fmt::print("written to   {}\n", output);
+  if (findings.map) {
+    fmt::print("map          {} points in {}\n", findings.map->size(), *options.map_file);
+  }
+  fmt::print("written to   {}\n", options.output);
+}
+
+void process_scans(const datasets::Dataset& dataset, const Selection& selection, odometry::Odometry& odometry,
+                   results::RunWriter& writer, Findings& findings) {
+  Progress progress("odometry", selection.end - selection.begin, findings.warnings.quiet);
+  for (std::size_t i = selection.begin; i < selection.end; ++i) {
+    const RawScan scan = dataset.scan(i);
+    if (!scan.warning.empty()) {
+      findings.warnings.add(scan.warning);
+    }
+    const odometry::Frame frame = odometry.process(scan);
+    writer.add(i, frame);
+    findings.sweep.add(frame, scan);
+    if (findings.map) {
+      findings.map->add(frame);
+    }
+    progress.advance();
+  }
 }
 
 int run(const RunOptions& options) {
   const odometry::Config config = make_config(options.method);
+  Findings findings{{{}, options.quiet}, {}, {}, make_map(options)};
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(options.input, options.format);
   const Selection selection = select_scans(*dataset, options);
   const bool own_truth = options.ground_truth.empty();
@@ -158,38 +267,31 @@ int run(const RunOptions& options) {
   const formats::Trajectory truth =
       own_truth ? dataset->ground_truth() : formats::read_tum(options.ground_truth).trajectory;
   formats::OutputFolder output(options.output, "run.json", options.force);
+  const fs::path map_file =
+      findings.map ? results::map_destination(*options.map_file, options.output, output.path()) : fs::path();
 
-  Warnings warnings{{}, options.quiet};
   const std::unique_ptr<odometry::Odometry> odometry =
       odometry::make_odometry(options.method.method, config, {dataset->T_vehicle_sensor()}, options.method.threads);
-  std::vector<std::string> assumptions = dataset->assumptions();
+  findings.assumptions = dataset->assumptions();
   for (const std::string& assumption : odometry->assumptions()) {
-    assumptions.push_back(assumption);
+    findings.assumptions.push_back(assumption);
   }
-  for (const std::string& assumption : assumptions) {
-    warnings.add(assumption);
+  for (const std::string& assumption : findings.assumptions) {
+    findings.warnings.add(assumption);
   }
   results::RunWriter writer(output.path(), options.save_labels);
-  {
-    Progress progress("odometry", selection.end - selection.begin, options.quiet);
-    for (std::size_t i = selection.begin; i < selection.end; ++i) {
-      const RawScan scan = dataset->scan(i);
-      if (!scan.warning.empty()) {
-        warnings.add(scan.warning);
-      }
-      writer.add(i, odometry->process(scan));
-      progress.advance();
-    }
-  }
-  const results::RunSummary summary =
-      writer.finish(options.method.method, truth, assumptions,
-                    run_json(options, *dataset, config, assumptions, truth_file, warnings));
+  process_scans(*dataset, selection, *odometry, writer, findings);
+  const results::RunSummary summary = writer.finish(options.method.method, truth, findings.assumptions,
+                                                    run_json(options, *dataset, config, truth_file, findings));
   if (options.report) {
     write_report(output.path(), output.path() / "report.html");
   }
+  if (findings.map) {
+    findings.map->write(map_file);
+  }
   output.commit();
   if (!options.quiet) {
-    print_summary(summary, options.output);
+    print_summary(summary, findings, options);
   }
   return 0;
 }
@@ -217,6 +319,19 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
       ->type_name("N")
       ->check(CLI::PositiveNumber);
   command->add_flag("--save-labels", options->save_labels, "Write labels/*.bin: static, object or unused per point");
+  CLI::Option* save_map =
+      command
+          ->add_option("--save-map", options->map_file,
+                       "Write the static points of all scans in world axes as one point cloud, FILE.ply or FILE.pcd "
+                       "(dynamic-icp only)")
+          ->type_name("FILE");
+  command
+      ->add_option(
+          "--map-voxel", options->map_voxel_m,
+          fmt::format("Edge of the voxels of which the map keeps the first point, {} to {} m (default {} m)",
+                      results::MapWriter::kMinVoxelSize_m, results::MapWriter::kMaxVoxelSize_m, options->map_voxel_m))
+      ->type_name("M")
+      ->needs(save_map);
   command->add_flag("--report", options->report, "Write report.html into the results");
   command->add_flag("--force", options->force, "Replace an earlier run in DIR");
   command->add_flag("--quiet", options->quiet, "Print errors only");

@@ -1,25 +1,25 @@
 #!/usr/bin/env python3
-"""Prints a Markdown table of a benchmark with the drives of a scene (name-1, name-2, ...) put together.
+"""Prints Markdown tables of benchmarks with the drives of a scene (name-1, name-2, ...) put together.
 
-usage: mean_over_seeds.py DIR   (folder of a benchmark, holds results.json)
+usage: mean_over_seeds.py DIR...   (folders of benchmarks over the same drives; each holds results.json)
 
-RTE and RRE of a scene are the root mean squares over its drives, which are equally long. Best bold, second underlined.
+First the methods of all folders side by side, then for each folder what Dynamic-ICP loses without its parts. RTE and
+RRE of a scene are the root mean squares over its drives, which are equally long. Best bold, second underlined.
 """
 import json
 import sys
 from pathlib import Path
 
 NAMES = {"point-to-point": "p2p", "point-to-plane": "p2plane", "gicp": "GICP", "kiss-icp": "KISS-ICP",
-         "doppler-icp": "Doppler-ICP", "dynamic-icp": "Dynamic-ICP", "no-vf": "w/o VF", "no-dpp": "w/o DPP",
-         "no-dr": "w/o DR"}
+         "doppler-icp": "Doppler-ICP", "none": "Full", "no-vf": "w/o VF", "no-dpp": "w/o DPP", "no-dr": "w/o DR"}
 
 
 def rms(values):
     return (sum(v * v for v in values) / len(values)) ** 0.5
 
 
-def emphasised(values):
-    texts = [f"{v:.4f}" if k == 0 else f"{v:.3f}" for k, v in values]
+def emphasised(values, decimals):
+    texts = [f"{v:.{decimals}f}" for v in values]
     ranked = sorted(set(float(text) for text in texts))
     marks = {ranked[0]: "**{}**"}
     if len(ranked) > 1:
@@ -27,28 +27,41 @@ def emphasised(values):
     return [marks.get(float(text), "{}").format(text) for text in texts]
 
 
+def print_table(rows):
+    """rows: scene -> column -> [(rte, rre), ...]"""
+    columns = list(dict.fromkeys(name for row in rows.values() for name in row))
+    print(f"| scene | {' | '.join(columns)} |\n|---|{'---|' * len(columns)}")
+    for scene, row in rows.items():
+        rte = emphasised([rms([d[0] for d in row[name]]) for name in columns], 4)
+        rre = emphasised([rms([d[1] for d in row[name]]) for name in columns], 4)
+        print(f"| {scene} | " + " | ".join(f"{a} / {b}" for a, b in zip(rte, rre)) + " |")
+    print()
+
+
+def collect(rows, cells, name_of):
+    for cell in cells:
+        scene = cell["sequence"].rpartition("-")[0]
+        rows.setdefault(scene, {}).setdefault(name_of(cell), []).append((cell["rte_rmse_m"], cell["rre_rmse_deg"]))
+
+
 def main():
-    cells = json.loads((Path(sys.argv[1]) / "results.json").read_text())["cells"]
-    for title, chosen in (("method", lambda c: c["ablation"] == "none"),
-                          ("part left out", lambda c: c["method"] == "dynamic-icp")):
-        column = (lambda c: c["method"]) if title == "method" else (lambda c: c["ablation"])
-        errors, columns = {}, []
-        for cell in filter(chosen, cells):
-            scene = cell["sequence"].rpartition("-")[0]
-            name = NAMES.get(column(cell), "Full")
-            if name not in columns:
-                columns.append(name)
-            errors.setdefault(scene, {}).setdefault(name, []).append((cell["rte_rmse_m"], cell["rre_rmse_deg"]))
-        print(f"| scene | {' | '.join(columns)} |\n|---|{'---|' * len(columns)}")
-        for scene, row in errors.items():
-            drives = [row[name] for name in columns]
-            rte = emphasised([(0, rms([d[0] for d in drive])) for drive in drives])
-            rre = emphasised([(1, rms([d[1] for d in drive])) for drive in drives])
-            print(f"| {scene} | " + " | ".join(f"{a} / {b}" for a, b in zip(rte, rre)) + " |")
-        print()
+    benchmarks = [json.loads((Path(folder) / "results.json").read_text()) for folder in sys.argv[1:]]
+    methods = {}
+    for benchmark in benchmarks:
+        ours = f"Dynamic-ICP, {benchmark['info']['preset']}"
+        collect(methods, [c for c in benchmark["cells"] if c["ablation"] == "none"],
+                lambda c: ours if c["method"] == "dynamic-icp" else NAMES[c["method"]])
+    print_table(methods)
+    for benchmark in benchmarks:
+        parts = {}
+        collect(parts, [c for c in benchmark["cells"] if c["method"] == "dynamic-icp"],
+                lambda c: NAMES.get(c["ablation"], c["ablation"].replace("no-", "w/o ")))
+        if len(next(iter(parts.values()))) > 1:
+            print(f"Preset {benchmark['info']['preset']}\n")
+            print_table(parts)
 
 
 if __name__ == "__main__":
-    if len(sys.argv) != 2:
+    if len(sys.argv) < 2:
         sys.exit(__doc__)
     main()

@@ -179,6 +179,61 @@ TEST_F(BadInput, OutputThatCannotBeWritten) {
   EXPECT_NE(outcome.text.find("file/out"), std::string::npos) << outcome.text;
 }
 
+TEST_F(BadInput, AMapThatCannotBe) {
+  const fs::path recording = copy_of_street(2);
+  const auto map = [&](const fs::path& name) { return "--save-map " + name.string(); };
+  for (const char* name : {"map", "map.las", "map.ply.gz", "map.PLY"}) {
+    expect_failure(run(recording, map(folder_ / name)), kWrongUsage, "ends in .ply or .pcd");
+    expect_failure(run(folder_ / "nowhere", map(folder_ / name)), kWrongUsage, "ends in .ply or .pcd");
+  }
+  for (const std::string method : {"doppler-icp", "point-to-point", "point-to-plane", "gicp", "kiss-icp"}) {
+    const std::string more = map(folder_ / "map.ply") + " --method " + method;
+    expect_failure(run(recording, more), kWrongUsage, "only dynamic-icp tells static points from moving ones");
+    expect_failure(run(folder_ / "nowhere", more), kWrongUsage, method);
+  }
+  for (const char* voxel : {"0", "-0.1", "nan", "1e9"}) {
+    expect_failure(run(recording, map(folder_ / "map.ply") + " --map-voxel " + voxel), kWrongUsage, "0.01 to 100 m");
+  }
+  expect_failure(run(recording, map(folder_ / "map.ply") + " --map-voxel wide"), kWrongUsage, "--map-voxel");
+  expect_failure(run(recording, "--map-voxel 0.2"), kWrongUsage, "--save-map");
+  expect_failure(run(recording, "--save-map ''"), kWrongUsage, ".ply or .pcd");
+  EXPECT_FALSE(fs::exists(folder_ / "map.ply"));
+  const fs::path both = folder_ / "both.ply";
+  const Outcome same =
+      run_program("run --quiet " + recording.string() + " --output " + both.string() + " " + map(both));
+  EXPECT_EQ(same.status, kWrongUsage) << same.text;
+  EXPECT_FALSE(fs::exists(both));
+}
+
+TEST_F(BadInput, AMapThatCannotBeWritten) {
+  const fs::path recording = copy_of_street(2);
+  write_file(folder_ / "file", "x");
+  expect_failure(run(recording, "--save-map " + (folder_ / "file" / "map.ply").string()), kFailed, "file/map.ply");
+  expect_failure(run(recording, "--save-map " + (folder_ / "no" / "map.pcd").string()), kFailed, "no/map.pcd");
+  write_file(folder_ / "folder.ply" / "precious", "x");
+  expect_failure(run(recording, "--save-map " + (folder_ / "folder.ply").string()), kFailed, "folder.ply");
+  EXPECT_EQ(read_file(folder_ / "folder.ply" / "precious"), "x");
+  // A run that fails leaves an earlier map as it was.
+  write_file(folder_ / "map.ply", "earlier");
+  write_file(recording / "point_clouds" / "00002.bin", "PK\x03\x04 not a scan");
+  expect_failure(run(recording, "--save-map " + (folder_ / "map.ply").string()), kFailed, "00002.bin");
+  EXPECT_EQ(read_file(folder_ / "map.ply"), "earlier");
+}
+
+TEST_F(BadInput, FullDiskOfTheMap) {
+  const fs::path recording = copy_of_street(2);
+  const fs::path disk = folder_ / "disk";
+  fs::create_directories(disk);
+  if (run_shell("mount -t tmpfs -o size=48k tmpfs '" + disk.string() + "'").status != 0) {
+    GTEST_SKIP() << "needs the right to mount a small file system";
+  }
+  const Outcome outcome = run(recording, "--preset paper --save-map " + (disk / "map.ply").string());
+  const bool clean = fs::is_empty(disk);
+  run_shell("umount '" + disk.string() + "'");
+  expect_failure(outcome, kFailed, "No space left on device");
+  EXPECT_TRUE(clean) << "a failed run leaves nothing behind";
+}
+
 TEST_F(BadInput, FullDisk) {
   const fs::path disk = folder_ / "disk";
   fs::create_directories(disk);

@@ -10,11 +10,13 @@
 #include <cstring>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/base/parse_number.hpp"
+#include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
@@ -355,6 +357,28 @@ PlyFile read_ply(const std::filesystem::path& path) { return parse_ply(read_whol
 
 PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin) {
   return Reader(content, origin).read();
+}
+
+std::string ply_bytes(std::span<const Eigen::Vector3d> points) {
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
+      "property float z\nend_header\n",
+      points.size());
+  bytes.reserve(bytes.size() + points.size() * 3 * sizeof(float));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    for (const double coordinate : points[i]) {
+      // Written so that NaN fails as well.
+      if (!(std::abs(coordinate) <= std::numeric_limits<float>::max())) {
+        throw std::invalid_argument(fmt::format("point {} of a PLY file has a number that is no finite float32", i));
+      }
+      append_value(bytes, static_cast<float>(coordinate));
+    }
+  }
+  return bytes;
+}
+
+void write_ply(const std::filesystem::path& path, std::span<const Eigen::Vector3d> points) {
+  write_whole_file(path, ply_bytes(points));
 }
 
 }  // namespace dynamic_icp::formats

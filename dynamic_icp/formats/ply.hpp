@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include <Eigen/Core>
+
 namespace dynamic_icp::formats {
 
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
@@ -52,5 +54,15 @@ PlyFile read_ply(const std::filesystem::path& path);
 
 /// The same for the content of a file; `origin` is the file that messages name.
 PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin);
+
+/// The bytes of a PLY 1.0 file, binary_little_endian: the element "vertex" with x, y, z (m) as float32. Points keep the
+/// precision of a float32: 1 mm at 10 km from the origin. No points make a valid file with no records.
+///
+/// Throws std::invalid_argument when a number is not finite as a float32: such files never leave the program.
+std::string ply_bytes(std::span<const Eigen::Vector3d> points);
+
+/// Writes such a file whole or not at all (see write_whole_file). Throws as `ply_bytes` does, and DataError naming file
+/// and reason when the machine fails.
+void write_ply(const std::filesystem::path& path, std::span<const Eigen::Vector3d> points);
 
 }  // namespace dynamic_icp::formats

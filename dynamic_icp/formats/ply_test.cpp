@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cstring>
 #include <functional>
+#include <iterator>
+#include <limits>
+#include <stdexcept>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -154,6 +158,57 @@ TEST(Ply, LyingCountsTakeNoMemory) {
   EXPECT_NE(message("ply\nformat ascii 1.0\nelement face 1\nproperty list int int i\nend_header\n4294967295 0\n")
                 .find("'i' is missing"),
             std::string::npos);
+}
+
+constexpr const char* kPointsEnd = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+
+TEST(PlyPoints, AnEmptyCloudIsAFileWithoutRecords) {
+  const std::string content = ply_bytes({});
+  EXPECT_EQ(content, std::string("ply\nformat binary_little_endian 1.0\nelement vertex 0") + kPointsEnd);
+  EXPECT_EQ(parse(content).find("vertex")->count, 0u);
+}
+
+// x = 1, y = -2, z = 0.5 as IEEE 754 has them, lowest byte first.
+TEST(PlyPoints, TheBytesAreThoseOfTheFormat) {
+  const std::string record("\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f", 12);
+  EXPECT_EQ(ply_bytes(std::vector<Eigen::Vector3d>{{1.0, -2.0, 0.5}}),
+            std::string("ply\nformat binary_little_endian 1.0\nelement vertex 1") + kPointsEnd + record);
+}
+
+TEST(PlyPoints, TheReaderFindsEveryPoint) {
+  const PlyFile file = parse(ply_bytes(std::vector<Eigen::Vector3d>{{1.25, -2.0, 0.5}, {1e-3, 4e4, -0.1}}));
+  ASSERT_EQ(file.elements.size(), 1u);
+  const PlyElement& vertex = *file.find("vertex");
+  const auto rounded = [](float a, float b) { return std::vector<double>{a, b}; };
+  EXPECT_EQ(vertex.columns.size(), 3u);
+  EXPECT_EQ(vertex.find("x")->values, rounded(1.25f, 1e-3f));
+  EXPECT_EQ(vertex.find("y")->values, rounded(-2.0f, 4e4f));
+  EXPECT_EQ(vertex.find("z")->values, rounded(0.5f, -0.1f));
+  EXPECT_EQ(vertex.find("z")->type, PlyType::kFloat32);
+}
+
+TEST(PlyPoints, RefusesNumbersThatAreNotFinite) {
+  constexpr double kHuge = 1e39;  // a double, but no float32
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), kHuge}) {
+    EXPECT_THROW(ply_bytes(std::vector<Eigen::Vector3d>{{0.0, bad, 0.0}}), std::invalid_argument) << bad;
+  }
+}
+
+TEST(PlyPoints, WritesAFileWholeOrNotAtAll) {
+  namespace fs = std::filesystem;
+  const fs::path folder = fs::temp_directory_path() / ("ply_points_test-" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const fs::path path = folder / "map.ply";
+  const std::vector<Eigen::Vector3d> points(1000, Eigen::Vector3d(1.0, 2.0, 3.0));
+  write_ply(path, points);
+  EXPECT_EQ(read_whole_file(path), ply_bytes(points));
+  // What cannot be written leaves the earlier file as it was, and nothing beside it.
+  const std::vector<Eigen::Vector3d> bad(1, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_THROW(write_ply(path, bad), std::invalid_argument);
+  EXPECT_EQ(read_whole_file(path), ply_bytes(points));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+  fs::remove_all(folder);
+  EXPECT_THROW(write_ply(path, points), DataError);
 }
 
 }  // namespace

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -58,6 +60,34 @@ struct Twist {
   Matrix6d covariance = Matrix6d::Zero();             ///< of [angular; linear]
 };
 
+/// Where the times of the points of a scan come from.
+enum class SweepTimes { kNone, kInData, kDeclared };
+
+/// What was found and done about the time a scan takes.
+struct SweepReport {
+  SweepTimes times = SweepTimes::kNone;
+  std::optional<double> duration_s;  ///< from the earliest point to the latest; empty without times
+  bool undone = false;               ///< whether the method takes the motion during the scan out of it
+};
+
+/// What the scan itself says; nothing is done about it yet. Times that are not finite do not count.
+inline SweepReport sweep_in_data(const RawScan& raw) {
+  SweepReport report;
+  report.times = raw.times.empty() ? SweepTimes::kNone : SweepTimes::kInData;
+  std::optional<double> low;
+  std::optional<double> high;
+  for (const double time_s : raw.times) {
+    if (std::isfinite(time_s)) {
+      low = std::min(low.value_or(time_s), time_s);
+      high = std::max(high.value_or(time_s), time_s);
+    }
+  }
+  if (low) {
+    report.duration_s = *high - *low;
+  }
+  return report;
+}
+
 /// All that the odometry says of one scan.
 struct Frame {
   FrameStatus status = FrameStatus::kNotRun;
@@ -78,6 +108,7 @@ struct Frame {
   std::size_t points_used = 0;  ///< after range crop and voxel grid
   Scan::Dropped dropped;
   std::size_t out_of_range = 0;
+  std::optional<SweepReport> sweep;  ///< empty for methods that never look at times
   /// Points that stand still, thinned, in the sensor frame at the stamp (m): what a map is made of. Empty for methods
   /// that do not tell them from moving ones.
   std::vector<Eigen::Vector3d> static_points;

@@ -144,6 +144,8 @@ Scan KissIcp::deskewed_in_range(const RawScan& raw, Frame& frame) const {
   frame.points = raw.points.size();
   frame.out_of_range = scan.size() - in_range.size();
   frame.labels.assign(frame.points, -1);
+  frame.sweep = sweep_in_data(raw);
+  frame.sweep->undone = config_.deskew && frame.sweep->duration_s.value_or(0.0) > 0.0;
   return in_range;
 }
 

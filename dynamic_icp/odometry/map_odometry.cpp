@@ -21,6 +21,10 @@ constexpr std::size_t kVelocitySamples = 3;
 // The usual share of points that agree with the map follows the last scans with this weight for the newest.
 constexpr double kUsualMatchGain = 0.2;
 
+// So does the deviation of patches from planes; below the least no surface is trusted.
+constexpr double kModelDeviationGain = 0.2;
+constexpr double kLeastModelDeviation_m = 0.001;
+
 // With the first turn known the first scan is made straight and the second aligned again: each round leaves about
 // a tenth of the error.
 constexpr int kStraighteningRounds = 4;
@@ -55,6 +59,17 @@ RawScan with_times(const RawScan& raw, const preprocess::SweepConfig& config) {
     timed.times = preprocess::declared_times(timed.points, config);
   }
   return timed;
+}
+
+/// What `with_times` makes of the sweep.
+SweepReport sweep_report(const RawScan& raw, const preprocess::SweepConfig& config) {
+  SweepReport report = sweep_in_data(raw);
+  if (report.times == SweepTimes::kNone && config.declared_duration_s > 0.0) {
+    report.times = SweepTimes::kDeclared;
+    report.duration_s = config.declared_duration_s;
+  }
+  report.undone = config.undo && report.duration_s.value_or(0.0) > 0.0;
+  return report;
 }
 
 registration::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
@@ -96,6 +111,7 @@ MapOdometry::MapOdometry(const Config& config, int threads)
 Frame MapOdometry::process(const RawScan& raw) {
   check_order(raw, last_stamp_);
   Frame frame;
+  frame.sweep = sweep_report(raw, config_.sweep);
   StageClock clock(frame.times);
   const Scan whole = take_over(with_times(raw, config_.sweep), config_.preprocess, frame);
   const Scan scan = preprocess::voxel_grid(whole, config_.preprocess.voxel);
@@ -133,7 +149,7 @@ Frame MapOdometry::process(const RawScan& raw) {
   } else {
     go_on(now, frame);
   }
-  add_to_map(now);
+  frame.static_points = add_to_map(now);
   frame.twist = twist_at_stamp(state_->turn, now.ego, now.middle_s);
   clock.finish(Stage::kRegistration);
 
@@ -162,6 +178,7 @@ void MapOdometry::begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor
   map_.clear();
   State state;
   state.stamp_s = now.stamp_s;
+  state.model_deviation_m = state_ ? state_->model_deviation_m : config_.map_align.model_deviation_m;
   state.filtered = now.filtered;
   state.T_map_sensor = T_map_sensor;
   state.turn = first_turn_state(config_.turn);
@@ -207,14 +224,16 @@ registration::MotionPrior MapOdometry::motion_prior(const Moment& now,
 }
 
 void MapOdometry::go_on(const Moment& now, Frame& frame) {
+  registration::MapAlignConfig config = config_.map_align;
+  config.model_deviation_m = state_->model_deviation_m;
   std::vector<VelocitySample> velocities = velocities_with(now);
   const registration::MotionPrior prior = motion_prior(now, velocities);
-  registration::MapAlignment found =
-      state_->scans_in_map == 1 ? align_second(now, prior)
-                                : registration::align_to_map(now.still, map_, prior, config_.map_align, workers_);
+  registration::MapAlignment found = state_->scans_in_map == 1
+                                         ? align_second(now, prior)
+                                         : registration::align_to_map(now.still, map_, prior, config, workers_);
   const double least_match = config_.lost_match * state_->usual_match;
   if (match(found) < least_match) {
-    found = registration::search_and_align(now.still, map_, prior, config_.map_align, workers_);
+    found = registration::search_and_align(now.still, map_, prior, config, workers_);
   }
   if (match(found) < least_match) {
     lose(now, prior, frame);
@@ -227,6 +246,10 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
   state_->usual_match = state_->scans_in_map == 1
                             ? match(found)
                             : state_->usual_match + kUsualMatchGain * (match(found) - state_->usual_match);
+  if (found.model_deviation_m) {
+    const double seen = std::max(kLeastModelDeviation_m, *found.model_deviation_m);
+    state_->model_deviation_m += kModelDeviationGain * (seen - state_->model_deviation_m);
+  }
   state_->stamp_s = now.stamp_s;
   state_->T_map_sensor = found.T_map_sensor;
   state_->turn = turn;

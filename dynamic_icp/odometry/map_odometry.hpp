@@ -52,7 +52,8 @@ class MapOdometry final : public Odometry {
     TurnState turn;
     std::vector<VelocitySample> velocities;  ///< of the last scans, at most three
     ego_motion::EgoVelocity filtered;
-    double usual_match = 0.0;  ///< share of the points that agree with the map, as it was lately
+    double usual_match = 0.0;        ///< share of the points that agree with the map, as it was lately
+    double model_deviation_m = 0.0;  ///< of patches from planes, as the last scans show it
     int scans_in_map = 0;
     Moment first;  ///< the only scan in the map, until the next one shows how it turned
   };

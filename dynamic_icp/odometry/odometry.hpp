@@ -39,7 +39,7 @@ std::vector<std::string_view> method_names();
 
 /// The method of that name. `threads` = 0 takes as many as the machine has. Throws UsageError with the known names, or
 /// when the configuration is out of range.
-std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config, const Surroundings& surroundings,
-                                        int threads);
+std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config,
+                                        const Surroundings& surroundings = {}, int threads = 0);
 
 }  // namespace dynamic_icp::odometry

@@ -11,6 +11,7 @@
 
 #include "dynamic_icp/estimation/robust_kernel.hpp"
 #include "dynamic_icp/registration/gauss_newton.hpp"
+#include "dynamic_icp/registration/patch_scatter.hpp"
 
 namespace dynamic_icp::registration {
 namespace {
@@ -19,6 +20,10 @@ constexpr std::size_t kBlock = 512;
 
 // The kernel narrows by this factor with each step.
 constexpr double kNarrowing = 0.5;
+
+// A patch tells of itself with so many points on it, all of them together with so many patches.
+constexpr std::uint32_t kTellingPoints = 5;
+constexpr std::size_t kTellingPatches = 50;
 
 // The wide kernel is given up when it is narrower than any surface is rough.
 constexpr double kNarrow_m = 0.02;
@@ -86,6 +91,28 @@ class PlaneFit {
       }
       return sums;
     });
+  }
+
+  /// How far the points on each patch with enough of them lie from its plane on average.
+  [[nodiscard]] std::vector<PatchMean> patch_means(const Eigen::Isometry3d& T_map_sensor) const {
+    std::vector<const mapping::Patch*> met(members_.size(), nullptr);
+    std::vector<Eigen::Vector3d> sums(members_.size(), Eigen::Vector3d::Zero());
+    for (std::size_t i = 0; i < scan_.size(); ++i) {
+      if (patches_[i] != nullptr) {
+        met[patches_[i]->id] = patches_[i];
+        sums[patches_[i]->id] += at_stamp_[i];
+      }
+    }
+    std::vector<PatchMean> means;
+    for (std::size_t id = 0; id < met.size(); ++id) {
+      if (met[id] != nullptr && members_[id] >= kTellingPoints) {
+        const double m = members_[id];
+        const Eigen::Vector3d middle = T_map_sensor * Eigen::Vector3d(sums[id] / m);
+        const double distance = met[id]->plane.distance(middle);
+        means.push_back({distance * distance, met[id]->plane.variance / m + met[id]->plane.height_variance(middle)});
+      }
+    }
+    return means;
   }
 
   [[nodiscard]] std::size_t on_planes() const { return on_planes_; }
@@ -189,6 +216,10 @@ void describe(MapAlignment& result, PlaneFit& fit, const PriorTerms& prior) {
   result.matched = sums.weights;
   result.rms_m = sums.weights > 0.0 ? std::sqrt(sums.squares / sums.weights) : 0.0;
   result.chi = sums.weights > 0.0 ? std::sqrt(sums.chi_squares / sums.weights) : 0.0;
+  const std::vector<PatchMean> means = fit.patch_means(result.T_map_sensor);
+  if (means.size() >= kTellingPatches) {
+    result.model_deviation_m = unexplained_deviation(means);
+  }
 }
 
 }  // namespace

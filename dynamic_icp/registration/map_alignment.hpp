@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 
 #include <Eigen/Geometry>
 
@@ -59,6 +60,9 @@ struct MapAlignment {
   double matched = 0.0;       ///< sum of the kernel's weights: points that agree
   double rms_m = 0.0;         ///< distance of those from their planes
   double chi = 0.0;           ///< the same over its predicted deviation: 1 where the noise model is right
+  /// m, deviation of patches from planes: what the mean distances of the points on the patches scatter more than noise
+  /// and the errors of the fits explain. Nothing when too few patches tell.
+  std::optional<double> model_deviation_m;
 };
 
 /// Aligns a scan of static points to a map. Minimises over rotation, position, omega and alpha

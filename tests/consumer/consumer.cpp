@@ -2,14 +2,14 @@
 #include <iostream>
 
 #include <dynamic_icp/datasets/dataset.hpp>
-#include <dynamic_icp/odometry/dynamic_icp.hpp>
+#include <dynamic_icp/odometry/odometry.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const auto recording = dynamic_icp::datasets::open_dataset(argv[1]);
-  dynamic_icp::odometry::DynamicIcp odometry(dynamic_icp::odometry::preset("default"));
+  const auto odometry = dynamic_icp::odometry::make_odometry("dynamic-icp", dynamic_icp::odometry::preset("default"));
   for (std::size_t i = 0; i < recording->size(); ++i) {
-    const dynamic_icp::odometry::Frame frame = odometry.process(recording->scan(i));
+    const dynamic_icp::odometry::Frame frame = odometry->process(recording->scan(i));
     std::cout << to_string(frame.status) << "  position " << frame.T_world_sensor.translation().transpose()
               << " m  velocity " << frame.ego.velocity_sensor.transpose() << " m/s\n";
   }

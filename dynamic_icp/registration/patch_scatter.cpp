@@ -1,0 +1,42 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/registration/patch_scatter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+namespace dynamic_icp::registration {
+namespace {
+
+constexpr double kMedianOfChiSquared = 0.4549;
+constexpr double kMost_m = 1.0;
+constexpr int kHalvings = 16;  // of a metre: to 0.02 mm
+
+double median_ratio(std::span<const PatchMean> patches, double deviation_m, std::vector<double>& ratios) {
+  ratios.clear();
+  for (const PatchMean& patch : patches) {
+    ratios.push_back(patch.squared_mean / (patch.explained + deviation_m * deviation_m));
+  }
+  const auto middle = ratios.begin() + static_cast<std::ptrdiff_t>(ratios.size() / 2);
+  std::nth_element(ratios.begin(), middle, ratios.end());
+  return *middle;
+}
+
+}  // namespace
+
+double unexplained_deviation(std::span<const PatchMean> patches) {
+  std::vector<double> ratios;
+  if (patches.empty() || median_ratio(patches, 0.0, ratios) <= kMedianOfChiSquared) {
+    return 0.0;
+  }
+  double low = 0.0;
+  double high = kMost_m;
+  for (int k = 0; k < kHalvings; ++k) {
+    const double middle = 0.5 * (low + high);
+    (median_ratio(patches, middle, ratios) > kMedianOfChiSquared ? low : high) = middle;
+  }
+  return 0.5 * (low + high);
+}
+
+}  // namespace dynamic_icp::registration
