@@ -14,8 +14,8 @@ rm -f build-log.txt
 drive=build/demo/street
 run=build/demo/run
 if [[ ! -e $drive/scene.json || build/dynamic-icp -nt $drive/scene.json ]]; then
-  echo "== Simulating a street with moving cars, 60 instant scans"
-  build/dynamic-icp simulate street --frames 60 --instant --output "$drive" --force
+  echo "== Simulating a street with moving cars, 60 scans that sweep"
+  build/dynamic-icp simulate street --frames 60 --output "$drive" --force
 fi
 
 echo "== Running Dynamic-ICP on it"

@@ -101,8 +101,8 @@ struct Frame {
   std::vector<dynamics::ObjectEstimate> clusters;  ///< of this scan, accepted and rejected
   std::vector<tracking::TrackedObject> tracked;    ///< confirmed objects, where the method tracks them
   std::size_t dynamic_candidates = 0;              ///< points that the velocity filter flags
-  std::size_t dynamic_clustered = 0;               ///< of those, in a cluster
-  std::size_t dynamic_refined = 0;                 ///< of those, in an accepted object
+  std::size_t dynamic_clustered = 0;               ///< of those, in a cluster or track
+  std::size_t dynamic_refined = 0;                 ///< of those, in an accepted object or confirmed track
 
   std::size_t points = 0;       ///< as read
   std::size_t points_used = 0;  ///< after range crop and voxel grid

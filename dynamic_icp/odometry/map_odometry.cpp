@@ -101,6 +101,19 @@ Scan static_part(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) 
   return scan.select(rows);
 }
 
+/// Counts over the thinned scan; `in_track` has one entry per point as read.
+void count_dynamics(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic,
+                    const std::vector<std::uint8_t>& in_track, Frame& frame) {
+  for (std::size_t row = 0; row < scan.size(); ++row) {
+    if (is_dynamic[row] != 0) {
+      const std::uint32_t record = scan.records()[row];
+      ++frame.dynamic_candidates;
+      frame.dynamic_clustered += in_track[record];
+      frame.dynamic_refined += frame.labels[record] > 0 ? 1 : 0;
+    }
+  }
+}
+
 }  // namespace
 
 MapOdometry::MapOdometry(const Config& config, int threads)
@@ -135,9 +148,9 @@ Frame MapOdometry::process(const RawScan& raw) {
   now.filtered = estimate_ego(whole, now.stamp_s);
   now.ego = ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift);
   frame.ego = now.ego;
-  now.still = static_part(scan, ego_motion::dynamic_mask(scan, ego_motion::compensated_doppler(scan, now.ego),
-                                                         filter_for(config_.ego_motion, now.ego)));
-  frame.dynamic_candidates = scan.size() - now.still.size();
+  const std::vector<std::uint8_t> is_dynamic = ego_motion::dynamic_mask(
+      scan, ego_motion::compensated_doppler(scan, now.ego), filter_for(config_.ego_motion, now.ego));
+  now.still = static_part(scan, is_dynamic);
   clock.finish(Stage::kEgoMotion);
 
   if (!state_) {
@@ -153,7 +166,8 @@ Frame MapOdometry::process(const RawScan& raw) {
   frame.twist = twist_at_stamp(state_->turn, now.ego, now.middle_s);
   clock.finish(Stage::kRegistration);
 
-  track_objects(whole, frame);
+  const std::vector<std::uint8_t> in_track = track_objects(whole, frame);
+  count_dynamics(scan, is_dynamic, in_track, frame);
   clock.finish(Stage::kDynamics);
   return frame;
 }
@@ -364,26 +378,32 @@ std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
   return points;
 }
 
-void MapOdometry::track_objects(const Scan& scan, Frame& frame) {
+/// Labels the points and tracks what moves. Returns which points, as read, are in a track, confirmed or not.
+std::vector<std::uint8_t> MapOdometry::track_objects(const Scan& scan, Frame& frame) {
   const std::vector<double> radial = ego_motion::compensated_doppler(scan, frame.ego);
   const std::vector<std::uint8_t> is_moving =
       ego_motion::dynamic_mask(scan, radial, filter_for(config_.ego_motion, frame.ego));
+  std::vector<std::uint8_t> in_track(frame.points, 0);
   for (std::size_t row = 0; row < scan.size(); ++row) {
     frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0;
   }
   if (!config_.dynamics.predict) {
-    return;
+    return in_track;
   }
   const Scan at_stamp = registration::undo_sweep(scan, state_->sweep);
   for (tracking::TrackedObject& object : tracker_.update(at_stamp, radial, is_moving, frame.T_world_sensor, workers_)) {
-    if (object.status != tracking::TrackStatus::kConfirmed) {
-      continue;
-    }
+    const bool is_confirmed = object.status == tracking::TrackStatus::kConfirmed;
     for (const std::uint32_t row : object.members) {
-      frame.labels[scan.records()[row]] = static_cast<std::int32_t>(object.id);
+      in_track[scan.records()[row]] = 1;
+      if (is_confirmed) {
+        frame.labels[scan.records()[row]] = static_cast<std::int32_t>(object.id);
+      }
     }
-    frame.tracked.push_back(std::move(object));
+    if (is_confirmed) {
+      frame.tracked.push_back(std::move(object));
+    }
   }
+  return in_track;
 }
 
 }  // namespace dynamic_icp::odometry

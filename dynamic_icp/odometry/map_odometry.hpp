@@ -70,7 +70,7 @@ class MapOdometry final : public Odometry {
                                                        const std::vector<VelocitySample>& velocities) const;
   [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
   std::vector<Eigen::Vector3d> add_to_map(const Moment& now);
-  void track_objects(const Scan& scan, Frame& frame);
+  std::vector<std::uint8_t> track_objects(const Scan& scan, Frame& frame);
 
   Config config_;
   Workers workers_;

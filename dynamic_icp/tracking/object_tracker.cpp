@@ -16,7 +16,9 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::int32_t kNobody = -1;
-constexpr double kWidest = 2.0;       // new objects are not wider than so many vehicles
+constexpr double kWidest = 2.0;    // new objects are not wider than so many vehicles
+constexpr double kSplinter = 0.1;  // a track with this share of the points of another may be a part of it
+constexpr double kSplinterVelocity_mps = 2.0;
 constexpr double kLeastSignal = 2.0;  // of the radial velocities of a new object over their spread
 
 double sweep_duration(const Scan& scan) {
@@ -269,6 +271,20 @@ void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std
   }
 }
 
+/// Whether two tracks are one body: one has its centre in the box of the other, or it is a splinter beside it that
+/// moves as it does.
+bool ObjectTracker::are_one(const Entry& a, const Entry& b) const {
+  const bool a_is_smaller = a.members.size() < b.members.size();
+  const Entry& small = a_is_smaller ? a : b;
+  const Entry& large = a_is_smaller ? b : a;
+  const Vector3d apart = small.track.motion().velocity() - large.track.motion().velocity();
+  const bool splinter =
+      static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size()) &&
+      apart.norm() < kSplinterVelocity_mps;
+  return distance_outside(large.track.box(), small.track.motion().position()) <= (splinter ? config_.growth_m : 0.0) ||
+         distance_outside(small.track.box(), large.track.motion().position()) <= 0.0;
+}
+
 /// Ends tracks that stand and those not seen for long, tentative ones at once, and makes one of those that share a
 /// place.
 void ObjectTracker::bury() {
@@ -278,10 +294,8 @@ void ObjectTracker::bury() {
     if (lost || entry.track.motion().velocity().norm() < config_.least_speed_mps) {
       continue;
     }
-    const auto same = std::find_if(living.begin(), living.end(), [&](const Entry& older) {
-      return distance_outside(older.track.box(), entry.track.motion().position()) <= 0.0 ||
-             distance_outside(entry.track.box(), older.track.motion().position()) <= 0.0;
-    });
+    const auto same =
+        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_one(older, entry); });
     if (same == living.end()) {
       living.push_back(std::move(entry));
     } else if (entry.members.size() > same->members.size()) {

@@ -54,6 +54,7 @@ class ObjectTracker {
   void gather_still(const TrackingInput& input);
   void give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner);
   [[nodiscard]] bool is_credible(const Entry& entry) const;
+  [[nodiscard]] bool are_one(const Entry& a, const Entry& b) const;
   void bury();
   [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor) const;
 
