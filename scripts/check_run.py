@@ -4,11 +4,11 @@ ego velocity, stated covariances, objects. Needs numpy.
 
 usage: check_run.py DRIVE RUN [DRIVE RUN ...]   (folders of `simulate` and of `run`)
 
-Per drive: RTE (mm) and RRE (degrees), root mean squares of the frame-to-frame errors; the error of the ego velocity
-(mm/s) in the first scan and as a root mean square, of scans that sweep in the middle of the sweep; the normalised
-estimation error squared (NEES) of the motion, mean over the frames (6 numbers: an honest covariance gives 6); objects of
-2 m/s and 50 points or more from the sixth scan on: error of the velocity along and across the motion (m/s), share
-reported, and false ones a scan.
+For all drives of a scene (name-1, name-2, ...) together: RTE (mm) and RRE (degrees), root mean squares of the
+frame-to-frame errors; the error of the ego velocity (mm/s), largest of the first scans and root mean square, of scans
+that sweep in the middle of the sweep; the normalised estimation error squared (NEES) of the motion, mean over the frames
+(6 numbers: an honest covariance gives 6); objects of 2 m/s and 50 points or more from the sixth scan on: mean error of
+the velocity along and across the motion (m/s), share reported, and false ones a scan.
 """
 import json
 import sys
@@ -82,8 +82,9 @@ def ego_errors(drive, frames):
     return np.array(errors)
 
 
-def object_scores(truth, estimate, warm_up=5, least_points=50, least_speed=2.0):
-    along, across, reported, wanted, false = [], [], 0, 0, 0
+def object_errors(truth, estimate, warm_up=5, least_points=50, least_speed=2.0):
+    """Errors along and across the motion of the objects found, how many were to be found, false ones."""
+    along, across, wanted, false = [], [], 0, 0
     for k, (exact, found) in enumerate(zip(truth, estimate)):
         centres = np.array([o["centroid"] for o in found["objects"]]).reshape(-1, 3)
         explained = set()
@@ -97,34 +98,53 @@ def object_scores(truth, estimate, warm_up=5, least_points=50, least_speed=2.0):
                 continue
             wanted += 1
             if near:
-                reported += 1
                 e = np.array(found["objects"][near[0]]["velocity"]) - v
                 along.append(abs(e @ v) / speed)
                 across.append(np.linalg.norm(e - (e @ v) / speed**2 * v))
         false += len(centres) - len(explained)
-    if not wanted:
-        return None, None, None, false / max(len(truth), 1)
-    return np.mean(along or [np.nan]), np.mean(across or [np.nan]), reported / wanted, false / len(truth)
+    return along, across, wanted, false
 
 
-def check(drive, run):
-    frames = lines(run / "frames.jsonl")
-    motion = motion_errors(sensor_poses(drive), poses(run / "trajectory.tum"), frames)
-    ego = ego_errors(drive, frames)
-    objects = object_scores(lines(drive / "objects.jsonl"), lines(run / "objects.jsonl"))
-    rms = np.sqrt((motion[:, :2] ** 2).mean(0))
-    shown = ["-" if value is None else f"{value:.2f}" for value in objects]
-    return [drive.name, f"{1000 * rms[0]:.2f}", f"{np.degrees(rms[1]):.4f}", f"{1000 * ego[0]:.0f}",
-            f"{1000 * np.sqrt((ego**2).mean()):.1f}", f"{motion[:, 2].mean():.1f}", *shown]
+class Scene:
+    """What is known of the drives of one scene."""
+
+    def __init__(self):
+        self.motion, self.ego, self.first = [], [], []
+        self.along, self.across, self.wanted, self.false, self.scans = [], [], 0, 0, 0
+
+    def add(self, drive, run):
+        frames = lines(run / "frames.jsonl")
+        self.motion.extend(motion_errors(sensor_poses(drive), poses(run / "trajectory.tum"), frames))
+        ego = ego_errors(drive, frames)
+        self.ego.extend(ego)
+        self.first.append(ego[0])
+        along, across, wanted, false = object_errors(lines(drive / "objects.jsonl"), lines(run / "objects.jsonl"))
+        self.along.extend(along)
+        self.across.extend(across)
+        self.wanted += wanted
+        self.false += false
+        self.scans += len(frames)
+
+    def row(self):
+        motion, ego = np.array(self.motion), np.array(self.ego)
+        rte, rre = np.sqrt((motion[:, :2] ** 2).mean(0))
+        objects = [f"{np.mean(self.along):.2f}", f"{np.mean(self.across):.2f}",
+                   f"{100 * len(self.along) / self.wanted:.0f} %"] if self.along else ["-", "-", "-"]
+        return [f"{1000 * rte:.2f}", f"{np.degrees(rre):.4f}", f"{1000 * max(self.first):.0f}",
+                f"{1000 * np.sqrt((ego**2).mean()):.1f}", f"{motion[:, 2].mean():.1f}", *objects,
+                f"{self.false / self.scans:.2f}"]
 
 
 def main():
-    columns = ["drive", "RTE [mm]", "RRE [deg]", "ego, first [mm/s]", "ego [mm/s]", "NEES", "along [m/s]",
-               "across [m/s]", "reported", "false a scan"]
-    print(f"| {' | '.join(columns)} |\n|{'---|' * len(columns)}")
+    scenes = {}
     folders = [Path(argument) for argument in sys.argv[1:]]
     for drive, run in zip(folders[::2], folders[1::2]):
-        print(f"| {' | '.join(check(drive, run))} |", flush=True)
+        scenes.setdefault(drive.name.rpartition("-")[0] or drive.name, Scene()).add(drive, run)
+    columns = ["scene", "RTE [mm]", "RRE [deg]", "ego, first [mm/s]", "ego [mm/s]", "NEES", "along [m/s]",
+               "across [m/s]", "reported", "false a scan"]
+    print(f"| {' | '.join(columns)} |\n|{'---|' * len(columns)}")
+    for name, scene in scenes.items():
+        print(f"| {name} | {' | '.join(scene.row())} |")
 
 
 if __name__ == "__main__":

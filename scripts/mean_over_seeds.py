@@ -3,8 +3,9 @@
 
 usage: mean_over_seeds.py DIR...   (folders of benchmarks over the same drives; each holds results.json)
 
-First the methods of all folders side by side, then for each folder what Dynamic-ICP loses without its parts. RTE and
-RRE of a scene are the root mean squares over its drives, which are equally long. Best bold, second underlined.
+First the methods of all folders side by side, then for each folder what Dynamic-ICP loses without its parts. RTE (mm)
+and RRE (degrees) of a scene are the root mean squares over its drives, which are equally long. Best bold, second
+underlined.
 """
 import json
 import sys
@@ -18,8 +19,11 @@ def rms(values):
     return (sum(v * v for v in values) / len(values)) ** 0.5
 
 
-def emphasised(values, decimals):
-    texts = [f"{v:.{decimals}f}" for v in values]
+def millimetres(metres):
+    return f"{1000 * metres:.{2 if metres < 0.01 else 1 if metres < 0.1 else 0}f}"
+
+
+def emphasised(texts):
     ranked = sorted(set(float(text) for text in texts))
     marks = {ranked[0]: "**{}**"}
     if len(ranked) > 1:
@@ -32,8 +36,8 @@ def print_table(rows):
     columns = list(dict.fromkeys(name for row in rows.values() for name in row))
     print(f"| scene | {' | '.join(columns)} |\n|---|{'---|' * len(columns)}")
     for scene, row in rows.items():
-        rte = emphasised([rms([d[0] for d in row[name]]) for name in columns], 4)
-        rre = emphasised([rms([d[1] for d in row[name]]) for name in columns], 4)
+        rte = emphasised([millimetres(rms([d[0] for d in row[name]])) for name in columns])
+        rre = emphasised([f"{rms([d[1] for d in row[name]]):.4f}" for name in columns])
         print(f"| {scene} | " + " | ".join(f"{a} / {b}" for a, b in zip(rte, rre)) + " |")
     print()
 

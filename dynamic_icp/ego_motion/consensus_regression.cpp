@@ -25,26 +25,33 @@ constexpr double kFloorMps = 1e-3;          // errors of all lines of sight toge
 constexpr double kLeastSlope = 0.6;         // of psi' to the weights; 0.8 for normal noise at the default cutoff
 constexpr double kWider = 1.4;
 constexpr double kLeastVariance = 1e-12;    // a prior without any doubt must not divide by zero
+constexpr double kUnknownMps = 30.0;        // of a velocity of which nothing is known
 constexpr double kBonusDeviationMps = 0.3;  // a velocity this near to the expected one still earns most of its bonus
 constexpr double kJerk = 10.0;              // m/s^3, of hard braking and steering
 
 /// The priors of acceleration and bias alone: the search for the static scene must not lean on an earlier velocity.
-DopplerModel voting_model(const EgoPrior& prior, const ConsensusRegressionConfig& config, const DopplerRows& rows) {
+DopplerModel voting_model(const EgoPrior& prior, const ConsensusRegressionConfig& config) {
   DopplerModel model;
   model.has_bias = config.estimate_bias;
-  model.information.diagonal().tail<4>().setOnes();  // of unknowns that take no part: they stay where they are
-  const auto information = [&](Eigen::Index k) { return 1.0 / std::max(prior.covariance(k, k), kLeastVariance); };
-  if (rows.takes_time) {
-    model.prior.segment<3>(3) = prior.mean.segment<3>(3);
-    for (Eigen::Index k = 3; k < 6; ++k) {
-      model.information(k, k) = information(k);
-    }
+  model.prior.tail<4>() = prior.mean.tail<4>();
+  for (Eigen::Index k = 3; k < 7; ++k) {
+    model.information(k, k) = 1.0 / std::max(prior.covariance(k, k), kLeastVariance);
   }
-  if (config.estimate_bias) {
-    model.prior[6] = prior.mean[6];
-    model.information(6, 6) = information(6);
+  if (!config.estimate_bias) {
+    model.prior[6] = 0.0;
+    model.information(6, 6) = 1.0;  // takes no part: stays where it is
   }
   return model;
+}
+
+/// The same after a velocity that nobody expected: neither is the acceleration what it was.
+EgoPrior surprised(const EgoPrior& prior) {
+  EgoPrior open = prior;
+  const Matrix7d start = EgoPrior::default_covariance();
+  for (Eigen::Index k = 3; k < 6; ++k) {
+    open.covariance(k, k) = std::max(prior.covariance(k, k), start(k, k));
+  }
+  return open;
 }
 
 /// Whether the prior velocity may take part: one far from what the scan shows is wrong, not informative.
@@ -210,8 +217,10 @@ struct Fit {
 
 Fit fit_all(const DopplerRows& rows, const Choice& choice, const EgoPrior& prior,
             const ConsensusRegressionConfig& config, const Workers& workers) {
-  const DopplerModel without_velocity = voting_model(prior, config, rows);
-  const DopplerModel model = agrees(prior, choice.x) ? fitting_model(prior, config) : without_velocity;
+  const bool as_expected = agrees(prior, choice.x);
+  const DopplerModel without_velocity =
+      voting_model(prior.has_velocity && !as_expected ? surprised(prior) : prior, config);
+  const DopplerModel model = as_expected ? fitting_model(prior, config) : without_velocity;
   RobustScale scale{choice.noise_mps, config.tukey_cutoff * choice.noise_mps, config.surface_noise_mps};
   Fit fit;
   fit.x = choice.x;
@@ -261,14 +270,16 @@ EgoVelocity nothing_but_prior(const Scan& scan, const EgoPrior& prior, const Con
   result.status = EgoVelocityStatus::kTooFewPoints;
   result.points = scan.size();
   result.unobservable.setIdentity();
+  result.joint_covariance = prior.covariance;
   if (prior.has_velocity) {
     result.velocity_sensor = prior.mean.head<3>();
-    result.covariance = prior.covariance.topLeftCorner<3, 3>();
+  } else {
+    result.joint_covariance.topLeftCorner<3, 3>() = kUnknownMps * kUnknownMps * Eigen::Matrix3d::Identity();
   }
+  result.covariance = result.joint_covariance.topLeftCorner<3, 3>();
   result.acceleration_sensor = prior.mean.segment<3>(3);
   result.bias_mps = config.estimate_bias ? prior.mean[6] : 0.0;
   result.bias_variance = config.estimate_bias ? prior.covariance(6, 6) : 0.0;
-  result.joint_covariance = prior.covariance;
   return result;
 }
 
@@ -302,7 +313,7 @@ EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const Con
   }
   const DopplerRows rows = sort_into_cells(scan, config.cell_size_m);
   result.reference_time_s = rows.reference_time_s;
-  const Choice choice = choose_mode(rows, prior, voting_model(prior, config, rows), config, workers);
+  const Choice choice = choose_mode(rows, prior, voting_model(prior, config), config, workers);
   if (choice.support < config.min_support) {
     result.status = EgoVelocityStatus::kAmbiguous;
     return result;
@@ -321,6 +332,9 @@ EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const Con
   if (config.estimate_bias) {
     result.bias_mps = fit.x[6];
     result.bias_variance = result.joint_covariance(6, 6);
+  } else {
+    result.joint_covariance.row(6).setZero();
+    result.joint_covariance.col(6).setZero();
   }
   result.inliers = fit.sums.inliers;
   if (result.inliers > 0) {

@@ -22,7 +22,7 @@ struct ConsensusRegressionConfig {
   double surface_noise_mps = 0.015;  ///< deviation of what the Doppler of all points of one cell has in common
   double prior_weight = 0.5;         ///< a velocity gains up to this share of its votes by agreeing with the prior
   double ambiguity_ratio = 0.85;     ///< ambiguous: a second velocity has this share of the votes of the first
-  double min_support = 0.1;          ///< no velocity: the best one has a smaller share of all votes
+  double min_support = 0.1;  ///< no velocity: the best one has a smaller share of all votes, weighed with the priors
 };
 
 ConfigFields fields(ConsensusRegressionConfig& config);
@@ -39,10 +39,11 @@ struct EgoPrior {
 
 /// The velocity of the sensor where most of the points may move.
 ///
-/// 1. Velocities from samples of three points are voted on. Every cell of space has one vote and the farthest cell in
-///    every direction as much again (see `elect`), so it takes no prior and no mounting to find the static scene. Modes
-///    of the votes are refined and split as finely as the noise allows. The mode with the most votes wins; agreement
-///    with the prior velocity adds to the votes, but never more than `prior_weight`, so a wrong prior is outvoted.
+/// 1. Velocities from samples of three points are voted on. Half of all votes is spread over the cells of space, half
+///    over the farthest cell of each direction (see `elect`), so it takes no prior and no mounting to find the static
+///    scene. Modes of the votes are refined and split as finely as the noise allows. The mode with the most votes wins;
+///    agreement with the prior velocity adds to the votes, but never more than `prior_weight`, so a wrong prior is
+///    outvoted.
 /// 2. v, acceleration a during a sweep and Doppler bias b minimise, jointly over all points near the winner,
 ///      sum_cells W_c sum_i rho(s_i + u_i . (v + a dt_i) - b) / sigma^2 + prior of v, a and b,
 ///    with Tukey's rho, sigma from differences between neighbouring points, and a weight W_c of each cell that vanishes
@@ -51,10 +52,10 @@ struct EgoPrior {
 ///    sector. It has a floor of 1 mm/s, and for sweeps of the change of velocity that a constant a leaves out.
 ///
 /// v is taken from the prior (or zero) only along directions that the lines of sight leave open; their covariance is
-/// the prior's then, or zero. Status: kConverged; kDegenerate with open directions; kAmbiguous when two modes have
-/// similar votes, or when no velocity has enough votes: the velocity is the prior then and all directions are open;
-/// kTooFewPoints below three points; kIterationLimit. All values are finite for finite priors. The result is the same
-/// for any number of threads. Cost: about 1.3 ms for 12,000 points.
+/// the prior's then, or that of (30 m/s)^2. Status: kConverged; kDegenerate with open directions; kAmbiguous when two
+/// modes have similar votes, or when no velocity has enough votes: the velocity is the prior then and all directions
+/// are open; kTooFewPoints below three points; kIterationLimit. All values are finite for finite priors. The result is
+/// the same for any number of threads.
 EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const ConsensusRegressionConfig& config,
                               const Workers& workers);
 

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/ego_motion/doppler_regression.hpp"
+#include "dynamic_icp/ego_motion/ego_filter.hpp"
 
 namespace dynamic_icp::ego_motion {
 namespace {
@@ -231,10 +232,35 @@ TEST(ConsensusRegression, PureOutliersAreNoVelocity) {
   const EgoVelocity first = estimate(cast(scene, 6));
   EXPECT_EQ(first.status, EgoVelocityStatus::kAmbiguous);
   EXPECT_TRUE(first.velocity_sensor.isZero(0.0));
+  EXPECT_GT(first.covariance(0, 0), 100.0) << "nothing is known, and that is said";
   const EgoVelocity later = estimate(cast(scene, 6), prior_at(scene.v));
   EXPECT_EQ(later.status, EgoVelocityStatus::kAmbiguous);
   EXPECT_EQ(later.velocity_sensor, scene.v);
   EXPECT_NEAR(later.covariance(0, 0), 0.25, 1e-12);
+}
+
+TEST(ConsensusRegression, AFilterOverInstantScansFollowsHardBraking) {
+  // Steady for a while, so that the filter is sure of it, then 6 m/s^2: velocity and acceleration must follow.
+  Scene scene;
+  scene.v = Vector3d(20.0, 0.0, 0.0);
+  EgoPrior prior = first_prior({});
+  EgoVelocity ego;
+  for (unsigned k = 0; k < 30; ++k) {
+    scene.v.x() -= k > 15 ? 0.6 : 0.0;
+    ego = estimate(cast(scene, 300 + k), prior);
+    EXPECT_LT((ego.velocity_sensor - scene.v).norm(), 0.05) << k;
+    prior = predict(ego, 0.1, {});
+  }
+  EXPECT_NEAR(ego.acceleration_sensor.x(), -6.0, 0.5);
+}
+
+TEST(ConsensusRegression, SaysWhatAFirstScanLeavesOpen) {
+  Scene scene;
+  scene.half_height = 0.0;
+  const EgoVelocity ego = estimate(cast(scene, 7));
+  EXPECT_EQ(ego.status, EgoVelocityStatus::kDegenerate);
+  EXPECT_GT(ego.covariance(2, 2), 100.0);
+  EXPECT_LT(ego.covariance(0, 0), 0.05);
 }
 
 TEST(ConsensusRegression, KeepsThePriorAlongWhatNobodySees) {

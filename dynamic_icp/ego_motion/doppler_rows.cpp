@@ -12,8 +12,8 @@ namespace {
 constexpr std::size_t kEnoughCells = 300;
 constexpr int kMostHalvings = 6;
 
-// Edge of a direction sector on the unit cube, about six degrees: wider than the view of a vehicle at 20 m. What errs
-// together, the surfaces of one object, mostly falls into one sector.
+// Edge of a direction sector on the unit cube, three to six degrees. What errs together,
+// the surfaces of one object, falls into one sector or a few.
 constexpr double kSectorEdge = 0.1;
 
 /// Numbers keys in the order in which they first appear; open addressing in one array.

@@ -16,7 +16,7 @@ enum class EgoVelocityStatus {
   kNotRun,
   kConverged,
   kIterationLimit,
-  kTooFewPoints,  ///< fewer than the unknowns: the velocity is the prior
+  kTooFewPoints,  ///< fewer than three: the velocity is the prior
   kFromMotion,    ///< not from the Doppler: the motion between two scans, for methods that do not look for it
   kDegenerate,    ///< the lines of sight leave directions open: along those the velocity is the prior's
   kAmbiguous,     ///< two velocities explain the scan almost equally well, or none does, and no prior decides
@@ -38,7 +38,7 @@ struct EgoVelocity {
 
   // Only from the consensus regression.
   /// d(velocity_sensor)/dt during the scan, m/s^2: v(tau) = velocity_sensor + acceleration_sensor (tau -
-  /// reference_time_s) with tau in s after the stamp. Zero for scans taken in an instant.
+  /// reference_time_s) with tau in s after the stamp. For scans taken in an instant what the filter carries on.
   Eigen::Vector3d acceleration_sensor = Eigen::Vector3d::Zero();
   double reference_time_s = 0.0;
   double bias_mps = 0.0;       ///< constant error of the Doppler, s_i = -u_i . v + bias

@@ -91,6 +91,12 @@ void check(const Config& config) {
   Config copy = config;
   check_fields(fields(copy));
   check(config.kiss);
+  if (config.ego_motion.consensus.min_noise_mps > config.ego_motion.consensus.max_noise_mps) {
+    throw UsageError(
+        fmt::format("configuration key 'ego_motion.consensus.min_noise_mps' is {}, expected at most "
+                    "'ego_motion.consensus.max_noise_mps' ({} m/s)",
+                    config.ego_motion.consensus.min_noise_mps, config.ego_motion.consensus.max_noise_mps));
+  }
   const double voxel = config.preprocess.voxel.voxel_size_m;
   const double max_range = config.preprocess.range.max_range_m;
   if (config.preprocess.range.min_range_m >= max_range) {

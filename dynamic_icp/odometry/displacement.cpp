@@ -7,6 +7,21 @@
 #include <Eigen/LU>
 
 namespace dynamic_icp::odometry {
+namespace {
+
+// Times that nearly coincide make weights that cancel and amplify every error. For equal steps they sum to 1.2 times
+// the interval.
+constexpr double kMostWeight = 10.0;
+
+double absolute_sum(const std::vector<double>& weights) {
+  double sum = 0.0;
+  for (const double weight : weights) {
+    sum += std::abs(weight);
+  }
+  return sum;
+}
+
+}  // namespace
 
 std::vector<double> quadrature_weights(std::span<const double> times_s, double begin_s, double end_s) {
   const auto count = static_cast<Eigen::Index>(times_s.size());
@@ -30,7 +45,12 @@ Displacement displacement_between(std::span<const VelocitySample> samples, doubl
   for (const VelocitySample& sample : samples) {
     times_s.push_back(sample.time_s);
   }
-  const std::vector<double> weights = quadrature_weights(times_s, begin_s, end_s);
+  std::vector<double> weights = quadrature_weights(times_s, begin_s, end_s);
+  while (samples.size() > 1 && !(absolute_sum(weights) <= kMostWeight * (end_s - begin_s))) {
+    samples = samples.subspan(1);
+    times_s.erase(times_s.begin());
+    weights = quadrature_weights(times_s, begin_s, end_s);
+  }
   Displacement result;
   result.last_weight_s = weights.back();
   for (std::size_t j = 0; j < samples.size(); ++j) {

@@ -30,7 +30,8 @@ struct Displacement {
 std::vector<double> quadrature_weights(std::span<const double> times_s, double begin_s, double end_s);
 
 /// The integral of the velocity in map axes from `begin_s` to `end_s` through the samples. The last sample is kept
-/// apart because its rotation is still to be found. See docs/derivations/displacement-from-doppler.md.
+/// apart because its rotation is still to be found. Where times nearly coincide the oldest samples are left out. See
+/// docs/derivations/displacement-from-doppler.md.
 Displacement displacement_between(std::span<const VelocitySample> samples, double begin_s, double end_s);
 
 }  // namespace dynamic_icp::odometry

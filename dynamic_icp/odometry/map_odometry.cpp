@@ -18,6 +18,12 @@ namespace {
 
 constexpr std::size_t kVelocitySamples = 3;
 
+// By chance more than a few points of a scan never agree with a map.
+constexpr double kLeastMatch = 0.05;
+
+// 1/m^2, of a position that is known because the map begins with it.
+constexpr double kExactPosition = 1e12;
+
 // The usual share of points that agree with the map follows the last scans with this weight for the newest.
 constexpr double kUsualMatchGain = 0.2;
 
@@ -195,6 +201,7 @@ void MapOdometry::begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor
   state.model_deviation_m = state_ ? state_->model_deviation_m : config_.map_align.model_deviation_m;
   state.filtered = now.filtered;
   state.T_map_sensor = T_map_sensor;
+  state.position_information = kExactPosition * Eigen::Matrix3d::Identity();
   state.turn = first_turn_state(config_.turn);
   state.turn.R_map_sensor = T_map_sensor.linear();
   state.sweep = straight_sweep(now.ego, now.middle_s);
@@ -240,12 +247,11 @@ registration::MotionPrior MapOdometry::motion_prior(const Moment& now,
 void MapOdometry::go_on(const Moment& now, Frame& frame) {
   registration::MapAlignConfig config = config_.map_align;
   config.model_deviation_m = state_->model_deviation_m;
-  std::vector<VelocitySample> velocities = velocities_with(now);
-  const registration::MotionPrior prior = motion_prior(now, velocities);
+  const registration::MotionPrior prior = motion_prior(now, velocities_with(now));
   registration::MapAlignment found = state_->scans_in_map == 1
                                          ? align_second(now, prior)
                                          : registration::align_to_map(now.still, map_, prior, config, workers_);
-  const double least_match = config_.lost_match * state_->usual_match;
+  const double least_match = std::max(kLeastMatch, config_.lost_match * state_->usual_match);
   if (match(found) < least_match) {
     found = registration::search_and_align(now.still, map_, prior, config, workers_);
   }
@@ -273,6 +279,7 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
   const double memory = config_.mapping.memory_scans;
   state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);
   state_->position_information = position_information(found.geometry_information);
+  std::vector<VelocitySample> velocities = velocities_with(now);
   velocities.back().R_map_sensor = found.T_map_sensor.linear() * found.sweep.rotation(now.middle_s);
   state_->velocities = std::move(velocities);
 }
@@ -287,6 +294,7 @@ void MapOdometry::describe(const registration::MotionPrior& prior, const registr
   evidence.source_position_information = state_->position_information;
   evidence.target_position_information = position_information(found.geometry_information);
 
+  evidence.displacement_turned = prior.displacement_turned;
   registration::Alignment& alignment = frame.alignment;
   alignment.iterations = found.iterations;
   alignment.fitness = match(found);
@@ -317,20 +325,20 @@ void MapOdometry::lose(const Moment& now, const registration::MotionPrior& prior
   MotionEvidence evidence;
   evidence.target_rotation_covariance = prior.covariance.topLeftCorner<3, 3>();
   evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
+  evidence.displacement_turned = prior.displacement_turned;
   frame.alignment.covariance = motion_covariance(evidence, prior.R_map_sensor);
   const registration::SweepMotion sweep = prior.sweep;
   begin(now, T_map_sensor);
   state_->turn.omega = sweep.omega;
-  state_->sweep = sweep;
+  state_->sweep.omega = sweep.omega;
 }
 
 /// A scan that cannot be used, or one after a long gap: the last motion goes on.
 void MapOdometry::extrapolate(double stamp_s, FrameStatus status, Frame& frame) const {
   const double dt_s = stamp_s - state_->stamp_s;
-  registration::SweepMotion steady = state_->sweep;
-  steady.alpha.setZero();
-  steady.acceleration.setZero();
-  const Eigen::Isometry3d T_target_source = steady.pose(dt_s).inverse();
+  Vector6d twist;
+  twist << state_->turn.omega, state_->filtered.velocity_sensor;
+  const Eigen::Isometry3d T_target_source = exp_se3(-dt_s * twist);
   set_motion(frame, status, state_->T_map_sensor, T_target_source);
   const double turned_rad = config_.turn.start_omega_rad_s * dt_s;
   const double moved_m = 0.5 * kBlindAcceleration_mps2 * dt_s * dt_s;
@@ -356,7 +364,9 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
     const Eigen::Matrix3d R_first_now = state_->T_map_sensor.linear().transpose() * found.T_map_sensor.linear();
     const Eigen::Vector3d mean_omega = log_so3(R_first_now) / dt_s;
     state_->sweep.omega = mean_omega;
-    straightened.sweep.omega = mean_omega;
+    state_->turn.omega = mean_omega;
+    state_->velocities.back().R_map_sensor = state_->T_map_sensor.linear() * state_->sweep.rotation(first.middle_s);
+    straightened = motion_prior(now, velocities_with(now));
     map_.clear();
     add_to_map(first);
     found = registration::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), kStraighteningGate_m,

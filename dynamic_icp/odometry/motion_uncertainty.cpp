@@ -37,6 +37,11 @@ Matrix6d motion_covariance(const MotionEvidence& evidence, const Eigen::Matrix3d
                                      (evidence.source_rotation_covariance + evidence.target_rotation_covariance) *
                                      R_map_target;
   covariance.bottomRightCorner<3, 3>() = R_map_target.transpose() * displacement * R_map_target;
+  const Eigen::Matrix3d J = -skew(evidence.displacement_turned);
+  const Eigen::Matrix3d rotation = covariance.topLeftCorner<3, 3>();
+  covariance.bottomRightCorner<3, 3>() += J * rotation * J.transpose();
+  covariance.bottomLeftCorner<3, 3>() = J * rotation;
+  covariance.topRightCorner<3, 3>() = rotation * J.transpose();
   return 0.5 * (covariance + covariance.transpose());
 }
 

@@ -22,12 +22,15 @@ struct MotionEvidence {
   Eigen::Matrix3d displacement_covariance = Eigen::Matrix3d::Zero();      ///< m^2, from the Doppler velocities
   Eigen::Matrix3d source_position_information = Eigen::Matrix3d::Zero();  ///< 1/m^2, from the points of the scan
   Eigen::Matrix3d target_position_information = Eigen::Matrix3d::Zero();
+  /// m, target axes: the part of the displacement by the velocity of the target scan, which turns with its rotation.
+  Eigen::Vector3d displacement_turned = Eigen::Vector3d::Zero();
 };
 
 /// Covariance of the left perturbation [omega (rad); rho (m)] of T_target_source, in target axes.
 ///
 /// The rotations of both scans were found against the map, one by one: their covariances add up. The displacement is
-/// known from the velocities and from the difference of the two positions in the map; these add up by information.
+/// known from the velocities and from the difference of the two positions in the map; these add up by information. An
+/// error omega of the rotation turns the displacement q that was measured in target axes: rho = omega x q + ...
 Matrix6d motion_covariance(const MotionEvidence& evidence, const Eigen::Matrix3d& R_map_target);
 
 /// What the points of a scan say of its position when nothing is known of its rotation: the Schur complement of the

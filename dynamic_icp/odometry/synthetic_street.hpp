@@ -8,7 +8,6 @@
 #include <functional>
 #include <limits>
 #include <numbers>
-#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
@@ -31,8 +30,8 @@ struct Box {
 };
 
 struct World {
-  bool has_ground = true;         ///< at z = 0
-  double tube_half_width_m = 0.0; /// walls along x at y = +- this, and a ceiling; 0: open
+  bool has_ground = true;          ///< at z = 0
+  double tube_half_width_m = 0.0;  ///< walls along x at y = +- this, and a ceiling; 0: open
   double tube_height_m = 5.0;
   std::vector<Box> boxes;
   std::vector<Box> cars;

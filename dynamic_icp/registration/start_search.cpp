@@ -42,6 +42,9 @@ MapAlignment search_and_align(const Scan& scan, const mapping::PlaneMap& map, co
     const double deviation = std::sqrt(prior.covariance(axis, axis));
     const int steps = std::min(kMostSteps, static_cast<int>(kReach * deviation / kStep_rad));
     for (int k = -steps; k <= steps; ++k) {
+      if (k == 0 && axis > 0) {
+        continue;  // tried with the first axis
+      }
       const Eigen::Matrix3d R_start = exp_so3(k * kStep_rad * Eigen::Vector3d::Unit(axis)) * prior.R_map_sensor;
       const MapAlignment candidate = align_to_map(few, map, prior, R_start, kCandidateGate_m, config, workers);
       if (candidate.matched > most) {
