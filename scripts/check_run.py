@@ -2,13 +2,14 @@
 """Holds runs of simulated drives against the truth of the simulator, apart from the program's own evaluation: motion,
 ego velocity, stated covariances, objects. Needs numpy.
 
-usage: check_run.py DRIVE RUN [DRIVE RUN ...]   (folders of `simulate` and of `run`)
+usage: check_run.py DRIVE RUN [DRIVE RUN ...]   (folders of `simulate`, layout dicp, and of `run`)
 
 For all drives of a scene (name-1, name-2, ...) together: RTE (mm) and RRE (degrees), root mean squares of the
 frame-to-frame errors; the error of the ego velocity (mm/s), largest of the first scans and root mean square, of scans
-that sweep in the middle of the sweep; the normalised estimation error squared (NEES) of the motion, mean over the frames
-(6 numbers: an honest covariance gives 6); objects of 2 m/s and 50 points or more from the sixth scan on: mean error of
-the velocity along and across the motion (m/s), share reported, and false ones a scan.
+that sweep in the middle of the sweep; the normalised estimation error squared (NEES) of the motion, mean over the
+frames (6 numbers: an honest covariance gives 6); objects of 2 m/s and 50 points or more from the sixth scan on: mean
+error of the velocity along and across the motion (m/s) and share reported; false ones a scan, over all scans. The
+estimate of an object is the nearest one within 3 m beyond half its longest edge; false is what is near no object.
 """
 import json
 import sys
@@ -62,9 +63,9 @@ def motion_errors(truth, estimate, frames):
         found = np.linalg.inv(estimate[k]) @ estimate[k - 1]
         D = exact @ np.linalg.inv(found)
         e = np.r_[rotation_vector(D[:3, :3]), D[:3, 3]]
-        E = exact @ np.linalg.inv(found)
-        P = np.array(frames[k]["pose_covariance"], float)
-        result.append((np.linalg.norm(E[:3, 3]), np.linalg.norm(e[:3]), e @ np.linalg.solve(P, e)))
+        covariance = frames[k]["pose_covariance"]
+        nees = e @ np.linalg.solve(np.array(covariance, float), e) if covariance else np.nan
+        result.append((np.linalg.norm(e[3:]), np.linalg.norm(e[:3]), nees))
     return np.array(result)
 
 
@@ -72,11 +73,12 @@ def ego_errors(drive, frames):
     """m/s; the truth of a sweep is that in its middle."""
     times = sorted((drive / "times").glob("*")) if (drive / "times").is_dir() else []
     motion = np.loadtxt(drive / "motion.csv", delimiter=",", skiprows=1) if times else None
+    sensor = json.loads((drive / "scene.json").read_text())["rig"]["sensors"][0]
     errors = []
     for frame, ego in zip(frames, lines(drive / "ego.jsonl")):
         velocity = np.array(ego["velocity_sensor"])
         if times:
-            middle = ego["timestamp"] + 0.5 * json.loads((drive / "scene.json").read_text())["rig"]["sensors"][0]["lidar.sweep_s"]
+            middle = ego["timestamp"] + 0.5 * sensor["lidar.sweep_s"]
             velocity = np.array([np.interp(middle, motion[:, 0], motion[:, c]) for c in (8, 9, 10)])
         errors.append(np.linalg.norm(np.array(frame["ego_velocity"]) - velocity))
     return np.array(errors)
@@ -131,7 +133,7 @@ class Scene:
         objects = [f"{np.mean(self.along):.2f}", f"{np.mean(self.across):.2f}",
                    f"{100 * len(self.along) / self.wanted:.0f} %"] if self.along else ["-", "-", "-"]
         return [f"{1000 * rte:.2f}", f"{np.degrees(rre):.4f}", f"{1000 * max(self.first):.0f}",
-                f"{1000 * np.sqrt((ego**2).mean()):.1f}", f"{motion[:, 2].mean():.1f}", *objects,
+                f"{1000 * np.sqrt((ego**2).mean()):.1f}", f"{np.nanmean(motion[:, 2]):.1f}", *objects,
                 f"{self.false / self.scans:.2f}"]
 
 

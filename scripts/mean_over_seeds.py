@@ -44,6 +44,8 @@ def print_table(rows):
 
 def collect(rows, cells, name_of):
     for cell in cells:
+        if cell["rte_rmse_m"] is None:
+            sys.exit(f"{cell['sequence']}, {cell['method']}: this run failed or has no truth")
         scene = cell["sequence"].rpartition("-")[0]
         rows.setdefault(scene, {}).setdefault(name_of(cell), []).append((cell["rte_rmse_m"], cell["rre_rmse_deg"]))
 

@@ -8,17 +8,14 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "dynamic_icp/estimation/robust_kernel.hpp"
+
 namespace dynamic_icp::ego_motion {
 namespace {
 
 constexpr std::size_t kCellsPerBlock = 256;
 constexpr double kDeviationPerMad = 1.4826;  // of normal numbers
 constexpr double kUnknowns = 7.0;
-
-double tukey(double ratio_squared) {
-  const double inside = 1.0 - ratio_squared;
-  return inside > 0.0 ? inside * inside : 0.0;
-}
 
 /// The sums of products that H and the gradient are made of; J = [u; dt u; -1].
 struct Moments {
@@ -107,12 +104,11 @@ void judge_cell(const DopplerRows& rows, std::size_t cell, const Vector7d& x, co
   const std::size_t n = rows.first[cell + 1] - begin;
   result.e.resize(n);
   result.w.resize(n);
-  const double per_cutoff2 = 1.0 / (scale.cutoff_mps * scale.cutoff_mps);
   double weight = 0.0;
   double sum = 0.0;
   for (std::size_t k = 0; k < n; ++k) {
     const double e = residual(rows, begin + k, x);
-    const double w = tukey(e * e * per_cutoff2);
+    const double w = estimation::tukey_weight(e, scale.cutoff_mps);
     result.e[k] = e;
     result.w[k] = w;
     weight += w;
@@ -124,7 +120,7 @@ void judge_cell(const DopplerRows& rows, std::size_t cell, const Vector7d& x, co
     const double noise2 = scale.noise_mps * scale.noise_mps;
     const double variance = noise2 / weight + scale.surface_mps * scale.surface_mps;
     const double cutoff = scale.cutoff_mps / scale.noise_mps;
-    result.cell_weight = tukey((sum / weight) * (sum / weight) / (cutoff * cutoff * variance));
+    result.cell_weight = estimation::tukey_weight(sum / weight, cutoff * std::sqrt(variance));
   }
 }
 

@@ -52,6 +52,7 @@ TEST(VelocityModes, DifferByMoreThanTheWidth) {
   const Electorate voters = two_groups(0.5, {5, 0, 0}, {4, 0, 0}, 0.3);
   const ModeSearch search;
   const std::vector<VelocityMode> modes = find_modes(voters, Vector7d::Zero(), search, Workers(1));
+  ASSERT_GE(modes.size(), 2u);
   for (std::size_t i = 0; i < modes.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
       EXPECT_GT(distance(voters.rows, modes[i].x, modes[j].x), search.width_mps);
