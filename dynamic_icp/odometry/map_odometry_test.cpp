@@ -163,7 +163,7 @@ TEST(MapOdometry, StatesHowWellTheMotionIsKnown) {
     double motion = 0.0;
     double twist = 0.0;
     int count = 0;
-    for (const std::uint64_t seed : {1, 2}) {
+    for (const std::uint64_t seed : {1UL, 2UL}) {
       for (const World& world : {street(), tunnel()}) {
         const Drive drive{world, lively(seed == 1 ? 8.0 : 14.0), sensor, kPeriod_s, seed};
         const std::vector<Frame> frames = drive.run(with_ablation(), 11);
