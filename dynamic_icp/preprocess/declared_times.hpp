@@ -13,8 +13,8 @@ namespace dynamic_icp::preprocess {
 
 /// What is done about the time a scan takes.
 struct SweepConfig {
-  bool undo = true;                  ///< off: every scan counts as taken at its stamp (ablation "no-deskew")
-  double declared_duration_s = 0.0;  ///< where points have no times: the scan takes so long, column by column; 0: no
+  bool undo = true;                     ///< off: every scan counts as taken at its stamp (ablation "no-deskew")
+  double declared_duration_s = 0.0;     ///< where points have no times: the scan takes so long, column by column; 0: no
   bool declared_left_to_right = false;  ///< order of these columns; off: from right to left, azimuth growing
 };
 

@@ -60,12 +60,10 @@ ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions
     const double scale = std::max(sigma_mps, kDeviationPerMad * median(magnitudes));
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    result.inliers = 0;
     for (std::size_t i = 0; i < radial.size(); ++i) {
       const double w = estimation::tukey_weight(magnitudes[i], kTukeyTuning * scale);
       A += w * directions[i] * directions[i].transpose();
       b += w * radial[i] * directions[i];
-      result.inliers += w > 0.0 ? 1 : 0;
     }
     const Eigen::Vector3d last = result.W;
     result.W = solve_constrained(A, b);

@@ -18,7 +18,6 @@ struct ClusterVelocity {
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< inverse covariance of W, (s/m)^2; may be singular
   double spread_mps = 0.0;                                ///< robust deviation of the residuals
   double signal_mps = 0.0;                                ///< root mean square of u . W over the points
-  int inliers = 0;                                        ///< points that were not judged gross errors
 };
 
 /// Regression of `radial` (m/s, the points' own range rates over ground) on the lines of sight with Tukey's kernel,

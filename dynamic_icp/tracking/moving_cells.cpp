@@ -16,6 +16,7 @@ namespace {
 constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 constexpr std::size_t kBlock = 4096;
 constexpr double kCellsEachWay = 1 << 20;
+constexpr double kWiderThanReach = 1.001;  // rounding must not put cells within reach two cubes apart
 
 /// Three cell coordinates of 21 bits each; points beyond the reach of the numbers share the outermost cells.
 std::uint64_t cell_key(const Eigen::Vector3d& point, double size) {
@@ -30,14 +31,12 @@ std::uint64_t cell_key(const Eigen::Vector3d& point, double size) {
 /// Gives keys the numbers 0, 1, ... in the order in which they come: open addressing.
 class KeyNumbers {
  public:
+  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
+
   explicit KeyNumbers(std::size_t most) : keys_(std::bit_ceil(2 * most + 1), kEmpty), numbers_(keys_.size()) {}
 
   std::uint32_t number(std::uint64_t key) {
-    const std::size_t mask = keys_.size() - 1;
-    std::size_t slot = ((key ^ key >> 31) * 0x9e3779b97f4a7c15ULL >> 29) & mask;
-    while (keys_[slot] != kEmpty && keys_[slot] != key) {
-      slot = (slot + 1) & mask;
-    }
+    const std::size_t slot = slot_of(key);
     if (keys_[slot] == kEmpty) {
       keys_[slot] = key;
       numbers_[slot] = count_++;
@@ -45,7 +44,22 @@ class KeyNumbers {
     return numbers_[slot];
   }
 
+  /// The number of a key that may never have come.
+  [[nodiscard]] std::uint32_t find(std::uint64_t key) const {
+    const std::size_t slot = slot_of(key);
+    return keys_[slot] == kEmpty ? kNone : numbers_[slot];
+  }
+
  private:
+  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
+    const std::size_t mask = keys_.size() - 1;
+    std::size_t slot = ((key ^ key >> 31) * 0x9e3779b97f4a7c15ULL >> 29) & mask;
+    while (keys_[slot] != kEmpty && keys_[slot] != key) {
+      slot = (slot + 1) & mask;
+    }
+    return slot;
+  }
+
   std::vector<std::uint64_t> keys_;
   std::vector<std::uint32_t> numbers_;
   std::uint32_t count_ = 0;
@@ -73,12 +87,6 @@ bool beside_gap(const MovingCell& cell, const GroupingConfig& config) {
   return std::abs(cell.radial_mps) <= config.bridge_velocity_mps;
 }
 
-/// The longest link of a cell to a cell that is farther from the sensor.
-double longest_link(const MovingCell& cell, double range, const GroupingConfig& config) {
-  const double link = config.link_distance_m + config.link_growth * range;
-  return beside_gap(cell, config) ? std::max(link, config.bridge_m) : link;
-}
-
 /// Whether two cells are neighbours on one body; `range` is that of the nearer one.
 bool linked(const MovingCell& a, const MovingCell& b, double range, const GroupingConfig& config) {
   const bool gap = a.radial_mps * b.radial_mps < 0.0 && beside_gap(a, config) && beside_gap(b, config);
@@ -87,6 +95,55 @@ bool linked(const MovingCell& a, const MovingCell& b, double range, const Groupi
   const double squared = (a.centroid - b.centroid).squaredNorm();
   return squared <= longest * longest &&
          std::abs(a.radial_mps - b.radial_mps) <= config.link_velocity_mps + config.link_shear_rps * std::sqrt(squared);
+}
+
+/// The cube itself and 13 of its 26 neighbours, so that each pair of cubes comes up once: differences of keys.
+std::vector<std::uint64_t> half_neighbourhood() {
+  std::vector<std::uint64_t> offsets;
+  for (std::int64_t x = -1; x <= 1; ++x) {
+    for (std::int64_t y = -1; y <= 1; ++y) {
+      for (std::int64_t z = -1; z <= 1; ++z) {
+        const std::int64_t offset = (x << 42) + (y << 21) + z;
+        if (offset >= 0) {
+          offsets.push_back(static_cast<std::uint64_t>(offset));
+        }
+      }
+    }
+  }
+  return offsets;
+}
+
+/// Calls visit(i, k) once for each pair of the chosen cells that are at most `reach_m` apart, and for some more.
+template <typename Visit>
+void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::uint32_t> chosen, double reach_m,
+                      const Visit& visit) {
+  const double cube_m = kWiderThanReach * reach_m;
+  KeyNumbers numbers(chosen.size());
+  std::vector<std::uint64_t> keys;
+  std::vector<std::vector<std::uint32_t>> cubes;
+  for (const std::uint32_t i : chosen) {
+    const std::uint64_t key = cell_key(cells[i].centroid, cube_m);
+    const std::uint32_t number = numbers.number(key);
+    if (number == cubes.size()) {
+      cubes.emplace_back();
+      keys.push_back(key);
+    }
+    cubes[number].push_back(i);
+  }
+  const std::vector<std::uint64_t> offsets = half_neighbourhood();
+  for (std::size_t cube = 0; cube < cubes.size(); ++cube) {
+    for (const std::uint64_t offset : offsets) {
+      const std::uint32_t other = numbers.find(keys[cube] + offset);
+      if (other == KeyNumbers::kNone) {
+        continue;
+      }
+      for (std::size_t a = 0; a < cubes[cube].size(); ++a) {
+        for (std::size_t b = other == cube ? a + 1 : 0; b < cubes[other].size(); ++b) {
+          visit(cubes[cube][a], cubes[other][b]);
+        }
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -135,32 +192,28 @@ MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::
 }
 
 std::vector<std::uint32_t> group_cells(std::span<const MovingCell> cells, const GroupingConfig& config) {
-  std::vector<std::uint32_t> order(cells.size());
-  std::iota(order.begin(), order.end(), 0u);
-  // Along the sorted axis only cells within the reach of a link have to be looked at.
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const double xa = cells[a].centroid.x();
-    const double xb = cells[b].centroid.x();
-    return xa != xb ? xa < xb : a < b;
-  });
+  std::vector<std::uint32_t> all(cells.size());
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<std::uint32_t> slow;
   std::vector<double> ranges(cells.size());
-  for (std::size_t i = 0; i < cells.size(); ++i) {
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
     ranges[i] = cells[i].centroid.norm();
+    if (beside_gap(cells[i], config)) {
+      slow.push_back(i);
+    }
   }
   dynamics::DisjointSets sets(cells.size());
-  for (std::size_t i = 0; i < order.size(); ++i) {
-    const MovingCell& a = cells[order[i]];
-    const double reach = longest_link(a, ranges[order[i]], config);
-    for (std::size_t k = i + 1; k < order.size(); ++k) {
-      const MovingCell& b = cells[order[k]];
-      // The nearer cell decides how far a link may reach, so none of `a` is longer than this.
-      if (b.centroid.x() - a.centroid.x() > reach) {
-        break;
-      }
-      if (linked(a, b, std::min(ranges[order[i]], ranges[order[k]]), config)) {
-        sets.unite(order[i], order[k]);
-      }
+  const auto link = [&](std::uint32_t i, std::uint32_t k) {
+    if (linked(cells[i], cells[k], std::min(ranges[i], ranges[k]), config)) {
+      sets.unite(i, k);
     }
+  };
+  const double farthest = cells.empty() ? 0.0 : *std::max_element(ranges.begin(), ranges.end());
+  const double longest = config.link_distance_m + config.link_growth * farthest;
+  visit_near_pairs(cells, all, std::max(longest, config.cell_size_m), link);
+  // Only bridges over gaps are longer.
+  if (config.bridge_m > longest) {
+    visit_near_pairs(cells, slow, config.bridge_m, link);
   }
   std::vector<std::uint32_t> number_of_root(cells.size(), ~0u);
   std::vector<std::uint32_t> groups(cells.size());

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tracking/moving_cells.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -82,7 +83,8 @@ TEST(MovingCells, GroupsAreTheConnectedOnesOfAllPairs) {
   std::vector<MovingCell> cells;
   for (std::uint64_t i = 0; i < 400; ++i) {
     const RandomSource one = random.fork(i);
-    cells.push_back(cell({one.uniform(0, 5, 40), one.uniform(1, -10, 10), one.uniform(2, 0, 2)}, one.uniform(3, 2, 4)));
+    cells.push_back(
+        cell({one.uniform(0, 5, 40), one.uniform(1, -10, 10), one.uniform(2, 0, 2)}, one.uniform(3, -1.5, 1.5)));
   }
   const GroupingConfig config;
   std::vector<std::uint32_t> expected(cells.size());
@@ -96,9 +98,13 @@ TEST(MovingCells, GroupsAreTheConnectedOnesOfAllPairs) {
       for (std::size_t k = 0; k < cells.size(); ++k) {
         const double range = std::min(cells[i].centroid.norm(), cells[k].centroid.norm());
         const double distance = (cells[i].centroid - cells[k].centroid).norm();
-        const bool together = distance <= config.link_distance_m + config.link_growth * range &&
-                              std::abs(cells[i].radial_mps - cells[k].radial_mps) <=
-                                  config.link_velocity_mps + config.link_shear_rps * distance;
+        const double ra = cells[i].radial_mps;
+        const double rb = cells[k].radial_mps;
+        const bool bridge = ra * rb < 0.0 && std::max(std::abs(ra), std::abs(rb)) <= config.bridge_velocity_mps;
+        const bool together =
+            distance <= (bridge ? config.bridge_m : config.link_distance_m + config.link_growth * range) &&
+            std::abs(cells[i].radial_mps - cells[k].radial_mps) <=
+                config.link_velocity_mps + config.link_shear_rps * distance;
         if (together && expected[k] > expected[i]) {
           expected[k] = expected[i];
           changed = true;
@@ -112,6 +118,25 @@ TEST(MovingCells, GroupsAreTheConnectedOnesOfAllPairs) {
       ASSERT_EQ(groups[i] == groups[k], expected[i] == expected[k]) << i << " and " << k;
     }
   }
+}
+
+TEST(MovingCells, GroupsDoNotDependOnTheOrderOfTheCells) {
+  // Cells of all speeds, so that bridges count, in a wall across the x axis.
+  const RandomSource random(29);
+  std::vector<MovingCell> cells;
+  for (std::uint64_t i = 0; i < 600; ++i) {
+    const RandomSource one = random.fork(i);
+    cells.push_back(cell({30.0, one.uniform(0, -40, 40), one.uniform(1, -2, 12)}, one.uniform(2, -1.5, 1.5)));
+  }
+  const std::vector<MovingCell> reversed(cells.rbegin(), cells.rend());
+  const std::vector<std::uint32_t> groups = group_cells(cells, {});
+  const std::vector<std::uint32_t> of_reversed = group_cells(reversed, {});
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      ASSERT_EQ(groups[i] == groups[k], of_reversed[cells.size() - 1 - i] == of_reversed[cells.size() - 1 - k]);
+    }
+  }
+  EXPECT_GT(*std::max_element(groups.begin(), groups.end()), 10u);
 }
 
 }  // namespace

@@ -19,7 +19,8 @@ constexpr std::int32_t kNobody = -1;
 constexpr double kWidest = 2.0;    // new objects are not wider than so many vehicles
 constexpr double kSplinter = 0.1;  // a track with this share of the points of another may be a part of it
 constexpr double kSplinterVelocity_mps = 2.0;
-constexpr double kLeastSignal = 2.0;  // of the radial velocities of a new object over their spread
+constexpr double kLeastSignal = 2.0;      // of the radial velocities of a new object over their spread
+constexpr std::size_t kFewestPoints = 3;  // of a sighting: a velocity has three unknowns
 
 double sweep_duration(const Scan& scan) {
   return scan.times().empty() ? 0.0 : *std::max_element(scan.times().begin(), scan.times().end());
@@ -31,13 +32,21 @@ bool contradicts(double expected_mps, double radial_mps, const TrackerConfig& co
          std::abs(radial_mps - expected_mps) > config.same_velocity_mps;
 }
 
+/// The cells' means in world axes.
+void place_cells(TrackingInput& input) {
+  for (const MovingCell& cell : input.moving.cells) {
+    input.cell_points.push_back(input.sensor.T_world_sensor * cell.centroid);
+    input.cell_directions.push_back(input.sensor.direction_world(cell.direction, cell.time_s));
+  }
+}
+
 }  // namespace
 
 /// A track with what is known of it besides its motion.
 struct ObjectTracker::Entry {
   std::int64_t id;
   Track track;      ///< at the mean time of its last sighting
-  Track predicted;  ///< at the stamp of the present scan
+  Track predicted;  ///< at the stamp of the present scan, with what that scan shows
   bool confirmed = false;
   int age = 0;
   int seen = 0;
@@ -78,18 +87,23 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
                       sweep_duration(scan),
                       {},
                       {},
+                      {},
+                      {},
                       RangeImage(scan, workers)};
   input.moving = gather_cells(scan, radial, is_moving, config_.grouping, workers);
   input.groups = group_cells(input.moving.cells, config_.grouping);
+  place_cells(input);
+  std::vector<Expectation> expected;
   for (Entry& entry : entries_) {
     entry.predicted = entry.track;
     entry.predicted.predict(input.stamp_s, config_.track);
+    expected.emplace_back(entry.predicted, sensor, config_);
   }
   std::vector<std::int32_t> owner(input.moving.cells.size(), kNobody);
-  assign(input, owner);
-  adopt(input, owner);
-  collect_members(input, owner, workers);
-  give_birth(input, owner);
+  assign(input, expected, owner);
+  adopt(input, expected, owner);
+  collect_members(input, expected, owner, workers);
+  give_birth(input, owner, workers);
   bury();
   std::vector<TrackedObject> objects;
   for (const Entry& entry : entries_) {
@@ -99,20 +113,20 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
 }
 
 /// Gives each cell to the track whose box and velocity fit it best.
-void ObjectTracker::assign(const TrackingInput& input, std::vector<std::int32_t>& owner) const {
+void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectation> expectations,
+                           std::vector<std::int32_t>& owner) const {
   std::vector<double> best(owner.size(), 1.0);
-  for (std::size_t k = 0; k < entries_.size(); ++k) {
-    const Expectation expected(entries_[k].predicted, input.sensor, config_);
+  for (std::size_t k = 0; k < expectations.size(); ++k) {
+    const Expectation& expected = expectations[k];
     const double reach = 0.5 * expected.box.size.norm() + expected.gate_m;
     for (std::size_t i = 0; i < owner.size(); ++i) {
       const MovingCell& cell = input.moving.cells[i];
-      const Vector3d point = input.sensor.T_world_sensor * cell.centroid;
+      const Vector3d& point = input.cell_points[i];
       if ((point - cell.time_s * expected.velocity - expected.box.centre).squaredNorm() > reach * reach) {
         continue;
       }
-      const Vector3d direction = input.sensor.direction_world(cell.direction, cell.time_s);
       const double score = std::max(expected.outside(point, cell.time_s) / expected.gate_m,
-                                    expected.deviation(direction, cell.radial_mps));
+                                    expected.deviation(input.cell_directions[i], cell.radial_mps));
       if (score < best[i]) {
         best[i] = score;
         owner[i] = static_cast<std::int32_t>(k);
@@ -122,7 +136,8 @@ void ObjectTracker::assign(const TrackingInput& input, std::vector<std::int32_t>
 }
 
 /// Cells that are linked to those of a track and not far from its box become part of it: sides that come into view.
-void ObjectTracker::adopt(const TrackingInput& input, std::vector<std::int32_t>& owner) const {
+void ObjectTracker::adopt(const TrackingInput& input, std::span<const Expectation> expectations,
+                          std::vector<std::int32_t>& owner) const {
   std::vector<std::vector<std::int32_t>> owners_of_group;
   for (std::size_t i = 0; i < owner.size(); ++i) {
     if (input.groups[i] >= owners_of_group.size()) {
@@ -140,10 +155,9 @@ void ObjectTracker::adopt(const TrackingInput& input, std::vector<std::int32_t>&
     const MovingCell& cell = input.moving.cells[i];
     double nearest = config_.growth_m;
     for (const std::int32_t k : owners_of_group[input.groups[i]]) {
-      const Expectation expected(entries_[static_cast<std::size_t>(k)].predicted, input.sensor, config_);
-      const double outside = expected.outside(input.sensor.T_world_sensor * cell.centroid, cell.time_s);
-      const Vector3d direction = input.sensor.direction_world(cell.direction, cell.time_s);
-      if (outside < nearest && expected.deviation(direction, cell.radial_mps) < 2.0) {
+      const Expectation& expected = expectations[static_cast<std::size_t>(k)];
+      const double outside = expected.outside(input.cell_points[i], cell.time_s);
+      if (outside < nearest && expected.deviation(input.cell_directions[i], cell.radial_mps) < 2.0) {
         nearest = outside;
         owner[i] = k;
       }
@@ -152,23 +166,23 @@ void ObjectTracker::adopt(const TrackingInput& input, std::vector<std::int32_t>&
 }
 
 /// Adds to slow tracks the points in their boxes that are not among the moving ones but move as they do.
-void ObjectTracker::gather_still(const TrackingInput& input) {
+void ObjectTracker::gather_still(const TrackingInput& input, std::span<const Expectation> expectations) {
   std::vector<std::size_t> slow;
-  std::vector<Expectation> expectations;
+  std::vector<Expectation> expected;
   for (std::size_t k = 0; k < entries_.size(); ++k) {
-    const Expectation expected(entries_[k].predicted, input.sensor, config_);
-    if (expected.may_look_still(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
+    if (expectations[k].may_look_still(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
       slow.push_back(k);
-      expectations.push_back(expected);
+      expected.push_back(expectations[k]);
     }
   }
   std::vector<std::vector<std::uint32_t>> still(slow.size());
   std::vector<std::size_t> contradictions(slow.size(), 0);
-  visit_still_points(input, expectations, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
-    if (expectations[i].deviation(direction, input.radial[row]) < 1.0) {
+  visit_still_points(input, expected, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+    if (contradicts(expected[i].W.dot(direction), input.radial[row], config_)) {
+      ++contradictions[i];
+    } else if (expected[i].deviation(direction, input.radial[row]) < 1.0) {
       still[i].push_back(row);
     }
-    contradictions[i] += contradicts(expectations[i].W.dot(direction), input.radial[row], config_) ? 1 : 0;
   });
   for (std::size_t i = 0; i < slow.size(); ++i) {
     std::vector<std::uint32_t>& members = entries_[slow[i]].members;
@@ -183,8 +197,8 @@ void ObjectTracker::gather_still(const TrackingInput& input) {
 }
 
 /// Lets each track take in its points.
-void ObjectTracker::collect_members(const TrackingInput& input, const std::vector<std::int32_t>& owner,
-                                    const Workers& workers) {
+void ObjectTracker::collect_members(const TrackingInput& input, std::span<const Expectation> expectations,
+                                    const std::vector<std::int32_t>& owner, const Workers& workers) {
   for (Entry& entry : entries_) {
     entry.members.clear();
   }
@@ -194,11 +208,11 @@ void ObjectTracker::collect_members(const TrackingInput& input, const std::vecto
       entries_[static_cast<std::size_t>(k)].members.push_back(input.moving.rows[i]);
     }
   }
-  gather_still(input);
+  gather_still(input, expectations);
   workers.for_each(entries_.size(), 1, [&](std::size_t k) {
     Entry& entry = entries_[k];
     ++entry.age;
-    if (entry.members.size() < 3) {
+    if (entry.members.size() < kFewestPoints) {
       ++entry.missed;
       entry.members.clear();
       return;
@@ -212,6 +226,8 @@ void ObjectTracker::collect_members(const TrackingInput& input, const std::vecto
       return;
     }
     entry.track = corrected;
+    entry.predicted = std::move(corrected);
+    entry.predicted.predict(input.stamp_s, config_.track);
     entry.missed = 0;
     ++entry.seen;
     const bool seen_often =
@@ -228,7 +244,8 @@ bool ObjectTracker::is_credible(const Entry& entry) const {
 }
 
 /// Groups nobody owns become tracks.
-void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner) {
+void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner,
+                               const Workers& workers) {
   std::vector<std::uint32_t> unowned;
   for (std::uint32_t cell = 0; cell < owner.size(); ++cell) {
     if (owner[cell] == kNobody) {
@@ -237,17 +254,22 @@ void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std
   }
   std::vector<Entry> newborn;
   std::vector<Expectation> expectations;
-  for (CellGroup& group :
-       vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping)) {
-    const Track track(make_sighting(input.scan, input.radial, group.rows, input.sensor, &input.view), input.stamp_s,
+  std::vector<CellGroup> groups =
+      vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
+  std::vector<std::optional<Track>> tracks(groups.size());
+  workers.for_each(groups.size(), 1, [&](std::size_t i) {
+    tracks[i].emplace(make_sighting(input.scan, input.radial, groups[i].rows, input.sensor, &input.view), input.stamp_s,
                       config_.track);
+  });
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const Track& track = *tracks[i];
     // Errors around zero have more spread than signal.
     const double spread = track.best().spread_mps();
     const bool plausible = track.box().size.y() <= kWidest * config_.track.largest_width_m;
     if (plausible && spread <= config_.max_spread_mps && track.best().signal_mps() >= kLeastSignal * spread) {
       newborn.push_back({0, track, track});
       newborn.back().predicted.predict(input.stamp_s, config_.track);
-      newborn.back().members = std::move(group.rows);
+      newborn.back().members = std::move(groups[i].rows);
       expectations.emplace_back(newborn.back().predicted, input.sensor, config_);
     }
   }
@@ -277,12 +299,15 @@ bool ObjectTracker::are_one(const Entry& a, const Entry& b) const {
   const bool a_is_smaller = a.members.size() < b.members.size();
   const Entry& small = a_is_smaller ? a : b;
   const Entry& large = a_is_smaller ? b : a;
-  const Vector3d apart = small.track.motion().velocity() - large.track.motion().velocity();
+  const Vector3d apart = small.predicted.motion().velocity() - large.predicted.motion().velocity();
+  // What coasts has no points: it is hidden, not a part.
   const bool splinter =
+      !small.members.empty() &&
       static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size()) &&
       apart.norm() < kSplinterVelocity_mps;
-  return distance_outside(large.track.box(), small.track.motion().position()) <= (splinter ? config_.growth_m : 0.0) ||
-         distance_outside(small.track.box(), large.track.motion().position()) <= 0.0;
+  const double reach = splinter ? config_.growth_m : 0.0;
+  return distance_outside(large.predicted.box(), small.predicted.motion().position()) <= reach ||
+         distance_outside(small.predicted.box(), large.predicted.motion().position()) <= 0.0;
 }
 
 /// Ends tracks that stand and those not seen for long, tentative ones at once, and makes one of those that share a
@@ -301,6 +326,7 @@ void ObjectTracker::bury() {
     } else if (entry.members.size() > same->members.size()) {
       // The name of the older one goes on with the state of what is seen more of.
       same->track = entry.track;
+      same->predicted = entry.predicted;
       same->members = std::move(entry.members);
       same->confirmed = same->confirmed || entry.confirmed;
       same->missed = entry.missed;
@@ -310,9 +336,7 @@ void ObjectTracker::bury() {
 }
 
 TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sensor) const {
-  Track track = entry.track;
-  const double stamp_s = seconds_between(*first_stamp_, *last_stamp_);
-  track.predict(stamp_s, config_.track);
+  const Track& track = entry.predicted;
   const MotionFilter& motion = track.motion();
   const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
   const Eigen::Matrix3d R = T_sensor_world.linear();
@@ -330,10 +354,10 @@ TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sens
   object.box.axes = R * object.box.axes;
   object.centroid = object.box.centre;
   object.extent = aligned_extent(object.box);
-  const Vector3d sight = object.centroid.normalized();
-  const Vector3d across = R.col(2).cross(sight).normalized();
-  object.tangential_observed =
-      across.dot(object.covariance * across) < config_.tangential_deviation_mps * config_.tangential_deviation_mps;
+  // Not of unit length: straight above the sensor it is zero, and nothing counts as observed.
+  const Vector3d across = R.col(2).cross(object.centroid);
+  const double deviation = config_.tangential_deviation_mps;
+  object.tangential_observed = across.dot(object.covariance * across) < deviation * deviation * across.squaredNorm();
   object.age_scans = entry.age;
   object.scans_seen = entry.seen;
   object.members = entry.members;

@@ -48,11 +48,15 @@ class ObjectTracker {
  private:
   struct Entry;
 
-  void assign(const TrackingInput& input, std::vector<std::int32_t>& owner) const;
-  void adopt(const TrackingInput& input, std::vector<std::int32_t>& owner) const;
-  void collect_members(const TrackingInput& input, const std::vector<std::int32_t>& owner, const Workers& workers);
-  void gather_still(const TrackingInput& input);
-  void give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner);
+  // `expectations`: of each of the entries, in their order.
+  void assign(const TrackingInput& input, std::span<const Expectation> expectations,
+              std::vector<std::int32_t>& owner) const;
+  void adopt(const TrackingInput& input, std::span<const Expectation> expectations,
+             std::vector<std::int32_t>& owner) const;
+  void collect_members(const TrackingInput& input, std::span<const Expectation> expectations,
+                       const std::vector<std::int32_t>& owner, const Workers& workers);
+  void gather_still(const TrackingInput& input, std::span<const Expectation> expectations);
+  void give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner, const Workers& workers);
   [[nodiscard]] bool is_credible(const Entry& entry) const;
   [[nodiscard]] bool are_one(const Entry& a, const Entry& b) const;
   void bury();

@@ -14,6 +14,9 @@ namespace dynamic_icp::tracking {
 
 /// How far one sees in each direction: the range of the nearest point in cells of about half a degree by one degree.
 /// Tells the true end of a body from the place where something nearer begins to hide it.
+///
+/// Made for bodies on the ground around the sensor: what is seen more than 46 degrees above or below its horizontal
+/// plane shares the outermost cells, and the edge of the field of view is known sideways only.
 class RangeImage {
  public:
   /// From the points of a scan, in the sensor frame.

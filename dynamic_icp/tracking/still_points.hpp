@@ -27,7 +27,9 @@ struct TrackingInput {
   double stamp_s = 0.0;  ///< since the first scan
   double sweep_s = 0.0;  ///< largest time of a point
   MovingCells moving;
-  std::vector<std::uint32_t> groups;  ///< of the cells
+  std::vector<std::uint32_t> groups;             ///< of the cells
+  std::vector<Eigen::Vector3d> cell_points;      ///< their centroids, world
+  std::vector<Eigen::Vector3d> cell_directions;  ///< their lines of sight, world
   RangeImage view;
 };
 

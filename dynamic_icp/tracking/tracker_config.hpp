@@ -35,7 +35,7 @@ struct TrackerConfig {
   int confirm_scans = 2;               ///< else it takes so many scans with points
   double confirm_deviation_mps = 3.0;  ///< and its velocity must be known so well ...
   int confirm_anyway_scans = 3;        ///< ... or have been observed in so many scans
-  int coast_scans = 5;                 ///< so many scans without points end a confirmed track
+  int coast_scans = 5;                 ///< a confirmed track is kept for so many scans without points
   double max_spread_mps = 0.4;         ///< points whose velocities differ more from those of a rigid body are no object
   double same_velocity_mps = 0.2;      ///< still points in a new object's box contradict it when they deviate more
   double least_speed_mps = 0.5;        ///< what is slower counts as standing
