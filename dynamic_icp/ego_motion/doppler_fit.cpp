@@ -4,17 +4,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "dynamic_icp/estimation/median.hpp"
 #include "dynamic_icp/estimation/robust_kernel.hpp"
 
 namespace dynamic_icp::ego_motion {
 namespace {
 
 constexpr std::size_t kCellsPerBlock = 256;
-constexpr double kDeviationPerMad = 1.4826;  // of normal numbers
 constexpr double kUnknowns = 7.0;
 
 /// The sums of products that H and the gradient are made of; J = [u; dt u; -1].
@@ -156,12 +157,6 @@ Matrix7d information_of(const FitSums& sums, const DopplerModel& model) {
   return information;
 }
 
-double median_of_sizes(std::vector<double>& values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::ranges::nth_element(values, middle);
-  return *middle;
-}
-
 }  // namespace
 
 FitSums& FitSums::operator+=(const FitSums& other) {
@@ -275,7 +270,8 @@ double noise_from_neighbours(const DopplerRows& rows, const Vector7d& x, double 
     }
   }
   // The median of a handful of residuals that were just fitted says nothing.
-  const double noise = sizes.size() < kEnough / 2 ? maximum_mps : kDeviationPerMad * median_of_sizes(sizes);
+  const double noise =
+      sizes.size() < kEnough / 2 ? maximum_mps : estimation::kDeviationPerMad * estimation::median(std::move(sizes));
   return std::clamp(noise, minimum_mps, maximum_mps);
 }
 

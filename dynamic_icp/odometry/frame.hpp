@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdint>
 #include <optional>
 #include <string_view>
@@ -14,6 +12,7 @@
 #include "dynamic_icp/base/se3.hpp"
 #include "dynamic_icp/dynamics/object_velocity.hpp"
 #include "dynamic_icp/ego_motion/doppler_regression.hpp"
+#include "dynamic_icp/odometry/sweep_report.hpp"
 #include "dynamic_icp/registration/align.hpp"
 #include "dynamic_icp/tracking/tracked_object.hpp"
 
@@ -59,34 +58,6 @@ struct Twist {
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();   ///< m/s over ground
   Matrix6d covariance = Matrix6d::Zero();             ///< of [angular; linear]
 };
-
-/// Where the times of the points of a scan come from.
-enum class SweepTimes { kNone, kInData, kDeclared };
-
-/// What was found and done about the time a scan takes.
-struct SweepReport {
-  SweepTimes times = SweepTimes::kNone;
-  std::optional<double> duration_s;  ///< from the earliest point to the latest; empty without times
-  bool undone = false;               ///< whether the method takes the motion during the scan out of it
-};
-
-/// What the scan itself says; nothing is done about it yet. Times that are not finite do not count.
-inline SweepReport sweep_in_data(const RawScan& raw) {
-  SweepReport report;
-  report.times = raw.times.empty() ? SweepTimes::kNone : SweepTimes::kInData;
-  std::optional<double> low;
-  std::optional<double> high;
-  for (const double time_s : raw.times) {
-    if (std::isfinite(time_s)) {
-      low = std::min(low.value_or(time_s), time_s);
-      high = std::max(high.value_or(time_s), time_s);
-    }
-  }
-  if (low) {
-    report.duration_s = *high - *low;
-  }
-  return report;
-}
 
 /// All that the odometry says of one scan.
 struct Frame {

@@ -56,28 +56,6 @@ TimeSpan time_span(const Scan& scan) {
   return {0.5 * (*low + *high), *high - *low};
 }
 
-/// The scan with the times that count: its own, declared ones where it has none, or none at all.
-RawScan with_times(const RawScan& raw, const preprocess::SweepConfig& config) {
-  RawScan timed = raw;
-  if (!config.undo) {
-    timed.times.clear();
-  } else if (timed.times.empty() && config.declared_duration_s > 0.0) {
-    timed.times = preprocess::declared_times(timed.points, config);
-  }
-  return timed;
-}
-
-/// What `with_times` makes of the sweep.
-SweepReport sweep_report(const RawScan& raw, const preprocess::SweepConfig& config) {
-  SweepReport report = sweep_in_data(raw);
-  if (report.times == SweepTimes::kNone && config.declared_duration_s > 0.0) {
-    report.times = SweepTimes::kDeclared;
-    report.duration_s = config.declared_duration_s;
-  }
-  report.undone = config.undo && report.duration_s.value_or(0.0) > 0.0;
-  return report;
-}
-
 registration::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
   registration::SweepMotion sweep;
   sweep.velocity = ego.velocity_sensor - middle_s * ego.acceleration_sensor;
@@ -130,9 +108,10 @@ MapOdometry::MapOdometry(const Config& config, int threads)
 Frame MapOdometry::process(const RawScan& raw) {
   check_order(raw, last_stamp_);
   Frame frame;
-  frame.sweep = sweep_report(raw, config_.sweep);
+  frame.sweep = sweep_as_configured(raw, config_.sweep);
   StageClock clock(frame.times);
-  const Scan whole = take_over(with_times(raw, config_.sweep), config_.preprocess, frame);
+  const std::optional<RawScan> timed = retimed(raw, config_.sweep);
+  const Scan whole = take_over(timed ? *timed : raw, config_.preprocess, frame);
   const Scan scan = preprocess::voxel_grid(whole, config_.preprocess.voxel);
   frame.points_used = scan.size();
   clock.finish(Stage::kPreprocess);
@@ -221,8 +200,7 @@ std::vector<VelocitySample> MapOdometry::velocities_with(const Moment& now) cons
 }
 
 /// Where the scan should be: the turn as it was expected, the way by the velocities of this and the last scans.
-registration::MotionPrior MapOdometry::motion_prior(const Moment& now,
-                                                    const std::vector<VelocitySample>& velocities) const {
+registration::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
   const TurnState turn = predict(state_->turn, dt_s, config_.turn);
   registration::MotionPrior prior;
@@ -232,7 +210,7 @@ registration::MotionPrior MapOdometry::motion_prior(const Moment& now,
   prior.sweep.alpha = turn.alpha;
   prior.covariance = turn.covariance;
 
-  std::vector<VelocitySample> samples = velocities;
+  std::vector<VelocitySample> samples = velocities_with(now);
   const Eigen::Matrix3d R_stamp_middle = prior.sweep.rotation(now.middle_s);
   samples.back().R_map_sensor = prior.R_map_sensor * R_stamp_middle;
   const Displacement displacement = displacement_between(samples, state_->stamp_s, now.stamp_s);
@@ -247,7 +225,7 @@ registration::MotionPrior MapOdometry::motion_prior(const Moment& now,
 void MapOdometry::go_on(const Moment& now, Frame& frame) {
   registration::MapAlignConfig config = config_.map_align;
   config.model_deviation_m = state_->model_deviation_m;
-  const registration::MotionPrior prior = motion_prior(now, velocities_with(now));
+  const registration::MotionPrior prior = motion_prior(now);
   registration::MapAlignment found = state_->scans_in_map == 1
                                          ? align_second(now, prior)
                                          : registration::align_to_map(now.still, map_, prior, config, workers_);
@@ -270,6 +248,7 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
     const double seen = std::max(kLeastModelDeviation_m, *found.model_deviation_m);
     state_->model_deviation_m += kModelDeviationGain * (seen - state_->model_deviation_m);
   }
+  state_->first = {};
   state_->stamp_s = now.stamp_s;
   state_->T_map_sensor = found.T_map_sensor;
   state_->turn = turn;
@@ -293,14 +272,13 @@ void MapOdometry::describe(const registration::MotionPrior& prior, const registr
   evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
   evidence.source_position_information = state_->position_information;
   evidence.target_position_information = position_information(found.geometry_information);
-
   evidence.displacement_turned = prior.displacement_turned;
   registration::Alignment& alignment = frame.alignment;
   alignment.iterations = found.iterations;
   alignment.fitness = match(found);
   alignment.inlier_rmse = found.rms_m;
   alignment.correspondences = found.on_planes;
-  alignment.geometry = {found.points, found.on_planes, found.rms_m};
+  alignment.geometry = {found.on_planes, static_cast<std::size_t>(found.matched), found.rms_m};
   alignment.length_m = length_m;
   alignment.covariance = motion_covariance(evidence, found.T_map_sensor.linear());
   alignment.degenerate = unknown_directions(*alignment.covariance, length_m, config_.unknown_deviation_m);
@@ -357,22 +335,21 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
   if (!state_->first.still.has_times()) {
     return found;
   }
-  const Moment first = state_->first;
+  const Moment& first = state_->first;
   const double dt_s = now.stamp_s - first.stamp_s;
-  registration::MotionPrior straightened = prior;
   for (int round = 0; round < kStraighteningRounds; ++round) {
     const Eigen::Matrix3d R_first_now = state_->T_map_sensor.linear().transpose() * found.T_map_sensor.linear();
     const Eigen::Vector3d mean_omega = log_so3(R_first_now) / dt_s;
     state_->sweep.omega = mean_omega;
     state_->turn.omega = mean_omega;
     state_->velocities.back().R_map_sensor = state_->T_map_sensor.linear() * state_->sweep.rotation(first.middle_s);
-    straightened = motion_prior(now, velocities_with(now));
+    const registration::MotionPrior straightened = motion_prior(now);
     map_.clear();
+    state_->scans_in_map = 0;
     add_to_map(first);
     found = registration::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), kStraighteningGate_m,
                                        config_.map_align, workers_);
   }
-  state_->scans_in_map = 1;
   return found;
 }
 

@@ -55,7 +55,7 @@ class MapOdometry final : public Odometry {
     double usual_match = 0.0;        ///< share of the points that agree with the map, as it was lately
     double model_deviation_m = 0.0;  ///< of patches from planes, as the last scans show it
     int scans_in_map = 0;
-    Moment first;  ///< the only scan in the map, until the next one shows how it turned
+    Moment first;  ///< the only scan in the map, until the next one shows how it turned; then empty
   };
 
   [[nodiscard]] ego_motion::EgoVelocity estimate_ego(const Scan& scan, double stamp_s) const;
@@ -66,8 +66,7 @@ class MapOdometry final : public Odometry {
   void describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
                 const Eigen::Matrix3d& rotation_covariance, double length_m, Frame& frame) const;
   [[nodiscard]] std::vector<VelocitySample> velocities_with(const Moment& now) const;
-  [[nodiscard]] registration::MotionPrior motion_prior(const Moment& now,
-                                                       const std::vector<VelocitySample>& velocities) const;
+  [[nodiscard]] registration::MotionPrior motion_prior(const Moment& now) const;
   [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
   std::vector<Eigen::Vector3d> add_to_map(const Moment& now);
   std::vector<std::uint8_t> track_objects(const Scan& scan, Frame& frame);

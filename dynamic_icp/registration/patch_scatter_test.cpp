@@ -36,6 +36,7 @@ TEST(UnexplainedDeviation, IsFoundUnderNoiseOfAllSizes) {
 TEST(UnexplainedDeviation, IsSmallWhereEverythingIsExplained) {
   EXPECT_LT(unexplained_deviation(patches(0.0, 0.0)), 3e-4);
   EXPECT_EQ(unexplained_deviation({}), 0.0);
+  EXPECT_EQ(unexplained_deviation(std::vector<PatchMean>(100)), 0.0) << "points without noise, exactly on their planes";
 }
 
 TEST(UnexplainedDeviation, DoesNotFollowAFewStrangePatches) {

@@ -9,23 +9,17 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "dynamic_icp/estimation/median.hpp"
 #include "dynamic_icp/estimation/robust_kernel.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 constexpr int kIterations = 8;
-constexpr double kTukeyTuning = 4.685;       // 95 % efficiency for normal errors
-constexpr double kDeviationPerMad = 1.4826;  // of normal errors
+constexpr double kTukeyTuning = 4.685;  // 95 % efficiency for normal errors
 constexpr double kConvergence_mps = 1e-3;
 // Of the information sum u u^T, which is 1 per point along the line of sight: below this a direction counts as open.
 constexpr double kOpenInformation = 1e-5;
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// The solution of A W = b in the directions that A constrains.
 Eigen::Vector3d solve_constrained(const Eigen::Matrix3d& A, const Eigen::Vector3d& b) {
@@ -51,13 +45,13 @@ ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions
   for (const Eigen::Vector3d& u : directions) {
     mean += u;
   }
-  result.W = median({radial.begin(), radial.end()}) * mean.normalized();
+  result.W = estimation::median({radial.begin(), radial.end()}) * mean.normalized();
   std::vector<double> magnitudes(radial.size());
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     for (std::size_t i = 0; i < radial.size(); ++i) {
       magnitudes[i] = std::abs(radial[i] - directions[i].dot(result.W));
     }
-    const double scale = std::max(sigma_mps, kDeviationPerMad * median(magnitudes));
+    const double scale = std::max(sigma_mps, estimation::kDeviationPerMad * estimation::median(magnitudes));
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < radial.size(); ++i) {
