@@ -18,8 +18,10 @@ namespace {
 
 constexpr std::size_t kVelocitySamples = 3;
 
-// By chance more than a few points of a scan never agree with a map.
-constexpr double kLeastMatch = 0.05;
+// Fewer agree with a map only by chance: of the points on its patches, and of all. A sparse radar meets few patches in
+// the map of one scan (2 % of its points agree), and fits those well.
+constexpr double kLeastAgreement = 0.2;
+constexpr double kLeastMatch = 0.01;
 
 // 1/m^2, of a position that is known because the map begins with it.
 constexpr double kExactPosition = 1e12;
@@ -65,6 +67,11 @@ registration::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, dou
 
 double match(const registration::MapAlignment& found) {
   return found.points > 0 ? found.matched / static_cast<double>(found.points) : 0.0;
+}
+
+/// Whether the alignment is worth nothing, given the usual share of points that agree.
+bool is_lost(const registration::MapAlignment& found, double least_match) {
+  return match(found) < least_match || found.matched < kLeastAgreement * static_cast<double>(found.on_planes);
 }
 
 /// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
@@ -230,10 +237,10 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
                                          ? align_second(now, prior)
                                          : registration::align_to_map(now.still, map_, prior, config, workers_);
   const double least_match = std::max(kLeastMatch, config_.lost_match * state_->usual_match);
-  if (match(found) < least_match) {
+  if (is_lost(found, least_match)) {
     found = registration::search_and_align(now.still, map_, prior, config, workers_);
   }
-  if (match(found) < least_match) {
+  if (is_lost(found, least_match)) {
     lose(now, prior, frame);
     return;
   }
