@@ -14,7 +14,9 @@ add_library(dynamic_icp_build_flags INTERFACE)
 target_compile_options(dynamic_icp_build_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wconversion -Wshadow
   # The same results from every compiler: no fused multiply-adds that the source does not ask for.
-  -ffp-contract=off)
+  -ffp-contract=off
+  # Nobody reads errno or the flags of floating point: without them loops with a choice in them become vectors.
+  -fno-math-errno -fno-trapping-math)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives inside Eigen's and the standard library's inlined code.
   target_compile_options(dynamic_icp_build_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-restrict)

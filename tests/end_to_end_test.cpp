@@ -394,6 +394,12 @@ TEST_F(EndToEnd, RecordedRadarScans) {
   EXPECT_LE(summary["ate_rmse_m"].get<double>(), 0.35);
   EXPECT_EQ(read_file(folder_ / "out" / "trajectory.tum").find("nan"), std::string::npos);
   EXPECT_NE(run_program("info " + recording.string()).text.find("12.00 Hz"), std::string::npos);
+
+  // Sparse scans: the local map must carry them, not merely the Doppler.
+  const json by_default = run_and_summarise(recording.string() + " --force");
+  EXPECT_LE(by_default["ate_rmse_m"].get<double>(), 0.31);
+  EXPECT_GE(by_default["status_counts"].value("converged", 0) + by_default["status_counts"].value("degenerate", 0),
+            110);
 }
 
 }  // namespace

@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <array>
 #include <cstddef>
-#include <functional>
 #include <memory>
-#include <vector>
 
 namespace dynamic_icp {
 
@@ -26,9 +26,16 @@ class Workers {
 
   /// Calls body(block, begin, end) once for each block [begin, end) of `block_size` indices that covers [0, n); blocks
   /// may run at the same time. The first exception thrown by a body is thrown again here. A loop started from inside a
-  /// body runs on the thread that starts it.
-  void for_blocks(std::size_t n, std::size_t block_size,
-                  const std::function<void(std::size_t block, std::size_t begin, std::size_t end)>& body) const;
+  /// body runs on the thread that starts it. Allocates nothing.
+  template <class Body>
+  void for_blocks(std::size_t n, std::size_t block_size, const Body& body) const {
+    const auto run_block = [&](std::size_t block) {
+      body(block, block * block_size, std::min(n, (block + 1) * block_size));
+    };
+    run(block_count(n, block_size), {&run_block, [](const void* callable, std::size_t block) {
+                                       (*static_cast<const decltype(run_block)*>(callable))(block);
+                                     }});
+  }
 
   /// Calls body(i) for each i in [0, n), in blocks of `block_size`.
   template <class Body>
@@ -40,16 +47,31 @@ class Workers {
     });
   }
 
-  /// The sum of block_sum(begin, end) over all blocks, added to `zero` in the order of the blocks.
+  /// The sum of block_sum(begin, end) over blocks of at least `block_size` indices, added to `zero` in the order of the
+  /// blocks. There are at most `kMostParts` blocks, so that their sums fit on the stack.
   template <class Sum, class BlockSum>
   [[nodiscard]] Sum sum_blocks(std::size_t n, std::size_t block_size, Sum zero, const BlockSum& block_sum) const {
-    std::vector<Sum> parts(block_count(n, block_size), zero);
-    for_blocks(n, block_size,
+    const std::size_t size = std::max(block_size, block_count(n, kMostParts));
+    std::array<Sum, kMostParts> parts;
+    for_blocks(n, size,
                [&](std::size_t block, std::size_t begin, std::size_t end) { parts[block] = block_sum(begin, end); });
-    for (const Sum& part : parts) {
-      zero += part;
+    for (std::size_t block = 0; block < block_count(n, size); ++block) {
+      zero += parts[block];
     }
     return zero;
+  }
+
+  /// Runs two tasks, at the same time where there are two threads. Loops inside a task run on its thread alone: meant
+  /// for tasks that are mostly no loops.
+  template <class First, class Second>
+  void both(const First& first, const Second& second) const {
+    for_blocks(2, 1, [&](std::size_t task, std::size_t, std::size_t) {
+      if (task == 0) {
+        first();
+      } else {
+        second();
+      }
+    });
   }
 
   /// Number of blocks of `block_size` that cover n indices.
@@ -58,6 +80,16 @@ class Workers {
   }
 
  private:
+  static constexpr std::size_t kMostParts = 64;
+
+  /// A reference to something that is called with the number of a block.
+  struct BlockCall {
+    const void* callable;
+    void (*call)(const void* callable, std::size_t block);
+  };
+
+  void run(std::size_t blocks, const BlockCall& call) const;
+
   class Pool;
   std::unique_ptr<Pool> pool_;
 };

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/base/scan.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -21,45 +22,118 @@ void check_lengths(const RawScan& raw) {
   }
 }
 
+constexpr std::size_t kBlock = 4096;
+
+enum class Verdict { kKept, kNonFinite, kZeroRange, kOutOfRange };
+
+/// What becomes of one record.
+struct Record {
+  Verdict verdict;
+  Eigen::Vector3d direction;
+};
+
+/// Its square is neither so small nor so large that digits are lost; false for NaN.
+bool is_ordinary(double squared_length) { return squared_length > 1e-24 && squared_length < 1e300; }
+
+Record judge(const RawScan& raw, std::size_t i, const Scan::RangeLimits& limits) {
+  const Eigen::Vector3d& point = raw.points[i];
+  const Eigen::Vector3d& line_of_sight = raw.directions.empty() ? point : raw.directions[i];
+  const double squared = line_of_sight.squaredNorm();
+  // stableNorm: coordinates beyond 1e154 must not turn into an infinite length unnoticed.
+  const double length = is_ordinary(squared) ? std::sqrt(squared) : line_of_sight.stableNorm();
+  const bool finite = point.allFinite() && std::isfinite(raw.doppler[i]) && std::isfinite(length) &&
+                      (raw.times.empty() || std::isfinite(raw.times[i]));
+  if (!finite) {
+    return {Verdict::kNonFinite, line_of_sight};
+  }
+  if (length < 1e-12 || point.isZero(0.0)) {
+    return {Verdict::kZeroRange, line_of_sight};
+  }
+  const double range = raw.directions.empty() ? length : point.norm();
+  const bool in_range = range >= limits.min_m && range <= limits.max_m;
+  return {in_range ? Verdict::kKept : Verdict::kOutOfRange, line_of_sight / length};
+}
+
 }  // namespace
 
-Scan Scan::from_raw(const RawScan& raw, Dropped* dropped) {
-  check_lengths(raw);
+Scan Scan::from_raw(const RawScan& raw, Dropped* dropped) { return from_raw(raw, {}, Workers(1), dropped); }
+
+Scan Scan::from_raw(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
   Scan scan;
-  Dropped counts;
-  scan.stamp_ = raw.stamp;
-  const std::size_t n = raw.points.size();
-  scan.points_.reserve(n);
-  scan.directions_.reserve(n);
-  scan.doppler_.reserve(n);
-  scan.times_.reserve(raw.times.size());
-  scan.records_.reserve(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    const Eigen::Vector3d& line_of_sight = raw.directions.empty() ? raw.points[i] : raw.directions[i];
-    // stableNorm: coordinates beyond 1e154 must not turn into an infinite length unnoticed.
-    const double length = line_of_sight.stableNorm();
-    const bool finite = raw.points[i].allFinite() && std::isfinite(raw.doppler[i]) && std::isfinite(length) &&
-                        (raw.times.empty() || std::isfinite(raw.times[i]));
-    if (!finite) {
-      ++counts.non_finite;
-      continue;
-    }
-    if (length < 1e-12 || raw.points[i].isZero(0.0)) {
-      ++counts.zero_range;
-      continue;
-    }
-    scan.points_.push_back(raw.points[i]);
-    scan.directions_.push_back(line_of_sight / length);
-    scan.doppler_.push_back(raw.doppler[i]);
-    if (!raw.times.empty()) {
-      scan.times_.push_back(raw.times[i]);
-    }
-    scan.records_.push_back(static_cast<std::uint32_t>(i));
-  }
-  if (dropped != nullptr) {
-    *dropped = counts;
-  }
+  scan.take_over(raw, limits, workers, dropped);
   return scan;
+}
+
+void Scan::take_over(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
+  check_lengths(raw);
+  const std::size_t n = raw.points.size();
+  stamp_ = raw.stamp;
+  resize(n, !raw.times.empty());
+  // Each block fills the beginning of its own rows; gaps, which are rare, are closed afterwards.
+  std::vector<Dropped> counts(Workers::block_count(n, kBlock));
+  workers.for_blocks(n, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    Dropped& count = counts[block];
+    std::size_t row = begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      const Record record = judge(raw, i, limits);
+      if (record.verdict != Verdict::kKept) {
+        count.non_finite += record.verdict == Verdict::kNonFinite ? 1 : 0;
+        count.zero_range += record.verdict == Verdict::kZeroRange ? 1 : 0;
+        count.out_of_range += record.verdict == Verdict::kOutOfRange ? 1 : 0;
+        continue;
+      }
+      points_[row] = raw.points[i];
+      directions_[row] = record.direction;
+      doppler_[row] = raw.doppler[i];
+      if (!raw.times.empty()) {
+        times_[row] = raw.times[i];
+      }
+      records_[row] = static_cast<std::uint32_t>(i);
+      ++row;
+    }
+  });
+  Dropped sum;
+  std::size_t rows = 0;
+  for (std::size_t block = 0; block < counts.size(); ++block) {
+    const Dropped& count = counts[block];
+    const std::size_t begin = block * kBlock;
+    const std::size_t kept =
+        std::min(n, begin + kBlock) - begin - count.non_finite - count.zero_range - count.out_of_range;
+    move_rows(begin, rows, kept);
+    rows += kept;
+    sum.non_finite += count.non_finite;
+    sum.zero_range += count.zero_range;
+    sum.out_of_range += count.out_of_range;
+  }
+  resize(rows, !raw.times.empty());
+  if (dropped != nullptr) {
+    *dropped = sum;
+  }
+}
+
+void Scan::resize(std::size_t rows, bool with_times) {
+  points_.resize(rows);
+  directions_.resize(rows);
+  doppler_.resize(rows);
+  times_.resize(with_times ? rows : 0);
+  records_.resize(rows);
+}
+
+/// Moves rows to a place before them.
+void Scan::move_rows(std::size_t from, std::size_t to, std::size_t count) {
+  const auto move = [&](auto& column) {
+    const auto first = column.begin() + static_cast<std::ptrdiff_t>(from);
+    std::copy(first, first + static_cast<std::ptrdiff_t>(count), column.begin() + static_cast<std::ptrdiff_t>(to));
+  };
+  if (from != to) {
+    move(points_);
+    move(directions_);
+    move(doppler_);
+    if (has_times()) {
+      move(times_);
+    }
+    move(records_);
+  }
 }
 
 Scan Scan::select(std::span<const std::uint32_t> rows) const {
@@ -81,7 +155,5 @@ Scan Scan::select(std::span<const std::uint32_t> rows) const {
   }
   return result;
 }
-
-void Scan::displace(std::size_t row, const Eigen::Vector3d& displacement) { points_[row] += displacement; }
 
 }  // namespace dynamic_icp

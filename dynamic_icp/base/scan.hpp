@@ -4,12 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/stamp.hpp"
 
 namespace dynamic_icp {
@@ -36,8 +38,15 @@ class Scan {
  public:
   /// Why records of a RawScan did not become rows of the Scan.
   struct Dropped {
-    std::size_t non_finite = 0;  ///< NaN or infinity in a coordinate, the Doppler, the time or the direction
-    std::size_t zero_range = 0;  ///< at the sensor's origin: no line of sight
+    std::size_t non_finite = 0;    ///< NaN or infinity in a coordinate, the Doppler, the time or the direction
+    std::size_t zero_range = 0;    ///< at the sensor's origin: no line of sight
+    std::size_t out_of_range = 0;  ///< nearer or farther than the limits
+  };
+
+  /// The distances from the sensor's origin that points may have, m; both belong to it.
+  struct RangeLimits {
+    double min_m = 0.0;
+    double max_m = std::numeric_limits<double>::infinity();
   };
 
   Scan() = default;
@@ -45,6 +54,13 @@ class Scan {
   /// Takes over the records that are finite and away from the origin and counts the others in `dropped` (if given).
   /// Throws std::invalid_argument when the columns differ in length.
   static Scan from_raw(const RawScan& raw, Dropped* dropped = nullptr);
+
+  /// The same for what is within the limits, by several threads.
+  static Scan from_raw(const RawScan& raw, const RangeLimits& limits, const Workers& workers,
+                       Dropped* dropped = nullptr);
+
+  /// The same in the place of what this scan was, whose memory is used again.
+  void take_over(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped = nullptr);
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] bool empty() const { return points_.empty(); }
@@ -61,9 +77,12 @@ class Scan {
   [[nodiscard]] Scan select(std::span<const std::uint32_t> rows) const;
 
   /// Moves the point of one row by `displacement` (m, sensor frame).
-  void displace(std::size_t row, const Eigen::Vector3d& displacement);
+  void displace(std::size_t row, const Eigen::Vector3d& displacement) { points_[row] += displacement; }
 
  private:
+  void resize(std::size_t rows, bool with_times);
+  void move_rows(std::size_t from, std::size_t to, std::size_t count);
+
   Stamp stamp_;
   std::vector<Eigen::Vector3d> points_;
   std::vector<Eigen::Vector3d> directions_;

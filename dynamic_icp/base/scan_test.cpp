@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/base/scan.hpp"
 
+#include <cmath>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -91,6 +93,37 @@ TEST(Scan, EmptyIsAScan) {
   const Scan scan = Scan::from_raw(RawScan{});
   EXPECT_TRUE(scan.empty());
   EXPECT_TRUE(scan.select({}).empty());
+}
+
+TEST(Scan, TakesOverAnotherInItsPlace) {
+  // A long scan with times and gaps, then a short one without times: nothing of the first may be left.
+  RawScan first;
+  for (int i = 0; i < 10'000; ++i) {
+    const double x = i % 7 == 0 ? std::nan("") : 1.0 + i % 90;
+    first.points.emplace_back(x, 2.0, 0.5);
+    first.doppler.push_back(i);
+    first.times.push_back(1e-5 * i);
+  }
+  RawScan second;
+  second.points = {{3.0, 0.0, 0.0}, {0.0, 0.0, 0.0}, {100.0, 0.0, 0.0}, {0.0, 4.0, 0.0}};
+  second.doppler = {1.0, 2.0, 3.0, 4.0};
+  const Workers workers(3);
+  const Scan::RangeLimits limits{2.5, 60.0};
+  Scan reused = Scan::from_raw(first, limits, workers);
+  EXPECT_EQ(reused.size(), Scan::from_raw(first, limits, Workers(1)).size());
+  for (std::size_t row = 0; row < reused.size(); ++row) {
+    ASSERT_EQ(reused.points()[row], first.points[reused.records()[row]]);
+    ASSERT_EQ(reused.times()[row], first.times[reused.records()[row]]);
+    ASSERT_NEAR((reused.directions()[row] * reused.points()[row].norm() - reused.points()[row]).norm(), 0.0, 1e-12);
+  }
+  Scan::Dropped dropped;
+  reused.take_over(second, limits, workers, &dropped);
+  EXPECT_EQ(reused.records(), (std::vector<std::uint32_t>{0, 3}));
+  EXPECT_FALSE(reused.has_times());
+  EXPECT_EQ(reused.doppler(), (std::vector<double>{1.0, 4.0}));
+  EXPECT_EQ(dropped.zero_range, 1u);
+  EXPECT_EQ(dropped.out_of_range, 1u);
+  EXPECT_EQ(dropped.non_finite, 0u);
 }
 
 }  // namespace

@@ -25,13 +25,12 @@ std::vector<Merge> single_linkage(std::span<const ReachabilityEdge> edges) {
   std::vector<std::uint32_t> node_of_set(n);
   std::iota(node_of_set.begin(), node_of_set.end(), std::uint32_t{0});
   std::vector<Merge> merges(edges.size());
-  const auto size = [&](std::uint32_t node) { return node < n ? 1 : merges[node - n].size; };
   for (std::uint32_t i = 0; i < edges.size(); ++i) {
-    const std::uint32_t a = node_of_set[sets.find(edges[i].first)];
-    const std::uint32_t b = node_of_set[sets.find(edges[i].second)];
-    merges[i] = {{a, b}, size(a) + size(b)};
-    sets.unite(edges[i].first, edges[i].second);
-    node_of_set[sets.find(edges[i].first)] = n + i;
+    const std::uint32_t a = sets.find(edges[i].first);
+    const std::uint32_t b = sets.find(edges[i].second);
+    merges[i] = {{node_of_set[a], node_of_set[b]}, sets.size(a) + sets.size(b)};
+    sets.unite(a, b);
+    node_of_set[sets.find(a)] = n + i;
   }
   return merges;
 }
@@ -87,6 +86,8 @@ CondensedTree condense(std::span<const ReachabilityEdge> edges, std::uint32_t mi
       }
     }
   }
+  tree.point_cluster.reserve(n);
+  tree.point_lambda.reserve(n);
   for (std::uint32_t point = 0; point < n; ++point) {
     tree.point_cluster.push_back(standings[point].cluster);
     tree.point_lambda.push_back(standings[point].lambda);

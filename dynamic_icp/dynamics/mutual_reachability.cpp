@@ -5,10 +5,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
+#include <bit>
+#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <tuple>
 
+#include "dynamic_icp/dynamics/bucket_sort.hpp"
 #include "dynamic_icp/dynamics/core_distances.hpp"
 #include "dynamic_icp/dynamics/disjoint_sets.hpp"
 #include "dynamic_icp/spatial/kd_tree.hpp"
@@ -31,6 +34,8 @@ class Bound {
  public:
   void set(double value) { value_.store(value, std::memory_order_relaxed); }
   [[nodiscard]] double get() const { return value_.load(std::memory_order_relaxed); }
+  /// While no other thread does anything to it: a fraction of the time.
+  void lower_alone_to(double value) { set(std::min(value, get())); }
   void lower_to(double value) {
     double now = get();
     while (value < now && !value_.compare_exchange_weak(now, value, std::memory_order_relaxed)) {
@@ -40,6 +45,22 @@ class Bound {
  private:
   std::atomic<double> value_{kLargest};
 };
+
+/// The bits of a number that is not negative, as an integer, have the order of such numbers; they spread weights
+/// evenly, the smallest of which are small by orders of magnitude.
+void sort_edges(std::vector<ReachabilityEdge>& edges) {
+  const auto bits = [](const ReachabilityEdge& edge) { return std::bit_cast<std::uint64_t>(edge.squared_weight); };
+  const auto [first, last] = std::minmax_element(
+      edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.squared_weight < b.squared_weight; });
+  const std::uint64_t lowest = bits(*first);
+  const std::size_t buckets = bucket_count_for(edges.size());
+  int shift = 0;
+  while ((bits(*last) - lowest) >> shift >= buckets) {
+    ++shift;
+  }
+  bucket_sort(
+      edges, buckets, [&](const ReachabilityEdge& edge) { return (bits(edge) - lowest) >> shift; }, std::less<>());
+}
 
 /// Boruvka's algorithm: in every round each component but the largest finds the smallest edge that leaves it, by the
 /// total order of edges. All these edges belong to the tree, and they leave at most half as many components.
@@ -61,6 +82,7 @@ class SpanningTreeSearch {
         cores_(core_distances(tree_, points, min_samples, workers)),
         lower_bounds_(cores_.squared.begin(), cores_.squared.begin() + static_cast<std::ptrdiff_t>(points.size())),
         candidates_(points.size()),
+        neighbours_passed_(points.size(), 0),
         components_(cores_.squared.size(), kNone),
         bounds_(points.size()),
         summaries_(tree_.node_count()),
@@ -80,7 +102,7 @@ class SpanningTreeSearch {
       workers_.for_each(tree_.leaf_count(), 4, [this](std::size_t leaf) { search_from(leaf); });
       join_components();
     }
-    std::sort(edges_.begin(), edges_.end());
+    sort_edges(edges_);
     return std::move(edges_);
   }
 
@@ -114,7 +136,7 @@ class SpanningTreeSearch {
   void summarize_leaf(KdTree::Node leaf);
   [[nodiscard]] double least_core_outside(KdTree::Node node, std::uint32_t component) const;
   void propose_known_edges();
-  [[nodiscard]] std::uint32_t remembered_neighbour_outside(std::uint32_t position) const;
+  [[nodiscard]] std::uint32_t remembered_neighbour_outside(std::uint32_t position);
   [[nodiscard]] bool must_search(std::uint32_t position) const;
   [[nodiscard]] Group group_in(std::size_t leaf) const;
   [[nodiscard]] double limit(const Group& group) const;
@@ -137,6 +159,7 @@ class SpanningTreeSearch {
   std::vector<Eigen::Vector3d> points_;
   std::vector<double> lower_bounds_;  // no edge that leaves the component from here has a smaller squared weight
   std::vector<Candidate> candidates_;
+  std::vector<std::uint8_t> neighbours_passed_;  // so many of the remembered neighbours are in the component
   std::vector<std::uint32_t> components_;
 
   std::vector<Bound> bounds_;           // by component: squared weight of an edge that leaves it
@@ -149,6 +172,9 @@ class SpanningTreeSearch {
 /// Identical points have the same core distance, and the edges between them are the smallest that any of them has:
 /// each joins the first of them.
 void SpanningTreeSearch::join_identical_points(std::span<const Eigen::Vector3d> points) {
+  if (std::adjacent_find(points.begin(), points.end()) == points.end()) {
+    return;
+  }
   std::vector<std::uint32_t> positions(points.size());
   for (std::uint32_t p = 0; p < points.size(); ++p) {
     positions[number(p)] = p;
@@ -214,12 +240,17 @@ double SpanningTreeSearch::least_core_outside(KdTree::Node node, std::uint32_t c
   return summary.component == component ? summary.squared_others : summary.squared_core;
 }
 
-std::uint32_t SpanningTreeSearch::remembered_neighbour_outside(std::uint32_t position) const {
-  for (const std::uint32_t neighbour : cores_.neighbours_of(position)) {
+/// The nearest one. Those that have joined the component stay in it: they are never looked at again.
+std::uint32_t SpanningTreeSearch::remembered_neighbour_outside(std::uint32_t position) {
+  const std::span<const std::uint32_t> neighbours = cores_.neighbours_of(position);
+  for (std::size_t i = neighbours_passed_[position]; i < neighbours.size(); ++i) {
+    const std::uint32_t neighbour = neighbours[i];
     if (neighbour == kNone || components_[neighbour] != components_[position]) {
+      neighbours_passed_[position] = static_cast<std::uint8_t>(i);
       return neighbour;
     }
   }
+  neighbours_passed_[position] = static_cast<std::uint8_t>(neighbours.size());
   return kNone;
 }
 
@@ -235,8 +266,8 @@ void SpanningTreeSearch::propose_known_edges() {
       }
       candidate = {cores_.squared[p], spatial::squared_length(points_[p] - points_[neighbour]), neighbour};
     }
-    bound(p).lower_to(candidate.squared_weight);
-    bound(candidate.target).lower_to(candidate.squared_weight);
+    bound(p).lower_alone_to(candidate.squared_weight);
+    bound(candidate.target).lower_alone_to(candidate.squared_weight);
   }
 }
 

@@ -94,10 +94,11 @@ void refine(const DopplerRows& voters, const DopplerModel& model, const RobustSc
 /// Keeps the first of those that look the same.
 void remove_duplicates(const DopplerRows& voters, double width_mps, std::vector<VelocityMode>& modes) {
   std::ranges::stable_sort(modes, [](const auto& a, const auto& b) { return a.votes > b.votes; });
+  const StateDistance distance(voters);
   std::vector<VelocityMode> kept;
   for (const VelocityMode& mode : modes) {
-    const bool is_new = std::ranges::all_of(
-        kept, [&](const VelocityMode& other) { return distance(voters, mode.x, other.x) > width_mps; });
+    const bool is_new =
+        std::ranges::all_of(kept, [&](const VelocityMode& other) { return distance(mode.x, other.x) > width_mps; });
     if (is_new) {
       kept.push_back(mode);
     }
@@ -265,10 +266,10 @@ EgoVelocityStatus status_of(const Fit& fit, const Choice& choice) {
 }
 
 /// The prior, as the result where the scan says nothing.
-EgoVelocity nothing_but_prior(const Scan& scan, const EgoPrior& prior, const ConsensusRegressionConfig& config) {
+EgoVelocity nothing_but_prior(std::size_t points, const EgoPrior& prior, const ConsensusRegressionConfig& config) {
   EgoVelocity result;
   result.status = EgoVelocityStatus::kTooFewPoints;
-  result.points = scan.size();
+  result.points = points;
   result.unobservable.setIdentity();
   result.joint_covariance = prior.covariance;
   if (prior.has_velocity) {
@@ -307,11 +308,15 @@ ConfigFields fields(ConsensusRegressionConfig& config) {
 
 EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const ConsensusRegressionConfig& config,
                               const Workers& workers) {
-  EgoVelocity result = nothing_but_prior(scan, prior, config);
-  if (scan.size() < kLeastPoints) {
+  return estimate_velocity(sort_into_cells(scan, config.cell_size_m, workers), prior, config, workers);
+}
+
+EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, const ConsensusRegressionConfig& config,
+                              const Workers& workers) {
+  EgoVelocity result = nothing_but_prior(rows.size(), prior, config);
+  if (rows.size() < kLeastPoints) {
     return result;
   }
-  const DopplerRows rows = sort_into_cells(scan, config.cell_size_m);
   result.reference_time_s = rows.reference_time_s;
   const Choice choice = choose_mode(rows, prior, voting_model(prior, config), config, workers);
   if (choice.support < config.min_support) {

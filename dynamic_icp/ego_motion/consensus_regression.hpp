@@ -7,6 +7,7 @@
 #include "dynamic_icp/base/config_field.hpp"
 #include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/ego_motion/doppler_rows.hpp"
 #include "dynamic_icp/ego_motion/ego_velocity.hpp"
 
 namespace dynamic_icp::ego_motion {
@@ -57,6 +58,10 @@ struct EgoPrior {
 /// are open; kTooFewPoints below three points; kIterationLimit. All values are finite for finite priors. The result is
 /// the same for any number of threads.
 EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const ConsensusRegressionConfig& config,
+                              const Workers& workers);
+
+/// The same for the points of a scan that are sorted into cells already.
+EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, const ConsensusRegressionConfig& config,
                               const Workers& workers);
 
 }  // namespace dynamic_icp::ego_motion

@@ -29,7 +29,7 @@ DopplerRows measure(unsigned seed, std::size_t n, const Vector7d& x, double nois
                           noise_mps * normal(random));
     raw.times.push_back(0.05 + dt);
   }
-  return sort_into_cells(Scan::from_raw(raw), 4.0);
+  return sort_into_cells(Scan::from_raw(raw), 4.0, Workers(1));
 }
 
 Vector7d state() {
@@ -40,7 +40,7 @@ Vector7d state() {
 
 Vector7d jacobian(const DopplerRows& rows, std::size_t i) {
   Vector7d J;
-  J << rows.u[i], rows.dt[i] * rows.u[i], -1.0;
+  J << rows.u(i), rows.dt[i] * rows.u(i), -1.0;
   return J;
 }
 
@@ -109,7 +109,7 @@ TEST(DopplerFit, ACellThatCreepsLosesItsWeightThoughItsPointsDoNot) {
   }
   raw.points.emplace_back(10.0, 20.5, 0.5);
   raw.doppler.push_back(0.13);  // alone the same residual is noise
-  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0);
+  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1));
   const RobustScale judged{0.05, 0.2, 0.015};
   const RobustScale plain{0.05, 0.2, 0.0};
   const FitSums with = sum_fit(rows, Vector7d::Zero(), judged, true, Workers(1));
@@ -172,7 +172,7 @@ TEST(SandwichCovariance, GrowsWhereResidualsOfASectorDependOnEachOther) {
   }
   for (std::size_t c = 0; c < rows.cells(); ++c) {
     for (std::size_t i = rows.first[c]; i < rows.first[c + 1]; ++i) {
-      rows.s[i] = -rows.u[i].dot(state().head<3>()) + state()[6] + shared[rows.sector[c]];
+      rows.s[i] = -rows.u(i).dot(state().head<3>()) + state()[6] + shared[rows.sector[c]];
     }
   }
   DopplerModel model;

@@ -28,7 +28,7 @@ Scan random_scan(unsigned seed, std::size_t n, double extent_m) {
 }
 
 TEST(DopplerRows, OfNothingAreNone) {
-  const DopplerRows rows = sort_into_cells(Scan{}, 2.0);
+  const DopplerRows rows = sort_into_cells(Scan{}, 2.0, Workers(1));
   EXPECT_EQ(rows.size(), 0u);
   EXPECT_EQ(rows.cells(), 0u);
   EXPECT_FALSE(rows.takes_time);
@@ -37,7 +37,7 @@ TEST(DopplerRows, OfNothingAreNone) {
 
 TEST(DopplerRows, CellsHoldWhatLiesInTheSameCube) {
   const Scan scan = random_scan(1, 5000, 20.0);
-  const DopplerRows rows = sort_into_cells(scan, 2.0);
+  const DopplerRows rows = sort_into_cells(scan, 2.0, Workers(1));
   std::map<std::tuple<double, double, double>, std::vector<double>> expected;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const Vector3d cube = (scan.points()[i] / 2.0).array().floor();
@@ -56,30 +56,30 @@ TEST(DopplerRows, CellsHoldWhatLiesInTheSameCube) {
 
 TEST(DopplerRows, KeepEachMeasurementWhole) {
   const Scan scan = random_scan(2, 1000, 30.0);
-  const DopplerRows rows = sort_into_cells(scan, 2.0);
+  const DopplerRows rows = sort_into_cells(scan, 2.0, Workers(1));
   EXPECT_TRUE(rows.takes_time);
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const auto i = static_cast<std::size_t>(rows.s[row]);
-    EXPECT_EQ(rows.u[row], scan.directions()[i]);
+    EXPECT_EQ(rows.u(row), scan.directions()[i]);
     EXPECT_NEAR(rows.dt[row] + rows.reference_time_s, scan.times()[i], 1e-15);
     EXPECT_LE(std::abs(rows.dt[row]), 0.5 * rows.duration_s + 1e-12);
   }
 }
 
 TEST(DopplerRows, SmallRoomsGetSmallCells) {
-  EXPECT_GE(sort_into_cells(random_scan(3, 4000, 1.5), 2.0).cells(), 300u);
+  EXPECT_GE(sort_into_cells(random_scan(3, 4000, 1.5), 2.0, Workers(1)).cells(), 300u);
   // But a handful of points at one place stays a handful.
   RawScan raw;
   raw.points.assign(50, Vector3d(1.0, 2.0, 0.5));
   raw.doppler.assign(50, 0.0);
-  EXPECT_EQ(sort_into_cells(Scan::from_raw(raw), 2.0).cells(), 1u);
+  EXPECT_EQ(sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1)).cells(), 1u);
 }
 
 TEST(DopplerRows, PointsAtAnyDistanceHaveACell) {
   RawScan raw;
   raw.points = {{1e15, 0, 0}, {-1e15, 1, 0}, {0, 0, 1e-9}};
   raw.doppler = {1, 2, 3};
-  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0);
+  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1));
   EXPECT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows.sectors, 3u);
 }
@@ -87,7 +87,7 @@ TEST(DopplerRows, PointsAtAnyDistanceHaveACell) {
 TEST(Electorate, HasOneVotePerCellAndOneMorePerSectorForTheFarthest) {
   // A near wall of many points and a far one above it, in the same sectors only where they overlap in direction.
   const Scan scan = random_scan(4, 3000, 40.0);
-  const DopplerRows rows = sort_into_cells(scan, 2.0);
+  const DopplerRows rows = sort_into_cells(scan, 2.0, Workers(1));
   const Electorate voters = elect(rows, rows.cells());
   ASSERT_EQ(voters.rows.size(), rows.cells());
   EXPECT_NEAR(std::accumulate(voters.weights.begin(), voters.weights.end(), 0.0), 1.0, 1e-12);
@@ -104,12 +104,29 @@ TEST(Electorate, HasOneVotePerCellAndOneMorePerSectorForTheFarthest) {
 }
 
 TEST(Electorate, IsNoLargerThanAllowedAndTakesCellsEvenly) {
-  const DopplerRows rows = sort_into_cells(random_scan(5, 5000, 40.0), 2.0);
+  const DopplerRows rows = sort_into_cells(random_scan(5, 5000, 40.0), 2.0, Workers(1));
   ASSERT_GT(rows.cells(), 1000u);
   const Electorate voters = elect(rows, 500);
   EXPECT_EQ(voters.rows.size(), 500u);
   EXPECT_EQ(voters.rows.cells(), 500u);
   EXPECT_NEAR(std::accumulate(voters.weights.begin(), voters.weights.end(), 0.0), 1.0, 1e-12);
+}
+
+TEST(SortIntoCells, UsesItsMemoryAgain) {
+  SortMemory memory;
+  DopplerRows reused;
+  for (const Scan& scan : {random_scan(6, 8000, 60.0), Scan{}, random_scan(7, 300, 5.0)}) {
+    sort_into_cells(scan, 2.0, Workers(2), memory, reused);
+    const DopplerRows fresh = sort_into_cells(scan, 2.0, Workers(1));
+    EXPECT_EQ(reused.first, fresh.first);
+    EXPECT_EQ(reused.s, fresh.s);
+    EXPECT_EQ(reused.ux, fresh.ux);
+    EXPECT_EQ(reused.dt, fresh.dt);
+    EXPECT_EQ(reused.sector, fresh.sector);
+    EXPECT_EQ(reused.range, fresh.range);
+    EXPECT_EQ(reused.sectors, fresh.sectors);
+    EXPECT_EQ(reused.takes_time, fresh.takes_time);
+  }
 }
 
 }  // namespace

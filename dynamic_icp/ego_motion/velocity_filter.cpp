@@ -5,6 +5,11 @@
 #include <cmath>
 
 namespace dynamic_icp::ego_motion {
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+
+}  // namespace
 
 ConfigFields fields(VelocityFilterConfig& config) {
   return {
@@ -23,26 +28,33 @@ std::vector<double> compensated_doppler(const Scan& scan, const Eigen::Vector3d&
   return compensated;
 }
 
-std::vector<double> compensated_doppler(const Scan& scan, const EgoVelocity& ego) {
-  std::vector<double> compensated(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
+void compensated_doppler(const Scan& scan, const EgoVelocity& ego, const Workers& workers,
+                         std::vector<double>& compensated) {
+  compensated.resize(scan.size());
+  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
     const double after = scan.has_times() ? scan.times()[i] - ego.reference_time_s : 0.0;
     const Eigen::Vector3d velocity = ego.velocity_sensor + after * ego.acceleration_sensor;
     compensated[i] = scan.doppler()[i] - ego.bias_mps + scan.directions()[i].dot(velocity);
-  }
-  return compensated;
+  });
 }
 
 std::vector<std::uint8_t> dynamic_mask(const Scan& scan, const std::vector<double>& compensated,
                                        const VelocityFilterConfig& config) {
-  std::vector<std::uint8_t> mask(scan.size(), 0);
-  if (config.enabled) {
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      const double tau = config.tau_0_mps + config.kappa_per_s * scan.points()[i].norm();
-      mask[i] = std::abs(compensated[i]) > tau ? 1 : 0;
-    }
-  }
+  std::vector<std::uint8_t> mask;
+  dynamic_mask(scan, compensated, config, Workers(1), mask);
   return mask;
+}
+
+void dynamic_mask(const Scan& scan, const std::vector<double>& compensated, const VelocityFilterConfig& config,
+                  const Workers& workers, std::vector<std::uint8_t>& mask) {
+  mask.assign(scan.size(), 0);
+  if (config.enabled) {
+    workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+      const double beyond = std::abs(compensated[i]) - config.tau_0_mps;
+      const bool moves = beyond > 0.0 && beyond > config.kappa_per_s * scan.points()[i].norm();
+      mask[i] = moves ? 1 : 0;
+    });
+  }
 }
 
 }  // namespace dynamic_icp::ego_motion

@@ -8,6 +8,7 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/base/config_field.hpp"
+#include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/scan.hpp"
 #include "dynamic_icp/ego_motion/ego_velocity.hpp"
 
@@ -27,10 +28,13 @@ std::vector<double> compensated_doppler(const Scan& scan, const Eigen::Vector3d&
 
 /// The same with all that is known of the sensor's motion: its acceleration during the scan and the bias of the
 /// Doppler, s_i + u_i . v(tau_i) - bias.
-std::vector<double> compensated_doppler(const Scan& scan, const EgoVelocity& ego);
+void compensated_doppler(const Scan& scan, const EgoVelocity& ego, const Workers& workers,
+                         std::vector<double>& compensated);
 
 /// Which points move: 1 where |r_i| > tau(d_i) = tau_0 + kappa d_i with the distance d_i of the point, 0 elsewhere.
 std::vector<std::uint8_t> dynamic_mask(const Scan& scan, const std::vector<double>& compensated,
                                        const VelocityFilterConfig& config);
+void dynamic_mask(const Scan& scan, const std::vector<double>& compensated, const VelocityFilterConfig& config,
+                  const Workers& workers, std::vector<std::uint8_t>& mask);
 
 }  // namespace dynamic_icp::ego_motion

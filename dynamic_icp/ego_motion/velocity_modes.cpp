@@ -37,7 +37,7 @@ std::vector<VoteRow> vote_rows(const Electorate& voters, const Vector7d& start, 
   std::vector<VoteRow> result(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const double slack = search.acceleration_deviation * rows.dt[i];
-    const Eigen::Vector3f u = rows.u[i].cast<float>();
+    const Eigen::Vector3f u = rows.u(i).cast<float>();
     result[i] = {u.x(),
                  u.y(),
                  u.z(),
@@ -69,12 +69,12 @@ class Sampler {
   [[nodiscard]] Eigen::Vector3d change(std::uint64_t hypothesis) const {
     const RandomSource random = random_.fork(hypothesis);
     const std::uint32_t i = draw(random, 0);
-    const Eigen::Vector3d& u = rows_.u[i];
-    const std::uint32_t j = best(random, 1, [&](std::uint32_t k) { return u.cross(rows_.u[k]).squaredNorm(); });
-    const Eigen::Vector3d normal = u.cross(rows_.u[j]);
-    const std::uint32_t l = best(random, 1 + kDraws, [&](std::uint32_t k) { return std::abs(normal.dot(rows_.u[k])); });
+    const Eigen::Vector3d& u = rows_.u(i);
+    const std::uint32_t j = best(random, 1, [&](std::uint32_t k) { return u.cross(rows_.u(k)).squaredNorm(); });
+    const Eigen::Vector3d normal = u.cross(rows_.u(j));
+    const std::uint32_t l = best(random, 1 + kDraws, [&](std::uint32_t k) { return std::abs(normal.dot(rows_.u(k))); });
     Eigen::Matrix3d U;
-    U << u.transpose(), rows_.u[j].transpose(), rows_.u[l].transpose();
+    U << u.transpose(), rows_.u(j).transpose(), rows_.u(l).transpose();
     const Eigen::Vector3d e(e_[i], e_[j], e_[l]);
     const Eigen::Matrix3d normal_matrix = U.transpose() * U + pull_ * Eigen::Matrix3d::Identity();
     return -(normal_matrix.inverse() * (U.transpose() * e));
@@ -140,14 +140,20 @@ double votes(const Electorate& voters, const Vector7d& x, double width_mps) {
   return sum;
 }
 
-double distance(const DopplerRows& rows, const Vector7d& a, const Vector7d& b) {
-  const Vector7d change = a - b;
-  double sum = 0.0;
+StateDistance::StateDistance(const DopplerRows& rows) {
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double difference = rows.u[i].dot(change.head<3>() + rows.dt[i] * change.segment<3>(3)) - change[6];
-    sum += difference * difference;
+    Vector7d J;
+    J << rows.u(i), rows.dt[i] * rows.u(i), -1.0;
+    gram_ += J * J.transpose();
   }
-  return rows.size() == 0 ? 0.0 : std::sqrt(sum / static_cast<double>(rows.size()));
+  if (rows.size() > 0) {
+    gram_ /= static_cast<double>(rows.size());
+  }
+}
+
+double StateDistance::operator()(const Vector7d& a, const Vector7d& b) const {
+  const Vector7d change = a - b;
+  return std::sqrt(std::max(0.0, change.dot(gram_ * change)));
 }
 
 std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& start, const ModeSearch& search,
@@ -170,6 +176,7 @@ std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& s
   std::iota(order.begin(), order.end(), 0U);
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) { return support[a] > support[b]; });
 
+  const StateDistance distance(rows);
   std::vector<VelocityMode> modes;
   for (const std::size_t h : order) {
     if (support[h] < kLeastShare * support[order.front()]) {
@@ -177,8 +184,8 @@ std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& s
     }
     Vector7d x = start;
     x.head<3>() += changes[h];
-    const bool is_new = std::ranges::all_of(
-        modes, [&](const VelocityMode& mode) { return distance(rows, mode.x, x) > search.width_mps; });
+    const bool is_new =
+        std::ranges::all_of(modes, [&](const VelocityMode& mode) { return distance(mode.x, x) > search.width_mps; });
     if (is_new) {
       modes.push_back({x, support[h]});
     }

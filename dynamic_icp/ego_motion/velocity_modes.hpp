@@ -38,8 +38,16 @@ std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& s
 /// Share of the votes for x: weighted mean of max(0, 1 - (e/width)^2).
 double votes(const Electorate& voters, const Vector7d& x, double width_mps);
 
-/// Root mean square over the rows of the difference between the Doppler that two states predict, m/s: how different
-/// they look to the sensor, whatever its field of view.
-double distance(const DopplerRows& rows, const Vector7d& a, const Vector7d& b);
+/// How different states look to the sensor, whatever its field of view.
+class StateDistance {
+ public:
+  explicit StateDistance(const DopplerRows& rows);
+
+  /// Root mean square over the rows of the difference between the Doppler that two states predict, m/s.
+  double operator()(const Vector7d& a, const Vector7d& b) const;
+
+ private:
+  Matrix7d gram_ = Matrix7d::Zero();  ///< mean of J J^T over the rows, J = [u; dt u; -1]
+};
 
 }  // namespace dynamic_icp::ego_motion

@@ -23,7 +23,7 @@ Electorate two_groups(double share, const Vector3d& a, const Vector3d& b, double
     raw.points.push_back(point);
     raw.doppler.push_back(-point.normalized().dot(i < 1000.0 * share ? a : b) + noise_mps * normal(random));
   }
-  return elect(sort_into_cells(Scan::from_raw(raw), 0.5), 1000);
+  return elect(sort_into_cells(Scan::from_raw(raw), 0.5, Workers(1)), 1000);
 }
 
 Vector7d state(const Vector3d& v) {
@@ -55,7 +55,7 @@ TEST(VelocityModes, DifferByMoreThanTheWidth) {
   ASSERT_GE(modes.size(), 2u);
   for (std::size_t i = 0; i < modes.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_GT(distance(voters.rows, modes[i].x, modes[j].x), search.width_mps);
+      EXPECT_GT(StateDistance(voters.rows)(modes[i].x, modes[j].x), search.width_mps);
     }
   }
 }
@@ -79,17 +79,23 @@ TEST(Votes, AreTheWeightOfTheRowsThatAgree) {
   RawScan raw;
   raw.points.emplace_back(1.0, 0.0, 0.0);
   raw.doppler.push_back(-1.0);
-  EXPECT_NEAR(votes(elect(sort_into_cells(Scan::from_raw(raw), 2.0), 10), state({1.05, 7, 7}), 0.1), 0.75, 1e-9);
+  EXPECT_NEAR(votes(elect(sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1)), 10), state({1.05, 7, 7}), 0.1), 0.75,
+              1e-9);
 }
 
 TEST(Distance, IsWhatTheSensorWouldSee) {
   RawScan raw;
   raw.points = {{10, 0, 0}, {0, 10, 0}};
   raw.doppler = {0, 0};
-  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0);
-  EXPECT_NEAR(distance(rows, state({3, 4, 0}), Vector7d::Zero()), std::sqrt((9.0 + 16.0) / 2.0), 1e-12);
-  EXPECT_NEAR(distance(rows, state({3, 4, 9}), state({3, 4, -9})), 0.0, 1e-12) << "nobody looks up";
-  EXPECT_EQ(distance(DopplerRows{}, state({3, 4, 9}), Vector7d::Zero()), 0.0);
+  raw.times = {0.0, 0.2};
+  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1));
+  EXPECT_NEAR(StateDistance(rows)(state({3, 4, 0}), Vector7d::Zero()), std::sqrt((9.0 + 16.0) / 2.0), 1e-12);
+  EXPECT_NEAR(StateDistance(rows)(state({3, 4, 9}), state({3, 4, -9})), 0.0, 1e-12) << "nobody looks up";
+  // 0.1 s from the middle of the scan an acceleration of 10 m/s^2 is 1 m/s.
+  Vector7d accelerated = Vector7d::Zero();
+  accelerated.segment<3>(3) = Eigen::Vector3d(10.0, 10.0, 0.0);
+  EXPECT_NEAR(StateDistance(rows)(accelerated, Vector7d::Zero()), 1.0, 1e-12);
+  EXPECT_EQ(StateDistance(DopplerRows{})(state({3, 4, 9}), Vector7d::Zero()), 0.0);
 }
 
 }  // namespace

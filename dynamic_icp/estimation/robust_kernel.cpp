@@ -22,11 +22,6 @@ double tukey_loss(double e, double k) {
   return inside <= 0.0 ? full : full * (1.0 - inside * inside * inside);
 }
 
-double tukey_weight(double e, double k) {
-  const double inside = 1.0 - (e / k) * (e / k);
-  return inside <= 0.0 ? 0.0 : inside * inside;
-}
-
 double geman_mcclure_loss(double e, double k) {
   const double ratio = e / k;
   return 0.5 * e * e / (1.0 + ratio * ratio);

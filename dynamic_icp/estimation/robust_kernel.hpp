@@ -19,7 +19,10 @@ double huber_weight(double e, double k);
 double tukey_loss(double e, double k);
 
 /// w = (1 - (e/k)^2)^2 for |e| <= k, 0 beyond.
-double tukey_weight(double e, double k);
+inline double tukey_weight(double e, double k) {
+  const double inside = 1.0 - (e / k) * (e / k);
+  return inside <= 0.0 ? 0.0 : inside * inside;
+}
 
 /// Geman and McClure: rho = e^2/2 k^2/(k^2 + e^2), which approaches k^2/2: far residuals have ever less pull.
 double geman_mcclure_loss(double e, double k);

@@ -14,13 +14,26 @@ namespace dynamic_icp::mapping {
 /// up to those of both.
 struct Moments {
   double weight = 0.0;
-  Eigen::Vector3d first = Eigen::Vector3d::Zero();   ///< sum of p, m
-  Eigen::Matrix3d second = Eigen::Matrix3d::Zero();  ///< sum of p p^T, m^2; lower half only
+  Eigen::Vector3d first = Eigen::Vector3d::Zero();                           ///< sum of p, m
+  Eigen::Matrix<double, 6, 1> second = Eigen::Matrix<double, 6, 1>::Zero();  ///< sum of xx, xy, xz, yy, yz, zz, m^2
 
-  void add(const Eigen::Vector3d& point);
+  void add(const Eigen::Vector3d& point) {
+    weight += 1.0;
+    first += point;
+    second[0] += point.x() * point.x();
+    second[1] += point.x() * point.y();
+    second[2] += point.x() * point.z();
+    second[3] += point.y() * point.y();
+    second[4] += point.y() * point.z();
+    second[5] += point.z() * point.z();
+  }
 
   /// Makes all points count `factor` times as much.
-  void scale(double factor);
+  void scale(double factor) {
+    weight *= factor;
+    first *= factor;
+    second *= factor;
+  }
 };
 
 /// What counts as a plane.

@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -12,6 +14,8 @@
 #include "dynamic_icp/base/config_field.hpp"
 #include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/mapping/plane.hpp"
+#include "dynamic_icp/spatial/cell_key.hpp"
+#include "dynamic_icp/spatial/key_numbers.hpp"
 
 namespace dynamic_icp::mapping {
 
@@ -38,6 +42,9 @@ struct Patch {
 /// make a better normal; else its finer cells are asked. Points in no plane (foliage, edges) stay in the moments and
 /// are never found.
 ///
+/// The coarsest cells are found by hashing; each knows its eight parts, and so on down. The planes of parts are fitted
+/// when somebody may ask for them: when their whole is none.
+///
 /// Everything depends on the order of the calls alone. Searches may run at the same time; `add` may not run beside
 /// anything.
 class PlaneMap {
@@ -51,10 +58,19 @@ class PlaneMap {
   void add(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& position, const Workers& workers);
 
   /// The patch of the coarsest level around a point, or null. Valid until the next `add`.
-  [[nodiscard]] const Patch* find(const Eigen::Vector3d& point) const;
+  [[nodiscard]] const Patch* find(const Eigen::Vector3d& point) const { return find(finest_cell(point)); }
+
+  /// The finest cell around a point, whether there is anything in it or not. All points in it have the same patch.
+  [[nodiscard]] std::uint64_t finest_cell(const Eigen::Vector3d& point) const {
+    return spatial::cell_key(per_finest_cell_ * point);
+  }
+  [[nodiscard]] const Patch* find(std::uint64_t finest_cell) const;
 
   /// One above the largest id of a patch.
-  [[nodiscard]] std::uint32_t patch_limit() const { return patch_limit_; }
+  [[nodiscard]] std::uint32_t patch_limit() const { return static_cast<std::uint32_t>(patches_.size()); }
+
+  /// Cells of all levels that are held in memory.
+  [[nodiscard]] std::size_t cell_count() const { return cells_.size() - free_cells_.size(); }
 
   [[nodiscard]] bool empty() const { return scans_ == 0; }
 
@@ -62,34 +78,52 @@ class PlaneMap {
   void clear();
 
  private:
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  /// A cell that a point has met. What a search reads stands here, the sums in `moments_` under the same number.
   struct Cell {
-    std::uint64_t key = 0;
-    Moments moments;  ///< relative to the centre of the cell
+    std::array<std::uint32_t, 8> parts;  ///< numbers of the cells it is divided into, or kNone
+    std::uint32_t patch = kNone;         ///< its plane, or kNone
     std::uint32_t last_scan = 0;
-    bool is_plane = false;
-    Patch patch;
+    bool is_stale = false;  ///< its sums changed since its plane was fitted
   };
 
-  /// All cells with one edge: open addressing over a dense list.
-  struct Level {
-    double edge_m = 0.0;
-    std::vector<Cell> cells;
-    std::vector<std::uint32_t> slots;
-    std::vector<std::uint32_t> touched;  ///< cells that changed since their planes were fitted
-
-    [[nodiscard]] std::size_t slot_of(std::uint64_t key) const;
-    std::uint32_t cell_at(std::uint64_t key);
-    void rebuild(std::size_t slot_count);
+  /// A cell whose plane is to be fitted.
+  struct Fitting {
+    std::uint32_t cell;
+    std::uint64_t key;  ///< in units of the edge of its level
   };
 
-  void add_points(Level& level, std::span<const Eigen::Vector3d> points) const;
-  void drop_cells(Level& level, const Eigen::Vector3d& position) const;
-  void fit_planes(Level& level, const Workers& workers) const;
+  void add_point(const Eigen::Vector3d& point);
+  void touch(std::uint32_t cell);
+  void fit_planes(const Workers& workers);
+  void fit_level(double edge_m, const Workers& workers);
+  void go_down();
+  void drop_cells(const Eigen::Vector3d& position);
+  void drop_old_parts(std::uint32_t cell);
+  void release(std::uint32_t cell);
+  void renumber_roots();
+  std::uint32_t root_at(std::uint64_t key);
+  std::uint32_t new_cell();
+  std::uint32_t new_patch();
+  [[nodiscard]] bool is_old(const Cell& cell) const { return cell.last_scan < oldest_; }
 
   PlaneMapConfig config_;
-  std::vector<Level> levels_;  ///< coarsest first
+  double per_finest_cell_ = 0.0;  ///< 1/m
+  double coarsest_edge_m_ = 0.0;
+  double fade_ = 0.0;  ///< of a point from one scan to the next
   std::uint32_t scans_ = 0;
-  std::uint32_t patch_limit_ = 0;
+  std::uint32_t oldest_ = 0;          ///< cells that no point met since this scan are forgotten
+  spatial::KeyNumbers root_numbers_;  ///< of the coarsest cells that ever were
+  std::vector<std::uint64_t> root_keys_;
+  std::vector<std::uint32_t> roots_;  ///< the cell of each such number, or kNone when it was dropped
+  std::vector<Cell> cells_;
+  std::vector<Moments> moments_;  ///< of each cell, relative to its centre
+  std::vector<Patch> patches_;
+  std::vector<std::uint32_t> free_cells_;
+  std::vector<std::uint32_t> free_patches_;
+  std::vector<Fitting> fitting_;  ///< of one level
+  std::vector<Fitting> parts_;    ///< of the level below
 };
 
 }  // namespace dynamic_icp::mapping

@@ -60,7 +60,7 @@ Frame DynamicIcp::process(const RawScan& raw) {
   check_order(raw, last_stamp_);
   Frame frame;
   StageClock clock(frame.times);
-  const Scan scan = preprocess(raw, config_.preprocess, frame);
+  const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
   if (scan.size() < static_cast<std::size_t>(config_.min_points)) {

@@ -128,7 +128,7 @@ TEST(DynamicIcp, LabelsEveryPointAsRead) {
   EXPECT_EQ(frame.labels[0], -1);
   EXPECT_EQ(frame.labels[1], -1);
   EXPECT_EQ(frame.dropped.non_finite, 1u);
-  EXPECT_EQ(frame.out_of_range, 1u);
+  EXPECT_EQ(frame.dropped.out_of_range, 1u);
   std::size_t in_object = 0;
   std::size_t is_static = 0;
   for (std::size_t i = 0; i < frame.labels.size(); ++i) {

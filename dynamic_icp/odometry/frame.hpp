@@ -41,7 +41,8 @@ std::string_view verdict(FrameStatus status);
 /// Whether the pose comes from an alignment that met its stopping rule.
 inline bool converged(FrameStatus status) { return status == FrameStatus::kConverged; }
 
-/// Where the time of a frame went.
+/// Where the time of a frame went. Preset `default` sorts the Doppler into cells in kPreprocess, beside the voxel grid, and
+/// updates the map in kDynamics, beside the tracking.
 enum class Stage { kPreprocess, kNormals, kEgoMotion, kDynamics, kRegistration };
 inline constexpr std::size_t kStageCount = 5;
 std::string_view to_string(Stage stage);
@@ -78,7 +79,6 @@ struct Frame {
   std::size_t points = 0;       ///< as read
   std::size_t points_used = 0;  ///< after range crop and voxel grid
   Scan::Dropped dropped;
-  std::size_t out_of_range = 0;
   std::optional<SweepReport> sweep;  ///< empty for methods that never look at times
   /// Points that stand still, thinned, in the sensor frame at the stamp (m): what a map is made of. Empty for methods
   /// that do not tell them from moving ones.

@@ -15,18 +15,18 @@ void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp) {
   }
 }
 
-Scan take_over(const RawScan& raw, const PreprocessConfig& config, Frame& frame) {
-  const Scan measured = Scan::from_raw(raw, &frame.dropped);  // Eq. (1)
-  Scan in_range = preprocess::crop_range(measured, config.range);
+void take_over(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame) {
+  const Scan::RangeLimits limits{config.range.min_range_m, config.range.max_range_m};
+  scan.take_over(raw, limits, workers, &frame.dropped);  // Eq. (1)
   frame.stamp = raw.stamp;
   frame.points = raw.points.size();
-  frame.out_of_range = measured.size() - in_range.size();
   frame.labels.assign(frame.points, -1);
-  return in_range;
 }
 
-Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame) {
-  Scan scan = preprocess::voxel_grid(take_over(raw, config, frame), config.voxel);
+Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame) {
+  Scan whole;
+  take_over(raw, config, workers, whole, frame);
+  Scan scan = preprocess::voxel_grid(whole, config.voxel, workers);
   frame.points_used = scan.size();
   return scan;
 }

@@ -4,6 +4,7 @@
 
 #include <optional>
 
+#include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/scan.hpp"
 #include "dynamic_icp/odometry/config.hpp"
 #include "dynamic_icp/odometry/frame.hpp"
@@ -14,11 +15,12 @@ namespace dynamic_icp::odometry {
 /// Throws DataError when the scan is not later than the last one.
 void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp);
 
-/// Takes over what is finite and in range; fills stamp, counts and `labels` (-1 for all points) of the frame.
-Scan take_over(const RawScan& raw, const PreprocessConfig& config, Frame& frame);
+/// Takes over what is finite and in range into `scan`, whose memory is used again; fills stamp, counts and `labels` (-1
+/// for all points) of the frame.
+void take_over(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame);
 
 /// Takes over the scan and thins it by the voxel grid.
-Scan preprocess(const RawScan& raw, const PreprocessConfig& config, Frame& frame);
+Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame);
 
 /// What an alignment's status means for the frame.
 FrameStatus frame_status(registration::AlignStatus status);

@@ -142,7 +142,7 @@ Scan KissIcp::deskewed_in_range(const RawScan& raw, Frame& frame) const {
   const Scan in_range = preprocess::crop_range(scan, {config_.min_range_m, config_.max_range_m});
   frame.stamp = raw.stamp;
   frame.points = raw.points.size();
-  frame.out_of_range = scan.size() - in_range.size();
+  frame.dropped.out_of_range = scan.size() - in_range.size();
   frame.labels.assign(frame.points, -1);
   frame.sweep = sweep_in_data(raw);
   frame.sweep->undone = config_.deskew && frame.sweep->duration_s.value_or(0.0) > 0.0;

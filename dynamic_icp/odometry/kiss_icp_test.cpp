@@ -235,7 +235,7 @@ TEST(KissIcp, LabelsThePointsItRegisters) {
   EXPECT_EQ(frame.labels, expected);
   EXPECT_EQ(frame.points, raw.points.size());
   EXPECT_EQ(frame.points_used, lattice().size());
-  EXPECT_EQ(frame.out_of_range, 2u);
+  EXPECT_EQ(frame.dropped.out_of_range, 2u);
   EXPECT_EQ(frame.dropped.non_finite, 1u);
 }
 

@@ -37,26 +37,14 @@ constexpr double kLeastModelDeviation_m = 0.001;
 // a tenth of the error.
 constexpr int kStraighteningRounds = 4;
 constexpr double kStraighteningGate_m = 0.5;
+constexpr double kStraighteningGain = 0.5;
+constexpr double kStraight_rad_s = 3e-4;  // moves the end of a sweep of 0.1 s by 0.002 degrees
 
 // A displacement that is known no better is not known.
 constexpr double kUnknown_m = 100.0;
 
 // Where no scan tells, a vehicle changes its velocity by no more than this.
 constexpr double kBlindAcceleration_mps2 = 3.0;
-
-/// When the points of a scan were taken, s after its stamp.
-struct TimeSpan {
-  double middle_s = 0.0;
-  double duration_s = 0.0;
-};
-
-TimeSpan time_span(const Scan& scan) {
-  if (!scan.has_times()) {
-    return {};
-  }
-  const auto [low, high] = std::minmax_element(scan.times().begin(), scan.times().end());
-  return {0.5 * (*low + *high), *high - *low};
-}
 
 registration::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
   registration::SweepMotion sweep;
@@ -81,28 +69,10 @@ ego_motion::VelocityFilterConfig filter_for(const EgoMotionConfig& config, const
   return filter;
 }
 
-Scan static_part(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) {
-  std::vector<std::uint32_t> rows;
-  rows.reserve(scan.size());
-  for (std::uint32_t row = 0; row < scan.size(); ++row) {
-    if (is_dynamic[row] == 0) {
-      rows.push_back(row);
-    }
-  }
-  return scan.select(rows);
-}
-
-/// Counts over the thinned scan; `in_track` has one entry per point as read.
-void count_dynamics(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic,
-                    const std::vector<std::uint8_t>& in_track, Frame& frame) {
-  for (std::size_t row = 0; row < scan.size(); ++row) {
-    if (is_dynamic[row] != 0) {
-      const std::uint32_t record = scan.records()[row];
-      ++frame.dynamic_candidates;
-      frame.dynamic_clustered += in_track[record];
-      frame.dynamic_refined += frame.labels[record] > 0 ? 1 : 0;
-    }
-  }
+/// Those of `rows` that stand still.
+std::vector<std::uint32_t> still_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
+  std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
+  return rows;
 }
 
 }  // namespace
@@ -118,12 +88,19 @@ Frame MapOdometry::process(const RawScan& raw) {
   frame.sweep = sweep_as_configured(raw, config_.sweep);
   StageClock clock(frame.times);
   const std::optional<RawScan> timed = retimed(raw, config_.sweep);
-  const Scan whole = take_over(timed ? *timed : raw, config_.preprocess, frame);
-  const Scan scan = preprocess::voxel_grid(whole, config_.preprocess.voxel);
-  frame.points_used = scan.size();
+  Scan& whole = memory_.whole;
+  std::vector<std::uint32_t>& thinned = memory_.thinned;
+  ego_motion::DopplerRows& rows = memory_.rows;
+  take_over(timed ? *timed : raw, config_.preprocess, workers_, whole, frame);
+  workers_.both([&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, thinned); },
+                [&] {
+                  ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
+                                              rows);
+                });
+  frame.points_used = thinned.size();
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
-  if (scan.size() < static_cast<std::size_t>(config_.min_points)) {
+  if (thinned.size() < static_cast<std::size_t>(config_.min_points)) {
     frame.status = FrameStatus::kTooFewPoints;
     if (state_) {
       extrapolate(seconds_between(*first_stamp_, raw.stamp), FrameStatus::kTooFewPoints, frame);
@@ -135,14 +112,14 @@ Frame MapOdometry::process(const RawScan& raw) {
   }
   Moment now;
   now.stamp_s = seconds_between(*first_stamp_, raw.stamp);
-  now.middle_s = time_span(scan).middle_s;
-  now.duration_s = time_span(scan).duration_s;
-  now.filtered = estimate_ego(whole, now.stamp_s);
+  now.middle_s = rows.reference_time_s;
+  now.duration_s = rows.duration_s;
+  now.filtered = estimate_ego(whole, rows, now.stamp_s);
   now.ego = ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift);
   frame.ego = now.ego;
-  const std::vector<std::uint8_t> is_dynamic = ego_motion::dynamic_mask(
-      scan, ego_motion::compensated_doppler(scan, now.ego), filter_for(config_.ego_motion, now.ego));
-  now.still = static_part(scan, is_dynamic);
+  ego_motion::compensated_doppler(whole, now.ego, workers_, memory_.radial);
+  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, now.ego), workers_, memory_.is_moving);
+  now.still = whole.select(still_rows(thinned, memory_.is_moving));
   clock.finish(Stage::kEgoMotion);
 
   if (!state_) {
@@ -154,29 +131,28 @@ Frame MapOdometry::process(const RawScan& raw) {
   } else {
     go_on(now, frame);
   }
-  frame.static_points = add_to_map(now);
   frame.twist = twist_at_stamp(state_->turn, now.ego, now.middle_s);
   clock.finish(Stage::kRegistration);
 
-  const std::vector<std::uint8_t> in_track = track_objects(whole, frame);
-  count_dynamics(scan, is_dynamic, in_track, frame);
+  workers_.both([&] { frame.static_points = add_to_map(now); }, [&] { track_objects(frame); });
   clock.finish(Stage::kDynamics);
   return frame;
 }
 
-ego_motion::EgoVelocity MapOdometry::estimate_ego(const Scan& scan, double stamp_s) const {
+ego_motion::EgoVelocity MapOdometry::estimate_ego(const Scan& scan, const ego_motion::DopplerRows& rows,
+                                                  double stamp_s) const {
   const EgoMotionConfig& config = config_.ego_motion;
   if (!config.use_consensus) {
     const Eigen::Vector3d start = state_ ? state_->filtered.velocity_sensor : Eigen::Vector3d::Zero();
     ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, start, config.regression, workers_);
-    ego.reference_time_s = time_span(scan).middle_s;
+    ego.reference_time_s = rows.reference_time_s;
     return ego;
   }
   const ego_motion::EgoPrior prior =
-      state_ ? ego_motion::predict(state_->filtered,
-                                   stamp_s + time_span(scan).middle_s - state_->velocities.back().time_s, config.drift)
+      state_ ? ego_motion::predict(state_->filtered, stamp_s + rows.reference_time_s - state_->velocities.back().time_s,
+                                   config.drift)
              : ego_motion::first_prior(config.drift);
-  return ego_motion::estimate_velocity(scan, prior, config.consensus, workers_);
+  return ego_motion::estimate_velocity(rows, prior, config.consensus, workers_);
 }
 
 /// A new map with this scan as its first, at a known place.
@@ -344,9 +320,13 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
   }
   const Moment& first = state_->first;
   const double dt_s = now.stamp_s - first.stamp_s;
-  for (int round = 0; round < kStraighteningRounds; ++round) {
+  double gate_m = kStraighteningGate_m;
+  for (int round = 0; round < kStraighteningRounds; ++round, gate_m *= kStraighteningGain) {
     const Eigen::Matrix3d R_first_now = state_->T_map_sensor.linear().transpose() * found.T_map_sensor.linear();
     const Eigen::Vector3d mean_omega = log_so3(R_first_now) / dt_s;
+    if (round > 0 && (mean_omega - state_->sweep.omega).norm() < kStraight_rad_s) {
+      break;
+    }
     state_->sweep.omega = mean_omega;
     state_->turn.omega = mean_omega;
     state_->velocities.back().R_map_sensor = state_->T_map_sensor.linear() * state_->sweep.rotation(first.middle_s);
@@ -354,7 +334,7 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
     map_.clear();
     state_->scans_in_map = 0;
     add_to_map(first);
-    found = registration::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), kStraighteningGate_m,
+    found = registration::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), gate_m,
                                        config_.map_align, workers_);
   }
   return found;
@@ -362,42 +342,47 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
 
 /// Returns the points that were added, in sensor axes at the stamp.
 std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
-  std::vector<Eigen::Vector3d> points = registration::undo_sweep(now.still, state_->sweep).points();
-  std::vector<Eigen::Vector3d> in_map = points;
-  for (Eigen::Vector3d& point : in_map) {
-    point = state_->T_map_sensor * point;
+  std::vector<Eigen::Vector3d> points = registration::points_at_stamp(now.still, state_->sweep, workers_);
+  std::vector<Eigen::Vector3d> in_map(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    in_map[i] = state_->T_map_sensor * points[i];
   }
   map_.add(in_map, state_->T_map_sensor.translation(), workers_);
   ++state_->scans_in_map;
   return points;
 }
 
-/// Labels the points and tracks what moves. Returns which points, as read, are in a track, confirmed or not.
-std::vector<std::uint8_t> MapOdometry::track_objects(const Scan& scan, Frame& frame) {
-  const std::vector<double> radial = ego_motion::compensated_doppler(scan, frame.ego);
-  const std::vector<std::uint8_t> is_moving =
-      ego_motion::dynamic_mask(scan, radial, filter_for(config_.ego_motion, frame.ego));
-  std::vector<std::uint8_t> in_track(frame.points, 0);
+/// Labels the points, tracks what moves, and counts both over the thinned scan.
+void MapOdometry::track_objects(Frame& frame) {
+  Scan& scan = memory_.whole;
+  const std::vector<std::uint8_t>& is_moving = memory_.is_moving;
   for (std::size_t row = 0; row < scan.size(); ++row) {
     frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0;
   }
-  if (!config_.dynamics.predict) {
-    return in_track;
-  }
-  const Scan at_stamp = registration::undo_sweep(scan, state_->sweep);
-  for (tracking::TrackedObject& object : tracker_.update(at_stamp, radial, is_moving, frame.T_world_sensor, workers_)) {
-    const bool is_confirmed = object.status == tracking::TrackStatus::kConfirmed;
-    for (const std::uint32_t row : object.members) {
-      in_track[scan.records()[row]] = 1;
+  std::vector<std::uint8_t> in_track(scan.size(), 0);
+  if (config_.dynamics.predict) {
+    scan = registration::undo_sweep(std::move(scan), state_->sweep, workers_);
+    for (tracking::TrackedObject& object :
+         tracker_.update(scan, memory_.radial, is_moving, frame.T_world_sensor, workers_)) {
+      const bool is_confirmed = object.status == tracking::TrackStatus::kConfirmed;
+      for (const std::uint32_t row : object.members) {
+        in_track[row] = 1;
+        if (is_confirmed) {
+          frame.labels[scan.records()[row]] = static_cast<std::int32_t>(object.id);
+        }
+      }
       if (is_confirmed) {
-        frame.labels[scan.records()[row]] = static_cast<std::int32_t>(object.id);
+        frame.tracked.push_back(std::move(object));
       }
     }
-    if (is_confirmed) {
-      frame.tracked.push_back(std::move(object));
+  }
+  for (const std::uint32_t row : memory_.thinned) {
+    if (is_moving[row] != 0) {
+      ++frame.dynamic_candidates;
+      frame.dynamic_clustered += in_track[row];
+      frame.dynamic_refined += frame.labels[scan.records()[row]] > 0 ? 1 : 0;
     }
   }
-  return in_track;
 }
 
 }  // namespace dynamic_icp::odometry

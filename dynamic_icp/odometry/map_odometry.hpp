@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dynamic_icp/base/parallel.hpp"
+#include "dynamic_icp/ego_motion/doppler_rows.hpp"
 #include "dynamic_icp/ego_motion/ego_filter.hpp"
 #include "dynamic_icp/mapping/plane_map.hpp"
 #include "dynamic_icp/odometry/config.hpp"
@@ -14,6 +15,7 @@
 #include "dynamic_icp/odometry/odometry.hpp"
 #include "dynamic_icp/odometry/stage_clock.hpp"
 #include "dynamic_icp/odometry/turn_filter.hpp"
+#include "dynamic_icp/preprocess/voxel_grid.hpp"
 #include "dynamic_icp/registration/map_alignment.hpp"
 #include "dynamic_icp/tracking/object_tracker.hpp"
 
@@ -58,7 +60,19 @@ class MapOdometry final : public Odometry {
     Moment first;  ///< the only scan in the map, until the next one shows how it turned; then empty
   };
 
-  [[nodiscard]] ego_motion::EgoVelocity estimate_ego(const Scan& scan, double stamp_s) const;
+  /// Of the scan at hand. The memory is used again for the next one: the system would clear each page of it anew.
+  struct ScanMemory {
+    Scan whole;                          ///< what is in range; once it is aligned, as seen at the stamp
+    std::vector<std::uint32_t> thinned;  ///< the rows that the voxel grid keeps
+    ego_motion::DopplerRows rows;
+    std::vector<double> radial;           ///< m/s, Doppler of each point without the sensor's motion
+    std::vector<std::uint8_t> is_moving;  ///< each point
+    preprocess::VoxelMemory voxels;
+    ego_motion::SortMemory sort;
+  };
+
+  [[nodiscard]] ego_motion::EgoVelocity estimate_ego(const Scan& scan, const ego_motion::DopplerRows& rows,
+                                                     double stamp_s) const;
   void begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor);
   void go_on(const Moment& now, Frame& frame);
   void lose(const Moment& now, const registration::MotionPrior& prior, Frame& frame);
@@ -69,10 +83,11 @@ class MapOdometry final : public Odometry {
   [[nodiscard]] registration::MotionPrior motion_prior(const Moment& now) const;
   [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
   std::vector<Eigen::Vector3d> add_to_map(const Moment& now);
-  std::vector<std::uint8_t> track_objects(const Scan& scan, Frame& frame);
+  void track_objects(Frame& frame);
 
   Config config_;
   Workers workers_;
+  ScanMemory memory_;
   mapping::PlaneMap map_;
   tracking::ObjectTracker tracker_;
   std::optional<Stamp> first_stamp_;

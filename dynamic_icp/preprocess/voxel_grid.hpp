@@ -2,8 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "dynamic_icp/base/config_field.hpp"
+#include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/spatial/key_numbers.hpp"
 
 namespace dynamic_icp::preprocess {
 
@@ -19,5 +24,16 @@ ConfigFields fields(VoxelGridConfig& config);
 /// A point p lies in the voxel floor(p / voxel_size_m), also below zero. Rows stay in scan order. Coordinates must be
 /// below 2^20 voxels in magnitude (300 km at 0.3 m); throws std::invalid_argument otherwise.
 Scan voxel_grid(const Scan& scan, const VoxelGridConfig& config);
+Scan voxel_grid(const Scan& scan, const VoxelGridConfig& config, const Workers& workers);
+
+/// Working memory of `voxel_rows`, to be used again for the next scan.
+struct VoxelMemory {
+  std::vector<std::uint64_t> keys;  ///< of each point
+  spatial::KeyNumbers voxels;
+};
+
+/// Puts the rows that `voxel_grid` keeps into `kept`, ascending.
+void voxel_rows(const Scan& scan, const VoxelGridConfig& config, const Workers& workers, VoxelMemory& memory,
+                std::vector<std::uint32_t>& kept);
 
 }  // namespace dynamic_icp::preprocess

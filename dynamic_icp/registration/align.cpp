@@ -4,10 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <stdexcept>
+
+#include "dynamic_icp/registration/pair_sums.hpp"
 
 namespace dynamic_icp::registration {
 namespace {
+
+constexpr std::size_t kBlock = 128;  // groups of source points
 
 /// Two scans and what is minimised between them.
 class ScanToScan : public Problem {
@@ -18,7 +23,8 @@ class ScanToScan : public Problem {
         target_(target),
         objective_(objective),
         workers_(workers),
-        search_(source.scan, target, max_distance_m, objective.geometry == GeometryTerm::kPointToPlane, workers) {}
+        search_(source.scan, target, max_distance_m, objective.geometry == GeometryTerm::kPointToPlane, workers),
+        fast_(can_sum_pairs(objective)) {}
 
   Correspondences find(const Eigen::Isometry3d& T_target_source) override { return search_.find(T_target_source); }
 
@@ -27,12 +33,33 @@ class ScanToScan : public Problem {
     return registration::linearise(source_, target_, correspondences, T_target_source, objective_, iteration, workers_);
   }
 
+  Fit associate(const Eigen::Isometry3d& T_target_source) override {
+    if (!fast_) {
+      return Problem::associate(T_target_source);
+    }
+    // The sums are formed while the rows are at hand, although the last ones go unused.
+    const std::span<const SourceRows> groups = search_.groups();
+    sums_ = workers_.sum_blocks(groups.size(), kBlock, PairSums{}, [&](std::size_t begin, std::size_t end) {
+      search_.locate(T_target_source, begin, end);
+      return sum_pairs(groups.subspan(begin, end - begin), T_target_source.linear(), objective_);
+    });
+    return fit_of(sums_.pairs, sums_.squared_distances, source_.scan.size());
+  }
+
+  estimation::NormalEquations equations(const Eigen::Isometry3d& T_target_source, int iteration) override {
+    return fast_ ? sums_.equations : Problem::equations(T_target_source, iteration);
+  }
+
+  Correspondences correspondences() override { return fast_ ? search_.pairs() : Problem::correspondences(); }
+
  private:
   const Source& source_;
   const Target& target_;
   const Objective& objective_;
   const Workers& workers_;
   CorrespondenceSearch search_;
+  bool fast_;
+  PairSums sums_;  // at the pose asked for last
 };
 
 void check_inputs(const Source& source, const Target& target, const Objective& objective) {

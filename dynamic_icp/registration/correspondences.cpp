@@ -2,15 +2,24 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/registration/correspondences.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
 
+#include "dynamic_icp/spatial/space_order.hpp"
+
 namespace dynamic_icp::registration {
 namespace {
 
-constexpr std::size_t kBlock = 512;
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+using simd::kLanes;
+using simd::LaneMask;
+using simd::Lanes;
+
+constexpr std::size_t kBlock = 128;  // groups
+constexpr std::size_t kBatch = 32;   // points that are looked up together
+constexpr double kCell_m = 0.5;      // points in the same cell are neighbours in the groups
 
 // Points are looked up a little beyond the gate, so that those without a partner need no new search at every step.
 constexpr double kReachOverGate = 1.25;
@@ -18,21 +27,89 @@ constexpr double kReachOverGate = 1.25;
 // Far more than the rounding of the distances compared, far less than any distance that matters.
 constexpr double kRounding_m = 1e-9;
 
+/// Rotation and translation as numbers.
+struct Pose {
+  explicit Pose(const Eigen::Isometry3d& T) {
+    for (Eigen::Index i = 0; i < 3; ++i) {
+      for (Eigen::Index j = 0; j < 3; ++j) {
+        R[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)] = T.linear()(i, j);
+      }
+      t[static_cast<std::size_t>(i)] = T.translation()[i];
+    }
+  }
+  std::array<std::array<double, 3>, 3> R;
+  std::array<double, 3> t;
+};
+
+DYNAMIC_ICP_INLINE void subtract(Lanes& a, const double* b) {
+  Lanes other;
+  simd::load(other, b);
+  a -= other;
+}
+
+DYNAMIC_ICP_INLINE void squared_distance(const SourceRows::Vectors& a, const SourceRows::Vectors& b, Lanes& squared) {
+  Lanes dx;
+  Lanes dy;
+  Lanes dz;
+  simd::load(dx, a[0].data());
+  simd::load(dy, a[1].data());
+  simd::load(dz, a[2].data());
+  subtract(dx, b[0].data());
+  subtract(dy, b[1].data());
+  subtract(dz, b[2].data());
+  squared = (dx * dx + dy * dy) + dz * dz;
+}
+
+/// Moves a group and measures the distances to its partners. A bit for each lane whose partner is not known.
+DYNAMIC_ICP_INLINE unsigned move(SourceRows& group, const Pose& pose) {
+  Lanes x;
+  Lanes y;
+  Lanes z;
+  simd::load(x, group.point[0].data());
+  simd::load(y, group.point[1].data());
+  simd::load(z, group.point[2].data());
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Lanes moved = ((pose.R[i][0] * x + pose.R[i][1] * y) + pose.R[i][2] * z) + pose.t[i];
+    simd::store(group.moved[i].data(), moved);
+  }
+  Lanes distance;
+  squared_distance(group.moved, group.target, distance);
+  simd::store(group.squared_distance.data(), distance);
+  Lanes validity;
+  simd::load(validity, group.squared_validity.data());
+  squared_distance(group.moved, group.at, distance);
+  const LaneMask known = distance < validity;
+  const LaneMask weighted = ~known & LaneMask{1, 2, 4, 8};
+  return static_cast<unsigned>((weighted[0] | weighted[1]) | (weighted[2] | weighted[3]));
+}
+
+void put(SourceRows::Vectors& vectors, std::size_t lane, const Eigen::Vector3d& v) {
+  vectors[0][lane] = v.x();
+  vectors[1][lane] = v.y();
+  vectors[2][lane] = v.z();
+}
+
+Eigen::Vector3d get(const SourceRows::Vectors& vectors, std::size_t lane) {
+  return {vectors[0][lane], vectors[1][lane], vectors[2][lane]};
+}
+
 }  // namespace
 
+Fit fit_of(std::size_t pairs, double squared_distances, std::size_t source_size) {
+  if (pairs == 0) {
+    return {};
+  }
+  const auto count = static_cast<double>(pairs);
+  return {pairs, count / static_cast<double>(source_size), std::sqrt(squared_distances / count)};
+}
+
 Correspondences judged(std::vector<Correspondence> pairs, std::size_t source_size) {
-  Correspondences result;
-  result.pairs = std::move(pairs);
   double sum = 0.0;
-  for (const Correspondence& pair : result.pairs) {
+  for (const Correspondence& pair : pairs) {
     sum += pair.squared_distance;
   }
-  if (!result.pairs.empty()) {
-    const auto count = static_cast<double>(result.pairs.size());
-    result.fitness = count / static_cast<double>(source_size);
-    result.inlier_rmse = std::sqrt(sum / count);
-  }
-  return result;
+  const Fit fit = fit_of(pairs.size(), sum, source_size);
+  return {std::move(pairs), fit.fitness, fit.inlier_rmse};
 }
 
 CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& target, double max_distance_m,
@@ -42,51 +119,101 @@ CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& tar
       max_distance_m_(max_distance_m),
       needs_normals_(needs_normals),
       workers_(workers),
-      known_(source.size()) {}
-
-bool CorrespondenceSearch::still_known(std::size_t i, const Eigen::Vector3d& point) const {
-  const Known& known = known_[i];
-  if (known.others < 0.0) {
-    return false;
+      place_of_(source.size()),
+      groups_((source.size() + kLanes - 1) / kLanes) {
+  const std::vector<std::uint32_t> order = spatial::space_order(source.points(), kCell_m);
+  for (std::uint32_t place = 0; place < kLanes * groups_.size(); ++place) {
+    SourceRows& group = groups_[place / kLanes];
+    const std::size_t lane = place % kLanes;
+    const bool exists = place < source.size();
+    if (exists) {
+      const std::uint32_t row = order[place];
+      place_of_[row] = place;
+      put(group.point, lane, source.points()[row]);
+      put(group.ray, lane, source.doppler()[row] * source.directions()[row]);
+    }
+    group.squared_validity[lane] = exists ? -1.0 : std::numeric_limits<double>::infinity();
+    group.squared_gate[lane] = -1.0;
+    group.partner[lane] = SourceRows::kNone;
   }
-  const double moved = (point - known.at).norm() + kRounding_m;
-  // The nearest one is now at most distance + moved away, all others at least others - moved.
-  const double reach = known.nearest == kNone ? max_distance_m_ : known.distance + moved;
-  return reach < known.others - moved;
 }
 
-void CorrespondenceSearch::look_up(std::size_t i, const Eigen::Vector3d& point,
-                                   std::vector<spatial::Neighbour>& found) {
-  const double reach = kReachOverGate * max_distance_m_;
-  target_.tree.nearest_k(point, 2, reach, found);
-  Known& known = known_[i];
-  known.at = point;
-  known.nearest = found.empty() ? kNone : found[0].index;
-  known.distance = found.empty() ? reach : std::sqrt(found[0].squared_distance);
-  known.others = found.size() < 2 ? reach : std::sqrt(found[1].squared_distance);
-}
-
-Correspondences CorrespondenceSearch::find(const Eigen::Isometry3d& T_target_source) {
-  const double gate = max_distance_m_ * max_distance_m_;
-  std::vector<double> squared(source_.size(), -1.0);
-  workers_.for_blocks(source_.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::vector<spatial::Neighbour> found;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d point = T_target_source * source_.points()[i];
-      if (!still_known(i, point)) {
-        look_up(i, point, found);
-      }
-      const std::uint32_t j = known_[i].nearest;
-      if (j != kNone && (!needs_normals_ || target_.has_normal[j] != 0)) {
-        squared[i] = spatial::squared_distance(point, target_.scan.points()[j]);
+void CorrespondenceSearch::locate(const Eigen::Isometry3d& T_target_source, std::size_t begin, std::size_t end) {
+  const Pose pose(T_target_source);
+  std::vector<std::uint32_t> unknown(kLanes * (end - begin) + 1);
+  std::size_t count = 0;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    for (std::size_t g = begin; g < end; ++g) {
+      const unsigned lanes = move(groups_[g], pose);
+      for (unsigned lane = 0; lanes != 0 && lane < kLanes; ++lane) {
+        unknown[count] = static_cast<std::uint32_t>(kLanes * g + lane);
+        count += lanes >> lane & 1U;
       }
     }
   });
+  unknown.resize(count);
+  look_up(unknown);
+}
+
+void CorrespondenceSearch::look_up(std::span<const std::uint32_t> places) {
+  if (places.empty()) {
+    return;
+  }
+  spatial::TwoNearestSearch search(target_.tree, kReachOverGate * max_distance_m_);
+  std::array<Eigen::Vector3d, kBatch> points;
+  std::array<spatial::TwoNearest, kBatch> found;
+  for (std::size_t first = 0; first < places.size(); first += kBatch) {
+    const std::size_t size = std::min(kBatch, places.size() - first);
+    for (std::size_t k = 0; k < size; ++k) {
+      points[k] = get(groups_[places[first + k] / kLanes].moved, places[first + k] % kLanes);
+    }
+    search.search(std::span(points).first(size), std::span(found).first(size));
+    for (std::size_t k = 0; k < size; ++k) {
+      remember(places[first + k], points[k], found[k]);
+    }
+  }
+}
+
+void CorrespondenceSearch::remember(std::uint32_t place, const Eigen::Vector3d& point,
+                                    const spatial::TwoNearest& found) {
+  const double reach = kReachOverGate * max_distance_m_;
+  const std::uint32_t j = found.first.index;
+  const bool has_partner = j != SourceRows::kNone;
+  const double distance = has_partner ? std::sqrt(found.first.squared_distance) : reach;
+  const double others = found.second.index != SourceRows::kNone ? std::sqrt(found.second.squared_distance) : reach;
+  // Moved by m, the nearest one is at most distance + m away, all others at least others - m.
+  const double validity = (has_partner ? 0.5 * (others - distance) : others - max_distance_m_) - kRounding_m;
+
+  SourceRows& group = groups_[place / kLanes];
+  const std::size_t lane = place % kLanes;
+  const bool pairs = has_partner && (!needs_normals_ || target_.has_normal[j] != 0);
+  const bool has_normal = has_partner && !target_.normals.empty();
+  const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
+  put(group.at, lane, point);
+  group.squared_validity[lane] = validity > 0.0 ? validity * validity : -1.0;
+  group.squared_gate[lane] = pairs ? max_distance_m_ * max_distance_m_ : -1.0;
+  put(group.target, lane, has_partner ? target_.scan.points()[j] : zero);
+  put(group.normal, lane, has_normal ? target_.normals[j] : zero);
+  put(group.direction, lane, has_partner ? target_.scan.directions()[j] : zero);
+  group.doppler[lane] = has_partner ? target_.scan.doppler()[j] : 0.0;
+  group.partner[lane] = j;
+  group.squared_distance[lane] = has_partner ? found.first.squared_distance : 0.0;
+}
+
+Correspondences CorrespondenceSearch::find(const Eigen::Isometry3d& T_target_source) {
+  workers_.for_blocks(groups_.size(), kBlock,
+                      [&](std::size_t, std::size_t begin, std::size_t end) { locate(T_target_source, begin, end); });
+  return pairs();
+}
+
+Correspondences CorrespondenceSearch::pairs() const {
   std::vector<Correspondence> pairs;
   pairs.reserve(source_.size());
   for (std::uint32_t i = 0; i < source_.size(); ++i) {
-    if (squared[i] >= 0.0 && squared[i] <= gate) {
-      pairs.push_back({i, known_[i].nearest, squared[i]});
+    const SourceRows& group = groups_[place_of_[i] / kLanes];
+    const std::size_t lane = place_of_[i] % kLanes;
+    if (group.squared_distance[lane] <= group.squared_gate[lane]) {
+      pairs.push_back({i, group.partner[lane], group.squared_distance[lane]});
     }
   }
   return judged(std::move(pairs), source_.size());

@@ -11,7 +11,9 @@
 #include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/scan.hpp"
 #include "dynamic_icp/base/se3.hpp"
+#include "dynamic_icp/registration/source_rows.hpp"
 #include "dynamic_icp/spatial/kd_tree.hpp"
+#include "dynamic_icp/spatial/two_nearest.hpp"
 
 namespace dynamic_icp::registration {
 
@@ -37,6 +39,16 @@ struct Correspondences {
   double inlier_rmse = 0.0;           ///< m, root mean square distance of the pairs; 0 without pairs
 };
 
+/// How well correspondences fit, without them.
+struct Fit {
+  std::size_t pairs = 0;
+  double fitness = 0.0;
+  double inlier_rmse = 0.0;  ///< m
+};
+
+/// Of so many pairs whose squared distances add up to `squared_distances` (m^2).
+Fit fit_of(std::size_t pairs, double squared_distances, std::size_t source_size);
+
 /// Pairs in the order of the source rows, with their fitness and inlier RMSE.
 Correspondences judged(std::vector<Correspondence> pairs, std::size_t source_size);
 
@@ -55,23 +67,25 @@ class CorrespondenceSearch {
 
   Correspondences find(const Eigen::Isometry3d& T_target_source);
 
- private:
-  struct Known {
-    Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< where the point was looked up, m, target frame
-    std::uint32_t nearest = 0;                     ///< row of the target; kNone when none was within reach
-    double distance = 0.0;                         ///< m, to the nearest
-    double others = -1.0;  ///< m, no other target point was nearer than this; < 0: not looked up
-  };
+  /// The same for some of the rows, for who goes on with them directly: moves groups [begin, end) to a pose and brings
+  /// their partners up to date. Different groups may be located at the same time.
+  void locate(const Eigen::Isometry3d& T_target_source, std::size_t begin, std::size_t end);
+  /// The source, four points a group, neighbours near each other.
+  [[nodiscard]] const std::vector<SourceRows>& groups() const { return groups_; }
+  /// The pairs at the pose that all groups were located at last.
+  [[nodiscard]] Correspondences pairs() const;
 
-  void look_up(std::size_t i, const Eigen::Vector3d& point, std::vector<spatial::Neighbour>& found);
-  [[nodiscard]] bool still_known(std::size_t i, const Eigen::Vector3d& point) const;
+ private:
+  void look_up(std::span<const std::uint32_t> places);
+  void remember(std::uint32_t place, const Eigen::Vector3d& point, const spatial::TwoNearest& found);
 
   const Scan& source_;
   Target target_;
   double max_distance_m_;
   bool needs_normals_;
   const Workers& workers_;
-  std::vector<Known> known_;
+  std::vector<std::uint32_t> place_of_;  ///< by row of the source: its place in the groups, four to a group
+  std::vector<SourceRows> groups_;
 };
 
 }  // namespace dynamic_icp::registration

@@ -9,11 +9,11 @@
 namespace dynamic_icp::registration {
 namespace {
 
-bool enough(const Correspondences& correspondences, const StopRule& stop) {
-  return correspondences.pairs.size() >= static_cast<std::size_t>(stop.min_correspondences);
+bool enough(const Fit& fit, const StopRule& stop) {
+  return fit.pairs >= static_cast<std::size_t>(stop.min_correspondences);
 }
 
-bool stable(const Correspondences& before, const Correspondences& after, double tolerance) {
+bool stable(const Fit& before, const Fit& after, double tolerance) {
   return std::abs(after.fitness - before.fitness) < tolerance &&
          std::abs(after.inlier_rmse - before.inlier_rmse) < tolerance;
 }
@@ -56,14 +56,14 @@ Alignment minimise(Problem& problem, const Eigen::Isometry3d& T_initial, double 
   result.status = AlignStatus::kIterationLimit;
   result.length_m = length_m;
 
-  Correspondences current = problem.find(result.T_target_source);
+  Fit current = problem.associate(result.T_target_source);
   while (result.iterations < stop.max_iterations) {
     if (!enough(current, stop)) {
       result.status = AlignStatus::kTooFewCorrespondences;
       break;
     }
-    const Linearisation linear = problem.linearise(current, result.T_target_source, result.iterations);
-    estimation::Solution step = estimation::solve(linear.equations, length_m, stop.rank_tolerance);
+    estimation::Solution step =
+        estimation::solve(problem.equations(result.T_target_source, result.iterations), length_m, stop.rank_tolerance);
     if (!step.degenerate.empty()) {
       result.status = AlignStatus::kDegenerate;
       result.degenerate = std::move(step.degenerate);
@@ -72,10 +72,10 @@ Alignment minimise(Problem& problem, const Eigen::Isometry3d& T_initial, double 
     result.T_target_source = exp_se3(step.xi) * result.T_target_source;
     ++result.iterations;
     // The pairs at the new pose decide about stopping and are those of the next step.
-    Correspondences updated = problem.find(result.T_target_source);
+    const Fit updated = problem.associate(result.T_target_source);
     const bool converged =
         enough(updated, stop) && (stable(current, updated, stop.tolerance) || step.xi.norm() < stop.min_step);
-    current = std::move(updated);
+    current = updated;
     if (converged) {
       result.status = AlignStatus::kConverged;
       break;
@@ -85,7 +85,7 @@ Alignment minimise(Problem& problem, const Eigen::Isometry3d& T_initial, double 
     result.status = AlignStatus::kTooFewCorrespondences;  // the last step threw the pose away
   }
   renormalise(result.T_target_source);
-  describe_fit(result, problem, current, length_m, stop.rank_tolerance);
+  describe_fit(result, problem, problem.correspondences(), length_m, stop.rank_tolerance);
   return result;
 }
 

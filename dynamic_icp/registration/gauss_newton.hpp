@@ -21,6 +21,23 @@ class Problem {
   /// The objective around a pose for fixed correspondences. `iteration` counts the steps made before, from 0.
   [[nodiscard]] virtual Linearisation linearise(const Correspondences& correspondences,
                                                 const Eigen::Isometry3d& T_target_source, int iteration) const = 0;
+
+  // What the loop asks for, in this order, at each pose. A problem may have faster ways than the two above.
+
+  /// Finds the correspondences at a pose and tells how well they fit.
+  virtual Fit associate(const Eigen::Isometry3d& T_target_source) {
+    current_ = find(T_target_source);
+    return {current_.pairs.size(), current_.fitness, current_.inlier_rmse};
+  }
+  /// The equations of the step from that pose.
+  virtual estimation::NormalEquations equations(const Eigen::Isometry3d& T_target_source, int iteration) {
+    return linearise(current_, T_target_source, iteration).equations;
+  }
+  /// The correspondences themselves.
+  virtual Correspondences correspondences() { return current_; }
+
+ private:
+  Correspondences current_;
 };
 
 /// When the loop ends. A rule of 0 is not used; with both, either ends it.

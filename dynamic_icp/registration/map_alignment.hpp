@@ -12,14 +12,13 @@
 #include "dynamic_icp/base/scan.hpp"
 #include "dynamic_icp/base/se3.hpp"
 #include "dynamic_icp/mapping/plane_map.hpp"
+#include "dynamic_icp/registration/plane_sums.hpp"
 #include "dynamic_icp/registration/sweep_motion.hpp"
 
 namespace dynamic_icp::registration {
 
 using Vector9d = Eigen::Matrix<double, 9, 1>;
 using Matrix9d = Eigen::Matrix<double, 9, 9>;
-using Vector12d = Eigen::Matrix<double, 12, 1>;
-using Matrix12d = Eigen::Matrix<double, 12, 12>;
 
 struct MapAlignConfig {
   int max_iterations = 20;
@@ -72,7 +71,7 @@ struct MapAlignment {
 /// information alone. The points on one patch have its error c = height_variance + model_deviation^2 in common, so m
 /// of them with a variance s^2 each weigh w_i = 1 / (s^2 + m c): together never more than 1 / c.
 ///
-/// The kernel begins as wide as the prior is uncertain and narrows with each step.
+/// The kernel begins as wide as the prior is uncertain and narrows with each step; meanwhile a part of the points does.
 /// Without point times (`scan.has_times()` false) the whole scan is taken at its stamp.
 MapAlignment align_to_map(const Scan& scan, const mapping::PlaneMap& map, const MotionPrior& prior,
                           const MapAlignConfig& config, const Workers& workers);

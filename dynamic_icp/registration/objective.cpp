@@ -73,10 +73,6 @@ class PairTerms {
   Eigen::Vector3d theta_;
 };
 
-bool has_doppler(const Objective& objective) {
-  return objective.doppler != DopplerTerm::kNone && objective.doppler_weight > 0.0;
-}
-
 void add_geometry(LinearisationSum& sum, const PairTerms& terms, const Correspondence& pair,
                   const Objective& objective) {
   const double share = has_doppler(objective) ? 1.0 - objective.doppler_weight : 1.0;

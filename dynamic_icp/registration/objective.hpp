@@ -41,6 +41,11 @@ struct Objective {
   int reject_from_iteration = 2;
 };
 
+/// Whether the Doppler takes part at all.
+inline bool has_doppler(const Objective& objective) {
+  return objective.doppler != DopplerTerm::kNone && objective.doppler_weight > 0.0;
+}
+
 /// The scan that is moved.
 struct Source {
   const Scan& scan;

@@ -9,7 +9,9 @@
 namespace dynamic_icp::registration {
 namespace {
 
-constexpr std::size_t kIntervals = 128;
+constexpr std::size_t kIntervals = 96;
+constexpr std::size_t kBlock = 2048;
+constexpr double kLeastInterval_s = 1e-12;  // what takes less is an instant
 
 }  // namespace
 
@@ -26,30 +28,39 @@ Eigen::Isometry3d SweepMotion::pose(double tau) const {
   return T_stamp_tau;
 }
 
-SweepUndone::SweepUndone(const SweepMotion& sweep, const std::vector<double>& times) {
-  double last = 0.0;
-  if (!times.empty()) {
-    const auto [low, high] = std::minmax_element(times.begin(), times.end());
-    first_ = *low;
-    last = *high;
+TimeSpan time_span(const Scan& scan) {
+  if (scan.times().empty()) {
+    return {};
   }
-  const double interval = (last - first_) / static_cast<double>(kIntervals);
-  per_second_ = interval > 0.0 ? 1.0 / interval : 0.0;
-  knots_.resize(interval > 0.0 ? kIntervals + 1 : 1);
+  const auto [first, last] = std::ranges::minmax(scan.times());
+  return {first, last};
+}
+
+SweepUndone::SweepUndone(const SweepMotion& sweep, const TimeSpan& span) : first_(span.first) {
+  const double interval = (span.last - span.first) / static_cast<double>(kIntervals);
+  per_second_ = interval > kLeastInterval_s ? 1.0 / interval : 0.0;
+  knots_.resize(interval > kLeastInterval_s ? kIntervals + 1 : 1);
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const double tau = first_ + static_cast<double>(k) * interval;
     knots_[k] = {tau, sweep.pose(tau), sweep.omega + tau * sweep.alpha, sweep.velocity_at(tau)};
   }
 }
 
-Scan undo_sweep(const Scan& scan, const SweepMotion& sweep) {
-  Scan result = scan;
-  const SweepUndone undone(sweep, scan.times());
-  for (std::size_t row = 0; row < scan.times().size(); ++row) {
+std::vector<Eigen::Vector3d> points_at_stamp(const Scan& scan, const SweepMotion& sweep, const Workers& workers) {
+  std::vector<Eigen::Vector3d> points = scan.points();
+  const SweepUndone undone(sweep, time_span(scan));
+  workers.for_each(scan.times().size(), kBlock,
+                   [&](std::size_t row) { points[row] = undone.at_stamp(points[row], scan.times()[row]); });
+  return points;
+}
+
+Scan undo_sweep(Scan scan, const SweepMotion& sweep, const Workers& workers) {
+  const SweepUndone undone(sweep, time_span(scan));
+  workers.for_each(scan.times().size(), kBlock, [&](std::size_t row) {
     const Eigen::Vector3d& point = scan.points()[row];
-    result.displace(row, undone.at_stamp(point, scan.times()[row]) - point);
-  }
-  return result;
+    scan.displace(row, undone.at_stamp(point, scan.times()[row]) - point);
+  });
+  return scan;
 }
 
 }  // namespace dynamic_icp::registration

@@ -6,6 +6,7 @@
 
 #include <Eigen/Geometry>
 
+#include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/scan.hpp"
 
 namespace dynamic_icp::registration {
@@ -29,12 +30,21 @@ struct SweepMotion {
   [[nodiscard]] Eigen::Isometry3d pose(double tau) const;
 };
 
+/// The earliest and the latest time of some points, s after the stamp.
+struct TimeSpan {
+  double first = 0.0;
+  double last = 0.0;
+};
+
+/// Of all points of a scan; of one without times its stamp.
+TimeSpan time_span(const Scan& scan);
+
 /// Undoes a sweep for many points: the poses at a few times, and from the nearest of them a straight step. Exact to the
 /// square of the turn within half an interval, far below a tenth of a millimetre.
 class SweepUndone {
  public:
-  /// For points with these times (s after the stamp; may be empty: then points stay where they are).
-  SweepUndone(const SweepMotion& sweep, const std::vector<double>& times);
+  /// For points with times within this span.
+  SweepUndone(const SweepMotion& sweep, const TimeSpan& span);
 
   /// Where the point, measured at tau, would have been measured at the stamp.
   [[nodiscard]] Eigen::Vector3d at_stamp(const Eigen::Vector3d& point, double tau) const {
@@ -57,7 +67,10 @@ class SweepUndone {
 };
 
 /// The scan with all points where they would have been measured at the stamp. Lines of sight, Doppler and times stay as
-/// measured; a scan without times is returned as it is.
-Scan undo_sweep(const Scan& scan, const SweepMotion& sweep);
+/// measured; a scan without times is returned as it is. To change a scan in its place, move it in and out.
+Scan undo_sweep(Scan scan, const SweepMotion& sweep, const Workers& workers);
+
+/// Only the points of it, m, sensor axes at the stamp.
+std::vector<Eigen::Vector3d> points_at_stamp(const Scan& scan, const SweepMotion& sweep, const Workers& workers);
 
 }  // namespace dynamic_icp::registration

@@ -62,7 +62,7 @@ TEST(SweepUndone, AgreesWithThePoseAtEachTime) {
   for (int k = 0; k <= 1000; ++k) {
     times.push_back(0.003 + 1e-4 * k);
   }
-  const SweepUndone undone(sweep, times);
+  const SweepUndone undone(sweep, {0.0, times.back()});
   const Vector3d point(40.0, -25.0, 3.0);
   for (const double tau : times) {
     EXPECT_LT((undone.at_stamp(point, tau) - sweep.pose(tau) * point).norm(), 5e-5) << tau;
@@ -74,7 +74,7 @@ TEST(UndoSweep, LeavesScansWithoutTimesAlone) {
   raw.points = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};
   raw.doppler = {0.1, 0.2};
   const Scan scan = Scan::from_raw(raw);
-  EXPECT_EQ(undo_sweep(scan, turning_drive()).points(), scan.points());
+  EXPECT_EQ(undo_sweep(scan, turning_drive(), Workers(1)).points(), scan.points());
 }
 
 TEST(UndoSweep, HandlesEqualTimesAndKeepsMeasurements) {
@@ -83,7 +83,7 @@ TEST(UndoSweep, HandlesEqualTimesAndKeepsMeasurements) {
   raw.doppler = {0.1, 0.2};
   raw.times = {0.05, 0.05};
   const Scan scan = Scan::from_raw(raw);
-  const Scan undone = undo_sweep(scan, turning_drive());
+  const Scan undone = undo_sweep(scan, turning_drive(), Workers(1));
   for (std::size_t row = 0; row < 2; ++row) {
     EXPECT_LT((undone.points()[row] - turning_drive().pose(0.05) * scan.points()[row]).norm(), 1e-12);
   }

@@ -144,7 +144,7 @@ std::string frame_line(std::size_t index, const Frame& frame) {
                      {"points_dropped",
                       {{"non_finite", frame.dropped.non_finite},
                        {"zero_range", frame.dropped.zero_range},
-                       {"out_of_range", frame.out_of_range}}},
+                       {"out_of_range", frame.dropped.out_of_range}}},
                      {"ego_velocity", vector_json(frame.ego.velocity_sensor)},
                      {"ego_velocity_covariance", matrix_json(frame.ego.covariance)},
                      {"ego_velocity_status", to_string(frame.ego.status)},

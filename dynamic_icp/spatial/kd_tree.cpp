@@ -105,9 +105,11 @@ std::uint32_t KdTree::smallest_index(std::span<const IndexedPoint> points) {
 
 void KdTree::fill_leaves(std::span<const IndexedPoint> points) {
   order_.resize(points.size());
+  positions_.resize(points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     leaves_[i / kLeafSize].row(static_cast<Eigen::Index>(i % kLeafSize)) = points[i].point.transpose().array();
     order_[i] = points[i].index;
+    positions_[points[i].index] = static_cast<std::uint32_t>(i);
   }
 }
 

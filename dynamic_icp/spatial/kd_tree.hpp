@@ -24,7 +24,7 @@ namespace dynamic_icp::spatial {
 /// depth is ceil(log2(number of leaves)) whatever the points look like, and no child needs a stored link.
 ///
 /// Guarantees: results depend on the points alone (equal distances are ordered by index); a tree is immutable and may
-/// be searched by many threads at once; memory about 40 bytes a point. Building costs O(n log n).
+/// be searched by many threads at once; memory about 44 bytes a point. Building costs O(n log n).
 class KdTree {
  public:
   static constexpr std::size_t kLeafSize = 16;
@@ -85,6 +85,8 @@ class KdTree {
   [[nodiscard]] std::uint32_t smallest_index(Node node) const { return splits_[node.id].smallest_index; }
   /// Index of the point at each position.
   [[nodiscard]] std::span<const std::uint32_t> order() const { return order_; }
+  /// Position of each point: the other way round.
+  [[nodiscard]] std::span<const std::uint32_t> positions() const { return positions_; }
 
  private:
   struct IndexedPoint {
@@ -115,6 +117,7 @@ class KdTree {
   std::size_t size_ = 0;
   std::vector<Leaf> leaves_;
   std::vector<std::uint32_t> order_;
+  std::vector<std::uint32_t> positions_;
   std::vector<Split> splits_;  // by node id
   std::vector<Box> boxes_;     // by node id
 };

@@ -3,67 +3,19 @@
 #include "dynamic_icp/tracking/moving_cells.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <numeric>
 
 #include "dynamic_icp/dynamics/disjoint_sets.hpp"
+#include "dynamic_icp/spatial/cell_key.hpp"
+#include "dynamic_icp/spatial/key_numbers.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::uint64_t kEmpty = ~std::uint64_t{0};
 constexpr std::size_t kBlock = 4096;
-constexpr double kCellsEachWay = 1 << 20;
 constexpr double kWiderThanReach = 1.001;  // rounding must not put cells within reach two cubes apart
-
-/// Three cell coordinates of 21 bits each; points beyond the reach of the numbers share the outermost cells.
-std::uint64_t cell_key(const Eigen::Vector3d& point, double size) {
-  std::uint64_t key = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double cell = std::clamp(std::floor(point[axis] / size), -kCellsEachWay, kCellsEachWay - 1.0);
-    key = key << 21 | static_cast<std::uint64_t>(static_cast<std::int64_t>(cell) + (1 << 20));
-  }
-  return key;
-}
-
-/// Gives keys the numbers 0, 1, ... in the order in which they come: open addressing.
-class KeyNumbers {
- public:
-  static constexpr std::uint32_t kNone = ~std::uint32_t{0};
-
-  explicit KeyNumbers(std::size_t most) : keys_(std::bit_ceil(2 * most + 1), kEmpty), numbers_(keys_.size()) {}
-
-  std::uint32_t number(std::uint64_t key) {
-    const std::size_t slot = slot_of(key);
-    if (keys_[slot] == kEmpty) {
-      keys_[slot] = key;
-      numbers_[slot] = count_++;
-    }
-    return numbers_[slot];
-  }
-
-  /// The number of a key that may never have come.
-  [[nodiscard]] std::uint32_t find(std::uint64_t key) const {
-    const std::size_t slot = slot_of(key);
-    return keys_[slot] == kEmpty ? kNone : numbers_[slot];
-  }
-
- private:
-  [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
-    const std::size_t mask = keys_.size() - 1;
-    std::size_t slot = ((key ^ key >> 31) * 0x9e3779b97f4a7c15ULL >> 29) & mask;
-    while (keys_[slot] != kEmpty && keys_[slot] != key) {
-      slot = (slot + 1) & mask;
-    }
-    return slot;
-  }
-
-  std::vector<std::uint64_t> keys_;
-  std::vector<std::uint32_t> numbers_;
-  std::uint32_t count_ = 0;
-};
 
 void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& cell) {
   cell.centroid += scan.points()[row];
@@ -103,7 +55,7 @@ std::vector<std::uint64_t> half_neighbourhood() {
   for (std::int64_t x = -1; x <= 1; ++x) {
     for (std::int64_t y = -1; y <= 1; ++y) {
       for (std::int64_t z = -1; z <= 1; ++z) {
-        const std::int64_t offset = (x << 42) + (y << 21) + z;
+        const std::int64_t offset = (x << 2 * spatial::kCellBits) + (y << spatial::kCellBits) + z;
         if (offset >= 0) {
           offsets.push_back(static_cast<std::uint64_t>(offset));
         }
@@ -118,12 +70,12 @@ template <typename Visit>
 void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::uint32_t> chosen, double reach_m,
                       const Visit& visit) {
   const double cube_m = kWiderThanReach * reach_m;
-  KeyNumbers numbers(chosen.size());
+  spatial::KeyNumbers numbers(chosen.size());
   std::vector<std::uint64_t> keys;
   std::vector<std::vector<std::uint32_t>> cubes;
   for (const std::uint32_t i : chosen) {
-    const std::uint64_t key = cell_key(cells[i].centroid, cube_m);
-    const std::uint32_t number = numbers.number(key);
+    const std::uint64_t key = spatial::clamped_cell_key(cells[i].centroid / cube_m);
+    const std::uint32_t number = numbers.number_of(key);
     if (number == cubes.size()) {
       cubes.emplace_back();
       keys.push_back(key);
@@ -134,7 +86,7 @@ void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::ui
   for (std::size_t cube = 0; cube < cubes.size(); ++cube) {
     for (const std::uint64_t offset : offsets) {
       const std::uint32_t other = numbers.find(keys[cube] + offset);
-      if (other == KeyNumbers::kNone) {
+      if (other == spatial::KeyNumbers::kNone) {
         continue;
       }
       for (std::size_t a = 0; a < cubes[cube].size(); ++a) {
@@ -173,12 +125,13 @@ MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::
   }
   const std::size_t n = result.rows.size();
   std::vector<std::uint64_t> keys(n);
-  workers.for_each(n, kBlock,
-                   [&](std::size_t i) { keys[i] = cell_key(scan.points()[result.rows[i]], config.cell_size_m); });
-  KeyNumbers numbers(n);
+  workers.for_each(n, kBlock, [&](std::size_t i) {
+    keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
+  });
+  spatial::KeyNumbers numbers;
   result.cell_of.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t cell = numbers.number(keys[i]);
+    const std::uint32_t cell = numbers.number_of(keys[i]);
     if (cell == result.cells.size()) {
       result.cells.emplace_back();
     }

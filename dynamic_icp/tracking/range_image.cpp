@@ -3,17 +3,22 @@
 #include "dynamic_icp/tracking/range_image.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <span>
+
+#include "dynamic_icp/base/simd.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kBlock = 512;
 constexpr int kColumns = 720;
 constexpr int kRows = 120;
 constexpr double kSlopePerRow = 0.0175;  // a degree
+constexpr double kLeast_m = 1e-12;       // nothing is divided by less
 
 struct Cell {
   int column = 0;
@@ -21,19 +26,48 @@ struct Cell {
 };
 
 /// A measure of the azimuth that grows with it from 0 to 4 in one turn, without an arc tangent.
-double turn_measure(double x, double y) {
-  const double a = y / std::max(std::abs(x) + std::abs(y), 1e-12);
-  return x < 0.0 ? 2.0 - a : (y < 0.0 ? 4.0 + a : a);
+DYNAMIC_ICP_INLINE double turn_measure(double x, double y) {
+  const double sum = std::abs(x) + std::abs(y);
+  const double a = y / (sum > kLeast_m ? sum : kLeast_m);
+  const double right = y < 0.0 ? 4.0 + a : a;
+  return x < 0.0 ? 2.0 - a : right;
 }
 
-Cell cell_of(const Eigen::Vector3d& point) {
-  const double across = std::sqrt(point.x() * point.x() + point.y() * point.y());
-  const double row = point.z() / std::max(across, 1e-12) / kSlopePerRow + 0.5 * kRows;
-  const int column = static_cast<int>(turn_measure(point.x(), point.y()) * (0.25 * kColumns));
-  return {std::min(column, kColumns - 1), static_cast<int>(std::clamp(row, 0.0, kRows - 1.0))};
+DYNAMIC_ICP_INLINE Cell cell_of(double x, double y, double z) {
+  const double across = std::sqrt(x * x + y * y);
+  const double row = z / (across > kLeast_m ? across : kLeast_m) * (1.0 / kSlopePerRow) + 0.5 * kRows;
+  const double not_above = row < kRows - 1.0 ? row : kRows - 1.0;
+  const int column = static_cast<int>(turn_measure(x, y) * (0.25 * kColumns));
+  return {column < kColumns ? column : kColumns - 1, static_cast<int>(not_above > 0.0 ? not_above : 0.0)};
 }
+
+Cell cell_of(const Eigen::Vector3d& point) { return cell_of(point.x(), point.y(), point.z()); }
 
 std::size_t place(int column, int row) { return static_cast<std::size_t>(column * kRows + row); }
+
+/// Of up to kBlock points: the columns, the places in the image and the squared ranges (m^2).
+void find_cells(std::span<const Eigen::Vector3d> points, std::uint16_t* columns, std::uint32_t* places,
+                float* squared) {
+  std::array<double, kBlock> x;
+  std::array<double, kBlock> y;
+  std::array<double, kBlock> z;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    x[i] = points[i].x();
+    y[i] = points[i].y();
+    z[i] = points[i].z();
+  }
+  std::array<Cell, kBlock> cells;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      cells[i] = cell_of(x[i], y[i], z[i]);
+      squared[i] = static_cast<float>(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+    }
+  });
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    columns[i] = static_cast<std::uint16_t>(cells[i].column);
+    places[i] = static_cast<std::uint32_t>(place(cells[i].column, cells[i].row));
+  }
+}
 
 }  // namespace
 
@@ -44,14 +78,13 @@ RangeImage::RangeImage(const Scan& scan, const Workers& workers)
       column_seen_(kColumns, 0),
       columns_(scan.size()) {
   std::vector<std::uint32_t> places(scan.size());
-  workers.for_each(scan.size(), kBlock, [&](std::size_t row) {
-    const Cell cell = cell_of(scan.points()[row]);
-    columns_[row] = static_cast<std::uint16_t>(cell.column);
-    places[row] = static_cast<std::uint32_t>(place(cell.column, cell.row));
+  std::vector<float> squared(scan.size());
+  workers.for_blocks(scan.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    find_cells(std::span(scan.points()).subspan(begin, end - begin), &columns_[begin], &places[begin], &squared[begin]);
   });
   for (std::size_t row = 0; row < scan.size(); ++row) {
     float& nearest = nearest_squared_[places[row]];
-    nearest = std::min(nearest, static_cast<float>(scan.points()[row].squaredNorm()));
+    nearest = std::min(nearest, squared[row]);
     column_seen_[columns_[row]] = 1;
   }
 }

@@ -1,0 +1,34 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+namespace dynamic_icp::simd {
+
+/// A sum over rows in lanes: row i is added to lane i modulo their number, whatever the machine, for loops that the
+/// compiler turns into vectors (DYNAMIC_ICP_LANE_LOOP).
+inline constexpr std::size_t kSumLanes = 8;
+using LaneSum = std::array<double, kSumLanes>;
+
+inline double total(const LaneSum& lanes) {
+  double sum = 0.0;
+  for (const double lane : lanes) {
+    sum += lane;
+  }
+  return sum;
+}
+
+inline Eigen::Vector3d total(const std::array<LaneSum, 3>& a) { return {total(a[0]), total(a[1]), total(a[2])}; }
+
+/// From xx, xy, xz, yy, yz, zz.
+inline Eigen::Matrix3d symmetric_total(const std::array<LaneSum, 6>& a) {
+  Eigen::Matrix3d matrix;
+  matrix << total(a[0]), total(a[1]), total(a[2]), 0.0, total(a[3]), total(a[4]), 0.0, 0.0, total(a[5]);
+  return matrix.selfadjointView<Eigen::Upper>();
+}
+
+}  // namespace dynamic_icp::simd

@@ -1,0 +1,96 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/spatial/two_nearest.hpp"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <limits>
+
+namespace dynamic_icp::spatial {
+
+TwoNearestSearch::TwoNearestSearch(const KdTree& tree, double max_distance_m)
+    : tree_(tree), max_distance_m_(max_distance_m), squared_gate_(squared_gate(max_distance_m)) {}
+
+void TwoNearestSearch::search(std::span<const Eigen::Vector3d> queries, std::span<TwoNearest> found) {
+  std::fill(found.begin(), found.end(), TwoNearest{});
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  KdTree::Box box{Eigen::Array3d::Constant(kInfinity), Eigen::Array3d::Constant(-kInfinity)};
+  bool empty = true;
+  for (const Eigen::Vector3d& query : queries) {
+    if (query.allFinite()) {
+      box.lower = box.lower.min(query.array());
+      box.upper = box.upper.max(query.array());
+      empty = false;
+    }
+  }
+  if (empty || tree_.size() == 0) {
+    return;
+  }
+  const bool together = leaves_.list(tree_, box, squared_gate_);
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    for (std::size_t i = 0; i < queries.size(); ++i) {
+      if (!queries[i].allFinite()) {
+        continue;
+      }
+      if (together) {
+        search_near(queries[i], found[i]);
+      } else {
+        search_alone(queries[i], found[i]);
+      }
+    }
+  });
+}
+
+/// A bit for each row of a leaf whose squared distance is `limit` at most.
+DYNAMIC_ICP_INLINE unsigned rows_within(const std::array<double, KdTree::kLeafSize>& squared, double limit) {
+  simd::LaneMask bits = {};
+  simd::LaneMask weight = {1, 2, 4, 8};
+  for (std::size_t i = 0; i < KdTree::kLeafSize; i += simd::kLanes) {
+    simd::Lanes distances;
+    simd::load(distances, &squared[i]);
+    bits |= (distances <= limit) & weight;
+    weight <<= 4;
+  }
+  return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));
+}
+
+DYNAMIC_ICP_INLINE void TwoNearestSearch::search_near(const Eigen::Vector3d& query, TwoNearest& found) const {
+  NearbyLeaves::Leaves near;
+  const std::size_t count = leaves_.near(query.x(), query.y(), query.z(), squared_gate_, near);
+  Neighbour first{TwoNearest::kNone, squared_gate_};
+  Neighbour second = first;
+  for (std::size_t j = 0; j < count; ++j) {
+    std::array<double, KdTree::kLeafSize> squared;
+    distances_to_leaf(tree_.leaf(near[j]), query.x(), query.y(), query.z(), squared.data());
+    const unsigned near_rows = rows_within(squared, second.squared_distance);
+    for (unsigned rest = near_rows; rest != 0; rest &= rest - 1) {
+      const auto i = static_cast<std::size_t>(std::countr_zero(rest));
+      const Neighbour candidate{tree_.order()[near[j] * KdTree::kLeafSize + i], squared[i]};
+      if (is_nearer(candidate, first)) {
+        second = first;
+        first = candidate;
+      } else if (is_nearer(candidate, second)) {
+        second = candidate;
+      }
+    }
+  }
+  if (first.index != TwoNearest::kNone) {
+    found.first = first;
+  }
+  if (second.index != TwoNearest::kNone) {
+    found.second = second;
+  }
+}
+
+void TwoNearestSearch::search_alone(const Eigen::Vector3d& query, TwoNearest& found) {
+  tree_.nearest_k(query, 2, max_distance_m_, alone_);
+  if (!alone_.empty()) {
+    found.first = alone_[0];
+  }
+  if (alone_.size() > 1) {
+    found.second = alone_[1];
+  }
+}
+
+}  // namespace dynamic_icp::spatial
