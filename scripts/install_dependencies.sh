@@ -1,15 +1,27 @@
 #!/usr/bin/env bash
 # Installs the packages the build needs, if any is missing. For Debian 12, Ubuntu 22.04 and newer; as root or with sudo.
-# usage: scripts/install_dependencies.sh [tests]
+# usage: scripts/install_dependencies.sh [tests] [benchmarks [peers]]
+#   benchmarks   for scripts/benchmark_speed.sh; peers: also the libraries it compares with (1.2 GB)
 set -euo pipefail
 
 optional=()
 packages=(g++ cmake ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
   libpng-dev libembree-dev libzip-dev)
-if [[ "${1:-}" == tests ]]; then
-  packages+=(libgtest-dev)
-  optional=(python3-open3d)  # an independent implementation to compare with; not in every release
-fi
+for purpose in "$@"; do
+  case $purpose in
+    tests)
+      packages+=(libgtest-dev)
+      optional+=(python3-open3d) ;;  # an independent implementation to compare with; not in every release
+    benchmarks)
+      packages+=(libbenchmark-dev)
+      optional+=(libnanoflann-dev) ;;
+    peers)
+      optional+=(pkg-config libopen3d-dev libpcl-dev python3-open3d) ;;
+    *)
+      echo "unknown purpose '$purpose'; known are: tests, benchmarks, peers" >&2
+      exit 2 ;;
+  esac
+done
 
 is_installed() { dpkg-query -W -f='${Status}' "$1" 2>/dev/null | grep -q 'install ok installed'; }
 is_known() { apt-cache show "$1" >/dev/null 2>&1; }

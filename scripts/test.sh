@@ -10,7 +10,9 @@ scripts/install_dependencies.sh tests
 
 configure() {  # preset
   echo "== Configuring and building ($1)"
-  cmake --preset "$1" -DDYNAMIC_ICP_BUILD_TESTS=ON | grep -iE 'warning|error' || true
+  local benchmarks=OFF  # the kernels are tried where Google Benchmark is installed
+  dpkg-query -W libbenchmark-dev >/dev/null 2>&1 && benchmarks=ON
+  cmake --preset "$1" -DDYNAMIC_ICP_BUILD_TESTS=ON -DDYNAMIC_ICP_BUILD_BENCHMARKS=$benchmarks | grep -iE 'warning|error' || true
 }
 
 run_tests() {  # preset, then arguments for ctest

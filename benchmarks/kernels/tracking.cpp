@@ -1,0 +1,36 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/odometry/config.hpp"
+#include "dynamic_icp/tracking/object_tracker.hpp"
+
+#include "benchmarks/kernels/counters.hpp"
+#include "benchmarks/kernels/scans.hpp"
+
+namespace dynamic_icp::kernels {
+namespace {
+
+/// All scans of the drive one after the other, from a tracker that knows nothing.
+void object_tracker(benchmark::State& state) {
+  const Workers workers(static_cast<int>(state.range(0)));
+  const auto config = odometry::preset("default").tracking;
+  std::size_t points = 0;
+  for (std::size_t i = 0; i < kScans; ++i) {
+    points += known_scan(Sensor::kUsual, i).whole.size();
+  }
+  std::size_t tracks = 0;
+  for ([[maybe_unused]] auto _ : state) {
+    tracking::ObjectTracker tracker(config);
+    for (std::size_t i = 0; i < kScans; ++i) {
+      const KnownScan& scan = known_scan(Sensor::kUsual, i);
+      tracks = tracker.update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, workers).size();
+    }
+  }
+  state.counters["tracks"] = static_cast<double>(tracks);
+  state.counters["scans"] = static_cast<double>(kScans);
+  // Every point is drawn into the range image and looked at once by the tracks near it.
+  count_each(state, points, {.bytes = 2 * kPointBytes + 9, .lines = 1, .operations = 30});
+}
+BENCHMARK(object_tracker)->Apply(one_and_two_threads);
+
+}  // namespace
+}  // namespace dynamic_icp::kernels
