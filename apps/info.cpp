@@ -94,7 +94,7 @@ void print_points(const datasets::Dataset& dataset) {
 }
 
 int info(const InfoOptions& options) {
-  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(options.input, options.format);
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(options.input, {.format = options.format});
   fmt::print("input        {}\n", options.input);
   fmt::print("format       {}\n", dataset->format());
   fmt::print("scans        {}\n", dataset->size());

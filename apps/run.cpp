@@ -260,7 +260,7 @@ void process_scans(const datasets::Dataset& dataset, const Selection& selection,
 int run(const RunOptions& options) {
   const odometry::Config config = make_config(options.method);
   Findings findings{{{}, options.quiet}, {}, {}, make_map(options)};
-  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(options.input, options.format);
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(options.input, {.format = options.format});
   const Selection selection = select_scans(*dataset, options);
   const bool own_truth = options.ground_truth.empty();
   const fs::path truth_file = own_truth ? dataset->ground_truth_file() : fs::path(options.ground_truth);

@@ -16,6 +16,12 @@
 
 namespace dynamic_icp {
 
+/// What the Doppler of a recording says.
+enum class DopplerKind : std::uint8_t {
+  kRelative,    ///< as measured: the sensor's own motion is in it, s = u.(v_object - v_sensor)
+  kCompensated  ///< the sensor's own motion was taken out before, s = u.v_object
+};
+
 /// A scan as a reader hands it over: columns of equal length, nothing checked yet.
 struct RawScan {
   Stamp stamp;                              ///< when the scan begins
@@ -23,6 +29,7 @@ struct RawScan {
   std::vector<double> doppler;              ///< m/s, range rate, positive away from the sensor
   std::vector<double> times;                ///< s after `stamp`, per point; empty where the data has none
   std::vector<Eigen::Vector3d> directions;  ///< lines of sight where they are not points/|points|; else empty
+  DopplerKind doppler_kind = DopplerKind::kRelative;
   std::string warning;                      ///< what the reader found odd but could live with; empty: nothing
 };
 

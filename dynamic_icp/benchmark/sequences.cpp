@@ -91,7 +91,7 @@ fs::path object_truth_of(const fs::path& path, const datasets::Dataset& dataset)
 }
 
 Sequence open_sequence(const fs::path& path, const std::string& format, const fs::path& output) {
-  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(path, format);
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(path, {.format = format});
   if (dataset->size() == 0) {
     throw DataError(fmt::format("{}: holds no scans", path.string()));
   }

@@ -17,7 +17,7 @@ struct Layout {
   std::string_view name;
   std::string_view looks_like;
   fs::path (*find)(const fs::path& input);  ///< the folder to open; empty when the input is not of this layout
-  std::unique_ptr<Dataset> (*open)(const fs::path& folder);
+  std::unique_ptr<Dataset> (*open)(const fs::path& folder, const OpenOptions& options);
 };
 
 constexpr Layout kLayouts[] = {
@@ -32,9 +32,9 @@ std::string looked_for() {
   return text;
 }
 
-std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& input) {
+std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& input, const OpenOptions& options) {
   const fs::path folder = layout.find(input);
-  return folder.empty() ? nullptr : layout.open(folder);
+  return folder.empty() ? nullptr : layout.open(folder, options);
 }
 
 }  // namespace
@@ -47,15 +47,16 @@ std::vector<std::string> known_formats() {
   return names;
 }
 
-std::unique_ptr<Dataset> open_dataset(const fs::path& input, std::string_view format) {
+std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& options) {
   if (!fs::exists(input)) {
     throw DataError(fmt::format("{}: no such file or folder", input.string()));
   }
+  const std::string& format = options.format;
   bool known = format == "auto";
   for (const Layout& layout : kLayouts) {
     known = known || format == layout.name;
     if (format == "auto" || format == layout.name) {
-      if (std::unique_ptr<Dataset> dataset = open_as(layout, input)) {
+      if (std::unique_ptr<Dataset> dataset = open_as(layout, input, options)) {
         return dataset;
       }
     }

@@ -11,9 +11,26 @@
 #include <vector>
 
 #include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/datasets/open_options.hpp"
 #include "dynamic_icp/formats/trajectory.hpp"
 
 namespace dynamic_icp::datasets {
+
+/// What a recording says of each point beyond RawScan: reflectivity, line, ... by the name it has there.
+struct PointColumn {
+  std::string name;
+  std::vector<double> values;  ///< one per point, as stored: no unit is changed
+  bool is_integer = false;
+};
+
+/// An object as the recording's annotators saw it, for evaluation only.
+struct AnnotatedBox {
+  std::string id;          ///< of the track
+  std::string class_name;  ///< in the words of the data set
+  Eigen::Isometry3d T_sensor_box = Eigen::Isometry3d::Identity();
+  Eigen::Vector3d extent = Eigen::Vector3d::Zero();           ///< m, full lengths along the axes of the box
+  Eigen::Vector3d velocity_sensor = Eigen::Vector3d::Zero();  ///< m/s over ground, in sensor axes
+};
 
 /// A recording: scans by index, their time stamps, and the ground truth where the recording has one.
 ///
@@ -36,6 +53,17 @@ class Dataset {
   /// Reads scan `index`. Throws DataError naming the file, the place and what was expected.
   [[nodiscard]] virtual RawScan scan(std::size_t index) const = 0;
 
+  /// The other columns of scan `index`, each as long as its points. Read anew at each call: not for the hot path.
+  [[nodiscard]] virtual std::vector<PointColumn> columns(std::size_t /*index*/) const { return {}; }
+
+  /// What the layout says of its Doppler; that it is so is for the doctor to find out.
+  [[nodiscard]] virtual DopplerKind doppler_kind() const { return DopplerKind::kRelative; }
+
+  /// The boxes at scan `index`, nothing where the recording has none at all.
+  [[nodiscard]] virtual std::optional<std::vector<AnnotatedBox>> boxes(std::size_t /*index*/) const {
+    return std::nullopt;
+  }
+
   /// Poses T_world_sensor, stamped; empty without ground truth.
   [[nodiscard]] virtual const formats::Trajectory& ground_truth() const = 0;
 
@@ -49,9 +77,10 @@ class Dataset {
   [[nodiscard]] virtual const std::vector<std::string>& assumptions() const = 0;
 };
 
-/// Opens a recording. `format` is "auto" or one of `known_formats()`. Throws DataError when the input is missing, is
-/// of no known layout (saying what was looked for) or is damaged; UsageError for an unknown format name.
-std::unique_ptr<Dataset> open_dataset(const std::filesystem::path& input, std::string_view format = "auto");
+/// Opens a recording. Throws DataError when the input is missing, is of no known layout (saying what was looked for, and
+/// naming archives, Git LFS pointers and the like for what they are) or is damaged; UsageError for an unknown format or
+/// options that the format does not have.
+std::unique_ptr<Dataset> open_dataset(const std::filesystem::path& input, const OpenOptions& options = {});
 
 /// The layouts that can be read, for `--format` and its help.
 std::vector<std::string> known_formats();

@@ -35,11 +35,11 @@ TEST_F(OpenDataset, AnUnknownLayoutSaysWhatWasLookedFor) {
   } catch (const DataError& error) {
     EXPECT_NE(std::string(error.what()).find("point_clouds/*.bin"), std::string::npos);
   }
-  EXPECT_THROW(open_dataset(folder_, "dicp"), DataError);
+  EXPECT_THROW(open_dataset(folder_, {.format = "dicp"}), DataError);
 }
 
 TEST_F(OpenDataset, AnUnknownFormatNameIsWrongUse) {
-  EXPECT_THROW(open_dataset(folder_, "vhs"), UsageError);
+  EXPECT_THROW(open_dataset(folder_, {.format = "vhs"}), UsageError);
   EXPECT_EQ(known_formats(), std::vector<std::string>{"dicp"});
 }
 

@@ -3,6 +3,7 @@
 #include "dynamic_icp/datasets/dicp.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -19,7 +20,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::int64_t kAssumedPeriodNs = 100'000'000;
 constexpr int kSearchDepth = 3;
 
 /// Seconds after the stamp, one float32 per point. Our own addition to the layout, for scans that take time.
@@ -38,7 +38,7 @@ std::vector<double> read_times(const fs::path& path, std::size_t points) {
 
 class DicpDataset final : public Dataset {
  public:
-  explicit DicpDataset(const fs::path& folder) : files_(numbered_files(folder / "point_clouds", ".bin")) {
+  DicpDataset(const fs::path& folder, const OpenOptions& options) : files_(numbered_files(folder / "point_clouds", ".bin")) {
     if (files_.empty()) {
       throw DataError(fmt::format("{}: holds no *.bin scans", (folder / "point_clouds").string()));
     }
@@ -52,10 +52,11 @@ class DicpDataset final : public Dataset {
     if (fs::exists(poses)) {
       read_poses(poses);
     } else {
+      const std::int64_t period_ns = std::llround(1e9 * options.period_s);
       for (std::size_t i = 0; i < files_.size(); ++i) {
-        stamps_.push_back(Stamp{static_cast<std::int64_t>(i) * kAssumedPeriodNs});
+        stamps_.push_back(Stamp{static_cast<std::int64_t>(i) * period_ns});
       }
-      assumptions_.emplace_back("no ref_poses.txt: a scan period of 0.1 s is assumed");
+      assumptions_.push_back(fmt::format("no ref_poses.txt: a scan period of {} s is assumed", options.period_s));
     }
   }
 
@@ -158,6 +159,8 @@ Eigen::Isometry3d read_calibration(const fs::path& path) {
   }
 }
 
-std::unique_ptr<Dataset> open_dicp(const fs::path& folder) { return std::make_unique<DicpDataset>(folder); }
+std::unique_ptr<Dataset> open_dicp(const fs::path& folder, const OpenOptions& options) {
+  return std::make_unique<DicpDataset>(folder, options);
+}
 
 }  // namespace dynamic_icp::datasets

@@ -17,8 +17,8 @@ std::filesystem::path find_dicp(const std::filesystem::path& input);
 ///   times/00001.bin ...         optional: float32 seconds after the stamp per point, for scans that take time
 ///   ref_poses.txt               optional: TUM rows, one per scan; gives the time stamps too
 ///   calibration.json            optional: pose of the sensor in the vehicle; ref_poses.txt then holds vehicle poses
-/// Scans are ordered by the number in their file name. Without ref_poses.txt a period of 0.1 s is assumed.
-std::unique_ptr<Dataset> open_dicp(const std::filesystem::path& folder);
+/// Scans are ordered by the number in their file name. Without ref_poses.txt the period of the options is assumed.
+std::unique_ptr<Dataset> open_dicp(const std::filesystem::path& folder, const OpenOptions& options = {});
 
 /// T_vehicle_sensor from a calibration.json of this layout. Throws DataError naming the file and what was expected.
 Eigen::Isometry3d read_calibration(const std::filesystem::path& path);

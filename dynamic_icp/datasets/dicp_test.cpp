@@ -85,7 +85,7 @@ TEST_F(Dicp, ReadsScansInOrderWithTheStampsOfThePoses) {
 }
 
 TEST_F(Dicp, AssumesAPeriodWithoutPosesAndSaysSo) {
-  const std::unique_ptr<Dataset> dataset = open_dataset(folder_, "dicp");
+  const std::unique_ptr<Dataset> dataset = open_dataset(folder_, {.format = "dicp"});
   EXPECT_EQ(dataset->stamp(2).ns, 200'000'000);
   EXPECT_TRUE(dataset->ground_truth().empty());
   EXPECT_TRUE(dataset->ground_truth_file().empty());

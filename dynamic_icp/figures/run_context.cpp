@@ -22,7 +22,7 @@ using formats::Trajectory;
 std::unique_ptr<datasets::Dataset> open_recording(const RunFiles& run, std::vector<std::string>& notes) {
   try {
     const std::string format = text_of(run.run, "input.format");
-    return datasets::open_dataset(text_of(run.run, "input.path"), format.empty() ? "auto" : format);
+    return datasets::open_dataset(text_of(run.run, "input.path"), {.format = format.empty() ? "auto" : format});
   } catch (const std::runtime_error& error) {
     notes.push_back(fmt::format("The scan is not shown: the recording cannot be opened. {}", error.what()));
   } catch (const UsageError& error) {

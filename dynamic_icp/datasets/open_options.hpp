@@ -1,0 +1,27 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+namespace dynamic_icp::datasets {
+
+/// What a user may say about a recording that it does not say itself. How its numbers are to be mended is
+/// Correction's (correction.hpp).
+struct OpenOptions {
+  std::string format = "auto";  ///< or one of known_formats()
+
+  /// Of layouts whose columns have names (npz, pcd, ply): the column that holds x, y, z, doppler or time, where it is
+  /// not to be guessed from the names in the wild (field_names.hpp).
+  std::map<std::string, std::string> fields = {};
+
+  /// Of recordings with several sensors: those to be merged, by their names there. Empty: the layout's own choice.
+  std::vector<std::string> sensors = {};
+
+  /// Time from scan to scan where the recording has no times, s.
+  double period_s = 0.1;
+};
+
+}  // namespace dynamic_icp::datasets
