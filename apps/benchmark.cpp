@@ -20,7 +20,6 @@
 #include "dynamic_icp/benchmark/sequences.hpp"
 #include "dynamic_icp/benchmark/tables.hpp"
 #include "dynamic_icp/benchmark/variants.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
@@ -28,6 +27,7 @@
 #include "apps/cell_progress.hpp"
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
+#include "apps/input_options.hpp"
 #include "apps/method_options.hpp"
 
 namespace dynamic_icp::apps {
@@ -148,7 +148,7 @@ int run_benchmark(BenchmarkOptions options) {
     options.run.config_file = fs::absolute(options.run.config_file).string();
   }
   const std::vector<Candidate> rivals = choose_candidates(options.methods, options.ablations, options.run);
-  const benchmark::Sequences opened = benchmark::open_sequences(options.inputs, options.run.format, options.output);
+  const benchmark::Sequences opened = benchmark::open_sequences(options.inputs, options.run.input, options.output);
   for (const std::string& reason : opened.skipped) {
     fmt::print(stderr, "dynamic-icp: warning: left out: {}\n", reason);
   }
@@ -187,11 +187,7 @@ int run(const BenchmarkOptions& options) {
 
 void add_run_settings(CLI::App& command, benchmark::RunSettings& run) {
   add_configuration_options(command, run.preset, run.config_file, run.settings, run.threads);
-  command
-      .add_option(
-          "--format", run.format,
-          fmt::format("Layout of the recordings: auto, {} (default auto)", fmt::join(datasets::known_formats(), ", ")))
-      ->type_name("NAME");
+  add_input_options(command, run.input);
   command.add_option("--start", run.start, "First scan, counted from 0 (default 0)")->type_name("N");
   command.add_option("--max-frames", run.max_frames, "Most scans of a recording, 1 or more (default: all)")
       ->type_name("N")

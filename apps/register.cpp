@@ -8,11 +8,13 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/datasets/dicp.hpp"
+#include "dynamic_icp/datasets/input_settings.hpp"
 #include "dynamic_icp/formats/xyzd_bin.hpp"
 #include "dynamic_icp/odometry/odometry.hpp"
 #include "dynamic_icp/results/frame_json.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/input_options.hpp"
 #include "apps/method_options.hpp"
 
 namespace dynamic_icp::apps {
@@ -23,11 +25,12 @@ struct RegisterOptions {
   std::string target;
   std::string calibration;
   double dt_s = 0.1;
+  datasets::InputSettings settings;  ///< how the scans are to be mended
   MethodOptions method;
 };
 
-RawScan read_scan(const std::string& path, Stamp stamp) {
-  RawScan raw = formats::read_xyzd(path);
+RawScan read_scan(const std::string& path, Stamp stamp, const datasets::Correction& correction) {
+  RawScan raw = datasets::corrected(formats::read_xyzd(path), correction);
   raw.stamp = stamp;
   if (!raw.warning.empty()) {
     fmt::print(stderr, "dynamic-icp: warning: {}\n", raw.warning);
@@ -40,8 +43,10 @@ int register_pair(const RegisterOptions& options) {
   if (!(options.dt_s >= 1e-9 && options.dt_s <= 3600.0)) {
     throw UsageError(fmt::format("--dt is {}, expected 1e-9 to 3600 s", options.dt_s));
   }
-  const RawScan source = read_scan(options.source, Stamp{0});
-  const RawScan target = read_scan(options.target, Stamp{std::llround(options.dt_s * 1e9)});
+  datasets::check(options.settings.correction);
+  const RawScan source = read_scan(options.source, Stamp{0}, options.settings.correction);
+  const RawScan target =
+      read_scan(options.target, Stamp{std::llround(options.dt_s * 1e9)}, options.settings.correction);
   odometry::Surroundings surroundings;
   if (!options.calibration.empty()) {
     surroundings.T_vehicle_sensor = datasets::read_calibration(options.calibration);
@@ -75,6 +80,7 @@ void add_register_command(CLI::App& app, std::function<int()>& selected) {
       ->add_option("--calibration", options->calibration,
                    "calibration.json with the mounting of the sensor, for doppler-icp (default: the identity)")
       ->type_name("FILE");
+  add_correction_options(*command, options->settings);
   add_method_options(*command, options->method);
   command->callback([options, &selected] { selected = [options] { return register_pair(*options); }; });
 }

@@ -6,12 +6,11 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/base/version.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/datasets/input_settings.hpp"
 #include "dynamic_icp/formats/output_folder.hpp"
 #include "dynamic_icp/formats/tum.hpp"
 #include "dynamic_icp/odometry/odometry.hpp"
@@ -20,6 +19,7 @@
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
+#include "apps/input_options.hpp"
 #include "apps/method_options.hpp"
 #include "apps/progress.hpp"
 
@@ -33,7 +33,7 @@ constexpr std::size_t kWarningsShown = 5;
 struct RunOptions {
   std::string input;
   std::string output;
-  std::string format = "auto";
+  datasets::InputSettings settings;  ///< what was said about the input
   std::string ground_truth;
   std::size_t start = 0;
   std::optional<std::size_t> max_frames;
@@ -135,6 +135,14 @@ nlohmann::ordered_json map_json(const std::optional<results::MapWriter>& map, co
           {"voxel_size_m", options.map_voxel_m}};
 }
 
+nlohmann::ordered_json input_json(const datasets::InputSettings& settings) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+  for (const auto& [name, text] : datasets::texts(settings)) {
+    json[name] = text;
+  }
+  return json;
+}
+
 nlohmann::ordered_json configuration_json(odometry::Config config) {
   nlohmann::ordered_json json;
   for (const ConfigField& field : odometry::fields(config)) {
@@ -168,16 +176,18 @@ struct Findings {
 
 std::string run_json(const RunOptions& options, const datasets::Dataset& dataset, const odometry::Config& config,
                      const fs::path& ground_truth, const Findings& findings) {
-  nlohmann::ordered_json json = {
-      {"version", version()},
-      {"command", command_line()},
-      {"input",
-       {{"path", fs::absolute(options.input).string()}, {"format", dataset.format()}, {"scans", dataset.size()}}},
-      {"method", options.method.method},
-      {"preset", options.method.preset},
-      {"ablation", options.method.ablation},
-      {"start", options.start},
-      {"threads", options.method.threads}};
+  nlohmann::ordered_json json = {{"version", version()},
+                                 {"command", command_line()},
+                                 {"input",
+                                  {{"path", fs::absolute(options.input).string()},
+                                   {"format", dataset.format()},
+                                   {"options", input_json(options.settings)},
+                                   {"scans", dataset.size()}}},
+                                 {"method", options.method.method},
+                                 {"preset", options.method.preset},
+                                 {"ablation", options.method.ablation},
+                                 {"start", options.start},
+                                 {"threads", options.method.threads}};
   json["max_frames"] = nullptr;
   if (options.max_frames) {
     json["max_frames"] = *options.max_frames;
@@ -260,7 +270,7 @@ void process_scans(const datasets::Dataset& dataset, const Selection& selection,
 int run(const RunOptions& options) {
   const odometry::Config config = make_config(options.method);
   Findings findings{{{}, options.quiet}, {}, {}, make_map(options)};
-  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(options.input, {.format = options.format});
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const Selection selection = select_scans(*dataset, options);
   const bool own_truth = options.ground_truth.empty();
   const fs::path truth_file = own_truth ? dataset->ground_truth_file() : fs::path(options.ground_truth);
@@ -305,11 +315,7 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
   command->add_option("--output", options->output, "Folder for the results; must be new or empty")
       ->required()
       ->type_name("DIR");
-  command
-      ->add_option(
-          "--format", options->format,
-          fmt::format("Layout of the recording: auto, {} (default auto)", fmt::join(datasets::known_formats(), ", ")))
-      ->type_name("NAME");
+  add_input_options(*command, options->settings);
   command
       ->add_option("--ground-truth", options->ground_truth,
                    "TUM file to compare with (default: what the recording brings along)")

@@ -17,7 +17,12 @@ std::vector<std::string> run_arguments(const Sequence& sequence, const CellKey& 
   };
   add("--method", key.method);
   add("--preset", settings.preset);
-  add("--format", settings.format);
+  add("--format", settings.input.open.format);
+  for (const auto& [name, text] : datasets::texts(settings.input)) {
+    const std::size_t dot = name.find('.');
+    const std::string option = "--" + name.substr(0, dot);
+    add(option, option == "--field" ? name.substr(dot + 1) + "=" + text : text);
+  }
   add("--start", std::to_string(settings.start));
   add("--threads", std::to_string(settings.threads));
   if (key.ablation != "none") {
@@ -60,7 +65,8 @@ CellPlan plan_cell(const Program& program, const Sequence& sequence, const std::
                       {"method", method},
                       {"ablation", ablation},
                       {"preset", settings.preset},
-                      {"format", settings.format},
+                      {"format", settings.input.open.format},
+                      {"input_options", datasets::texts(settings.input)},
                       {"start", settings.start},
                       {"max_frames", settings.max_frames ? Json(*settings.max_frames) : Json(nullptr)},
                       {"input", input_json(sequence)},

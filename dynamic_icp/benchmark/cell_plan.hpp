@@ -10,6 +10,7 @@
 
 #include "dynamic_icp/benchmark/results.hpp"
 #include "dynamic_icp/benchmark/sequences.hpp"
+#include "dynamic_icp/datasets/input_settings.hpp"
 
 namespace dynamic_icp::benchmark {
 
@@ -18,7 +19,7 @@ struct RunSettings {
   std::string preset = "default";
   std::string config_file;  ///< empty: none
   std::vector<std::string> settings;
-  std::string format = "auto";
+  datasets::InputSettings input;  ///< what was said about the recordings
   std::size_t start = 0;
   std::optional<std::size_t> max_frames;
   int threads = 0;

@@ -26,16 +26,39 @@ CellPlan plan(const Ingredients& from) {
 
 TEST(CellPlan, SaysWhereAndHow) {
   Ingredients from;
-  from.settings = {"paper", "/my.yaml", {"x=1", "y=2"}, "dicp", 3, 5, 2};
+  from.settings = {"paper", "/my.yaml", {"x=1", "y=2"}, {}, 3, 5, 2};
+  for (const auto& [name, text] : {std::pair{"format", "dicp"}, {"field.x", "px"}, {"doppler-sign", "towards"}}) {
+    datasets::set(from.settings.input, name, text);
+  }
   from.ablation = "no-dr";
   const CellPlan planned = plan(from);
   EXPECT_EQ(planned.folder, "street/dynamic-icp_no-dr");
-  EXPECT_EQ(planned.arguments,
-            (std::vector<std::string>{
-                "run",      "/data/street", "--method", "dynamic-icp", "--preset", "paper",      "--format",
-                "dicp",     "--start",      "3",        "--threads",   "2",        "--ablation", "no-dr",
-                "--config", "/my.yaml",     "--set",    "x=1",         "--set",    "y=2",        "--max-frames",
-                "5"}));
+  EXPECT_EQ(planned.arguments, (std::vector<std::string>{"run",
+                                                         "/data/street",
+                                                         "--method",
+                                                         "dynamic-icp",
+                                                         "--preset",
+                                                         "paper",
+                                                         "--format",
+                                                         "dicp",
+                                                         "--field",
+                                                         "x=px",
+                                                         "--doppler-sign",
+                                                         "towards",
+                                                         "--start",
+                                                         "3",
+                                                         "--threads",
+                                                         "2",
+                                                         "--ablation",
+                                                         "no-dr",
+                                                         "--config",
+                                                         "/my.yaml",
+                                                         "--set",
+                                                         "x=1",
+                                                         "--set",
+                                                         "y=2",
+                                                         "--max-frames",
+                                                         "5"}));
   from.ablation = "none";
   EXPECT_EQ(plan(from).folder, "street/dynamic-icp");
 }
@@ -55,7 +78,8 @@ TEST(CellPlan, TheFingerprintIsThatOfWhatDecidesTheResult) {
       [](Ingredients& from) { from.method = "gicp"; },
       [](Ingredients& from) { from.ablation = "no-vf"; },
       [](Ingredients& from) { from.settings.preset = "paper"; },
-      [](Ingredients& from) { from.settings.format = "dicp"; },
+      [](Ingredients& from) { from.settings.input.open.format = "dicp"; },
+      [](Ingredients& from) { datasets::set(from.settings.input, "doppler-sign", "towards"); },
       [](Ingredients& from) { from.settings.start = 1; },
       [](Ingredients& from) { from.settings.max_frames = 10; },
       [](Ingredients& from) { from.settings.threads = 1; },

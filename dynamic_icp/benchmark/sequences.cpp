@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::benchmark {
@@ -90,8 +89,8 @@ fs::path object_truth_of(const fs::path& path, const datasets::Dataset& dataset)
   return {};
 }
 
-Sequence open_sequence(const fs::path& path, const std::string& format, const fs::path& output) {
-  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(path, {.format = format});
+Sequence open_sequence(const fs::path& path, const datasets::InputSettings& settings, const fs::path& output) {
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(path, settings);
   if (dataset->size() == 0) {
     throw DataError(fmt::format("{}: holds no scans", path.string()));
   }
@@ -117,9 +116,10 @@ std::vector<fs::path> visible_folders(const fs::path& path) {
   return folders;
 }
 
-void append_input(Sequences& into, const fs::path& path, const std::string& format, const fs::path& output) {
+void append_input(Sequences& into, const fs::path& path, const datasets::InputSettings& settings,
+                  const fs::path& output) {
   try {
-    into.sequences.push_back(open_sequence(path, format, output));
+    into.sequences.push_back(open_sequence(path, settings, output));
     return;
   } catch (const DataError&) {
     const std::size_t before = into.sequences.size();
@@ -127,7 +127,7 @@ void append_input(Sequences& into, const fs::path& path, const std::string& form
     for (const fs::path& folder : visible_folders(path)) {
       try {
         if (folder != output) {
-          into.sequences.push_back(open_sequence(folder, format, output));
+          into.sequences.push_back(open_sequence(folder, settings, output));
         }
       } catch (const DataError& error) {
         skipped.emplace_back(error.what());
@@ -165,10 +165,11 @@ void label_sequences(std::vector<Sequence>& sequences) {
 
 }  // namespace
 
-Sequences open_sequences(const std::vector<std::string>& inputs, const std::string& format, const fs::path& output) {
+Sequences open_sequences(const std::vector<std::string>& inputs, const datasets::InputSettings& settings,
+                         const fs::path& output) {
   Sequences opened;
   for (const std::string& input : inputs) {
-    append_input(opened, normalised(input), format, normalised(output));
+    append_input(opened, normalised(input), settings, normalised(output));
   }
   std::set<fs::path> seen;
   for (const Sequence& sequence : opened.sequences) {

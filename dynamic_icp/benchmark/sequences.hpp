@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dynamic_icp/base/stamp.hpp"
+#include "dynamic_icp/datasets/input_settings.hpp"
 
 namespace dynamic_icp::benchmark {
 
@@ -31,7 +32,7 @@ struct Sequences {
 /// name. Two recordings of the same name get the name of their folder in front, or a number behind. Files in `output`
 /// do not count as part of a recording. Throws DataError for an input that is no recording and holds none; UsageError
 /// when a recording is given twice.
-Sequences open_sequences(const std::vector<std::string>& inputs, const std::string& format,
+Sequences open_sequences(const std::vector<std::string>& inputs, const datasets::InputSettings& settings,
                          const std::filesystem::path& output);
 
 /// A cheap checksum of a file or folder, 16 hexadecimal digits: names and sizes of all files in it, the whole content

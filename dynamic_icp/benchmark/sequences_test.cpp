@@ -18,7 +18,7 @@ class SequencesTest : public FolderTest {
       paths.push_back(input.string());
     }
     std::vector<std::string> found;
-    for (const Sequence& sequence : open_sequences(paths, "auto", folder_ / "out").sequences) {
+    for (const Sequence& sequence : open_sequences(paths, {}, folder_ / "out").sequences) {
       found.push_back(sequence.label);
     }
     return found;
@@ -35,7 +35,7 @@ TEST_F(SequencesTest, AreLabelledByTheirFolders) {
   EXPECT_EQ(labels({folder_ / "a" / "street" / "point_clouds"}), Labels{"street"});
   EXPECT_EQ(labels({folder_ / "b" / "street", folder_ / "a" / "street"}), (Labels{"b_street", "a_street"}));
   EXPECT_EQ(labels({folder_ / "b" / "tables"}), Labels{"tables_2"}) << "tables/ is for the tables";
-  const Sequence street = open_sequences({(folder_ / "a" / "street").string()}, "auto", folder_ / "out").sequences[0];
+  const Sequence street = open_sequences({(folder_ / "a" / "street").string()}, {}, folder_ / "out").sequences[0];
   EXPECT_EQ(street.scans, 3u);
   EXPECT_EQ(street.last_stamp.ns - street.first_stamp.ns, 200'000'000);
   EXPECT_TRUE(street.object_truth.empty());
@@ -47,7 +47,7 @@ TEST_F(SequencesTest, AFolderOfRecordingsCountsAsAllOfThem) {
   }
   write_file(folder_ / "data" / "notes" / "readme.txt", "notes");
   write_file(folder_ / "data" / ".cache" / "x", "");
-  const Sequences opened = open_sequences({(folder_ / "data").string()}, "auto", folder_ / "out");
+  const Sequences opened = open_sequences({(folder_ / "data").string()}, {}, folder_ / "out");
   EXPECT_EQ(labels({folder_ / "data"}), (Labels{"a", "b", "c"}));
   ASSERT_EQ(opened.skipped.size(), 1u);
   EXPECT_NE(opened.skipped[0].find("notes"), std::string::npos) << "what is left out is told";
@@ -64,7 +64,7 @@ TEST_F(SequencesTest, RefusesWhatIsNoRecordingOrGivenTwice) {
 TEST_F(SequencesTest, FindsTheTruthAboutObjects) {
   make_recording(folder_ / "a");
   write_file(folder_ / "a" / "objects.jsonl", "");
-  const Sequences opened = open_sequences({(folder_ / "a").string()}, "auto", folder_ / "out");
+  const Sequences opened = open_sequences({(folder_ / "a").string()}, {}, folder_ / "out");
   EXPECT_EQ(opened.sequences[0].object_truth, folder_ / "a" / "objects.jsonl");
 }
 

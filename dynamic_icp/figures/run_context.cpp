@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/datasets/input_settings.hpp"
 #include "dynamic_icp/evaluation/association.hpp"
 #include "dynamic_icp/evaluation/relative_error.hpp"
 #include "dynamic_icp/formats/tum.hpp"
@@ -18,11 +18,25 @@ namespace {
 
 using formats::Trajectory;
 
+/// What was said about the recording when it was run.
+datasets::InputSettings input_settings(const RunFiles& run) {
+  constexpr std::string_view kOptions = "input.options.";
+  datasets::InputSettings settings;
+  if (const std::string format = text_of(run.run, "input.format"); !format.empty()) {
+    settings.open.format = format;
+  }
+  for (const auto& [key, value] : run.run) {
+    if (key.starts_with(kOptions)) {
+      datasets::set(settings, key.substr(kOptions.size()), text_of(run.run, key));
+    }
+  }
+  return settings;
+}
+
 /// The recording of the run, or a note why there is none.
 std::unique_ptr<datasets::Dataset> open_recording(const RunFiles& run, std::vector<std::string>& notes) {
   try {
-    const std::string format = text_of(run.run, "input.format");
-    return datasets::open_dataset(text_of(run.run, "input.path"), {.format = format.empty() ? "auto" : format});
+    return datasets::open_input(text_of(run.run, "input.path"), input_settings(run));
   } catch (const std::runtime_error& error) {
     notes.push_back(fmt::format("The scan is not shown: the recording cannot be opened. {}", error.what()));
   } catch (const UsageError& error) {

@@ -59,6 +59,23 @@ TEST(RunContext, PrefersTheScanWithMostPointsOnObjects) {
   EXPECT_EQ(context_of(folder).scan->title, "Scan 2");
 }
 
+TEST(RunContext, MendsTheRecordingAsTheRunDid) {
+  const TestFolder folder;
+  SampleRun().write_recording(folder);
+  SampleRun().write_run(folder);
+  const Scan as_stored = context_of(folder, 3).scan->scan;
+  std::string run = folder.read("run/run.json");
+  const std::string format = R"("format":"dicp")";
+  run.insert(run.find(format), R"("options":{"doppler-sign":"towards","point-scale":"0.5"},)");
+  folder.write("run/run.json", run);
+  const Scan mended = context_of(folder, 3).scan->scan;
+  ASSERT_EQ(mended.size(), as_stored.size());
+  for (std::size_t i = 0; i < mended.size(); ++i) {
+    EXPECT_EQ(mended.doppler()[i], -as_stored.doppler()[i]);
+    EXPECT_EQ(mended.points()[i], Eigen::Vector3d(0.5 * as_stored.points()[i]));
+  }
+}
+
 TEST(RunContext, SaysWhatIsGone) {
   const TestFolder folder;
   SampleRun().write_run(folder);

@@ -1,0 +1,76 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "apps/input_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/dataset.hpp"
+
+namespace dynamic_icp::apps {
+namespace {
+
+void add(CLI::App& command, datasets::InputSettings& settings, const std::string& name, const char* type,
+         const std::string& description) {
+  command
+      .add_option_function<std::string>(
+          "--" + name, [&settings, name](const std::string& text) { datasets::set(settings, name, text); }, description)
+      ->type_name(type);
+}
+
+void set_field(datasets::InputSettings& settings, const std::string& text) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size()) {
+    throw UsageError(fmt::format("--field is '{}', expected NAME=COLUMN, e.g. doppler=velocity", text));
+  }
+  datasets::set(settings, "field." + text.substr(0, equals), text.substr(equals + 1));
+}
+
+void add_repeatable(CLI::App& command, const char* name, const char* type, const char* description,
+                    const std::function<void(const std::string&)>& take) {
+  command
+      .add_option_function<std::vector<std::string>>(
+          name,
+          [take](const std::vector<std::string>& all) {
+            for (const std::string& text : all) {
+              take(text);
+            }
+          },
+          description)
+      ->type_name(type)
+      ->allow_extra_args(false)  // what follows the value is another argument
+      ->take_all();
+}
+
+}  // namespace
+
+void add_input_options(CLI::App& command, datasets::InputSettings& settings) {
+  add(command, settings, "format", "NAME",
+      fmt::format("Layout of the recording: auto, {} (default auto)", fmt::join(datasets::known_formats(), ", ")));
+  add_repeatable(command, "--field", "NAME=COLUMN",
+                 "The column that holds x, y, z, doppler or time, where columns have names; repeatable",
+                 [&settings](const std::string& text) { set_field(settings, text); });
+  add_repeatable(command, "--lidar", "NAME",
+                 "Sensor to take of a recording with several; repeatable (default: the layout's choice)",
+                 [&settings](const std::string& text) { datasets::set(settings, "lidar.", text); });
+  add(command, settings, "period", "S",
+      fmt::format("Time from scan to scan where the recording has no times (default {} s)", settings.open.period_s));
+  add(command, settings, "time-scale", "F",
+      "Factor for the time since the first scan and the times of points (default 1)");
+  add_correction_options(command, settings);
+}
+
+void add_correction_options(CLI::App& command, datasets::InputSettings& settings) {
+  add(command, settings, "doppler-sign", "SIGN",
+      "What a positive Doppler means: away or towards (the sensor) (default away)");
+  add(command, settings, "doppler-kind", "KIND",
+      "Whether the sensor's own motion is in the Doppler: relative, or compensated (default: what the layout says)");
+  add(command, settings, "doppler-scale", "F", "Factor that makes the Doppler m/s, e.g. 0.001 for mm/s (default 1)");
+  add(command, settings, "point-scale", "F", "Factor that makes coordinates m, e.g. 0.001 for mm (default 1)");
+  add(command, settings, "columns", "LIST",
+      "What the stored columns are: a permutation of x,y,z,doppler (default x,y,z,doppler)");
+}
+
+}  // namespace dynamic_icp::apps
