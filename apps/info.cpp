@@ -7,16 +7,19 @@
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
-#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
 
 #include "dynamic_icp/base/scan.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/datasets/input_settings.hpp"
+#include "dynamic_icp/doctor/diagnosis.hpp"
 
 #include "apps/commands.hpp"
-#include "apps/doppler_check.hpp"
+#include "apps/input_options.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
+
+using Json = nlohmann::ordered_json;
 
 constexpr std::size_t kScansLookedAt = 10;
 constexpr double kGapPeriods = 1.5;
@@ -24,14 +27,24 @@ constexpr std::size_t kGapsShown = 5;
 
 struct InfoOptions {
   std::string input;
-  std::string format = "auto";
+  datasets::InputSettings settings;
+  bool json = false;
 };
 
-void print_time(const datasets::Dataset& dataset) {
+/// The time from each scan to the next, s.
+std::vector<double> periods_of(const datasets::Dataset& dataset) {
   std::vector<double> periods;
   for (std::size_t i = 1; i < dataset.size(); ++i) {
     periods.push_back(seconds_between(dataset.stamp(i - 1), dataset.stamp(i)));
   }
+  return periods;
+}
+
+void print_time(const datasets::Dataset& dataset) {
+  if (dataset.size() == 0) {
+    return;
+  }
+  const std::vector<double> periods = periods_of(dataset);
   if (periods.empty()) {
     fmt::print("time         one scan at {} s\n", format_seconds(dataset.stamp(0)));
     return;
@@ -55,62 +68,155 @@ void print_time(const datasets::Dataset& dataset) {
   }
 }
 
-void print_points(const datasets::Dataset& dataset) {
-  const std::size_t count = std::min(kScansLookedAt, dataset.size());
-  std::vector<std::size_t> sizes;
+/// What some scans spread over the recording hold.
+struct PointsSeen {
+  std::size_t scans = 0;
+  std::vector<std::size_t> sizes;  ///< ascending
   Scan::Dropped dropped;
-  double nearest = std::numeric_limits<double>::infinity();
-  double farthest = 0.0;
-  double slowest = std::numeric_limits<double>::infinity();
-  double fastest = -std::numeric_limits<double>::infinity();
+  double nearest_m = std::numeric_limits<double>::infinity();
+  double farthest_m = 0.0;
+  double slowest_mps = std::numeric_limits<double>::infinity();
+  double fastest_mps = -std::numeric_limits<double>::infinity();
   bool times = false;
-  for (std::size_t k = 0; k < count; ++k) {
-    const RawScan raw = dataset.scan((2 * k + 1) * dataset.size() / (2 * count));
+  std::vector<std::string> columns;
+  std::vector<std::string> warnings;
+};
+
+PointsSeen look_at_points(const datasets::Dataset& dataset) {
+  PointsSeen seen;
+  seen.scans = std::min(kScansLookedAt, dataset.size());
+  for (std::size_t k = 0; k < seen.scans; ++k) {
+    const std::size_t index = (2 * k + 1) * dataset.size() / (2 * seen.scans);
+    const RawScan raw = dataset.scan(index);
     Scan::Dropped here;
     const Scan scan = Scan::from_raw(raw, &here);
-    sizes.push_back(raw.points.size());
-    dropped.non_finite += here.non_finite;
-    dropped.zero_range += here.zero_range;
-    times = times || scan.has_times();
+    seen.sizes.push_back(raw.points.size());
+    seen.dropped.non_finite += here.non_finite;
+    seen.dropped.zero_range += here.zero_range;
+    seen.times = seen.times || scan.has_times();
     for (std::size_t i = 0; i < scan.size(); ++i) {
-      nearest = std::min(nearest, scan.points()[i].norm());
-      farthest = std::max(farthest, scan.points()[i].norm());
-      slowest = std::min(slowest, scan.doppler()[i]);
-      fastest = std::max(fastest, scan.doppler()[i]);
+      seen.nearest_m = std::min(seen.nearest_m, scan.points()[i].norm());
+      seen.farthest_m = std::max(seen.farthest_m, scan.points()[i].norm());
+      seen.slowest_mps = std::min(seen.slowest_mps, scan.doppler()[i]);
+      seen.fastest_mps = std::max(seen.fastest_mps, scan.doppler()[i]);
     }
     if (!raw.warning.empty()) {
-      fmt::print("warning      {}\n", raw.warning);
+      seen.warnings.push_back(raw.warning);
+    }
+    if (k == 0) {
+      for (const datasets::PointColumn& column : dataset.columns(index)) {
+        seen.columns.push_back(column.name);
+      }
     }
   }
-  std::sort(sizes.begin(), sizes.end());
-  fmt::print("points       {} to {} a scan, median {} (of {} scans looked at)\n", sizes.front(), sizes.back(),
-             sizes[sizes.size() / 2], count);
-  fmt::print("unusable     {} not finite, {} at the origin\n", dropped.non_finite, dropped.zero_range);
-  if (farthest > 0.0) {
-    fmt::print("range        {:.1f} to {:.1f} m\n", nearest, farthest);
-    fmt::print("Doppler      {:.1f} to {:.1f} m/s\n", slowest, fastest);
+  std::sort(seen.sizes.begin(), seen.sizes.end());
+  return seen;
+}
+
+void print_points(const PointsSeen& seen) {
+  for (const std::string& warning : seen.warnings) {
+    fmt::print("warning      {}\n", warning);
   }
-  fmt::print("point times  {}\n", times ? "yes" : "none");
+  if (seen.scans == 0) {
+    return;
+  }
+  fmt::print("points       {} to {} a scan, median {} (of {} scans looked at)\n", seen.sizes.front(), seen.sizes.back(),
+             seen.sizes[seen.sizes.size() / 2], seen.scans);
+  fmt::print("unusable     {} not finite, {} at the origin\n", seen.dropped.non_finite, seen.dropped.zero_range);
+  if (seen.farthest_m > 0.0) {
+    fmt::print("range        {:.1f} to {:.1f} m\n", seen.nearest_m, seen.farthest_m);
+    fmt::print("Doppler      {:.1f} to {:.1f} m/s\n", seen.slowest_mps, seen.fastest_mps);
+  }
+  fmt::print("point times  {}\n", seen.times ? "yes" : "none");
+  if (!seen.columns.empty()) {
+    std::string names;
+    for (const std::string& name : seen.columns) {
+      names += (names.empty() ? "" : ", ") + name;
+    }
+    fmt::print("more columns {}\n", names);
+  }
+}
+
+/// Of the scans, in percent, how many lie between the first and the last pose of the ground truth.
+double truth_coverage(const datasets::Dataset& dataset) {
+  const formats::Trajectory& truth = dataset.ground_truth();
+  std::size_t covered = 0;
+  for (std::size_t i = 0; i < dataset.size(); ++i) {
+    const Stamp stamp = dataset.stamp(i);
+    covered += !truth.empty() && truth.front().stamp <= stamp && stamp <= truth.back().stamp ? 1 : 0;
+  }
+  return dataset.size() == 0 ? 0.0 : 100.0 * static_cast<double>(covered) / static_cast<double>(dataset.size());
+}
+
+void print_diagnosis(const doctor::Diagnosis& diagnosis) {
+  fmt::print("diagnosis    of {} scans\n", diagnosis.scans_looked_at);
+  for (const doctor::Finding& finding : diagnosis.findings) {
+    fmt::print("  {:<15} {:<11} {}\n", doctor::to_string(finding.question), doctor::to_string(finding.verdict),
+               finding.sentence);
+    if (!finding.fix.empty()) {
+      fmt::print("  {:<15} {:<11} mend it with {}\n", "", "", finding.fix);
+    }
+  }
+}
+
+Json diagnosis_json(const doctor::Diagnosis& diagnosis) {
+  Json list = Json::array();
+  for (const doctor::Finding& finding : diagnosis.findings) {
+    Json evidence = Json::object();
+    for (const auto& [name, value] : finding.evidence) {
+      evidence[name] = value;  // what is not finite becomes null
+    }
+    list.push_back({{"question", doctor::to_string(finding.question)},
+                    {"verdict", doctor::to_string(finding.verdict)},
+                    {"sentence", finding.sentence},
+                    {"fix", finding.fix.empty() ? Json(nullptr) : Json(finding.fix)},
+                    {"evidence", evidence}});
+  }
+  return list;
+}
+
+void print_json(const InfoOptions& options, const datasets::Dataset& dataset, const PointsSeen& seen,
+                const doctor::Diagnosis& diagnosis) {
+  Json json = {{"input", options.input}, {"format", dataset.format()}, {"scans", dataset.size()}};
+  if (dataset.size() > 0) {
+    json["first_timestamp"] = format_seconds(dataset.stamp(0));
+    json["last_timestamp"] = format_seconds(dataset.stamp(dataset.size() - 1));
+    json["points_median"] = seen.sizes[seen.sizes.size() / 2];
+    json["point_times"] = seen.times;
+  }
+  json["columns"] = seen.columns;
+  json["ground_truth"] = nullptr;
+  if (!dataset.ground_truth().empty()) {
+    json["ground_truth"] = {{"path", dataset.ground_truth_file().string()},
+                            {"poses", dataset.ground_truth().size()},
+                            {"coverage_percent", truth_coverage(dataset)}};
+  }
+  json["diagnosis"] = diagnosis_json(diagnosis);
+  json["assumptions"] = dataset.assumptions();
+  json["warnings"] = seen.warnings;
+  fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
 int info(const InfoOptions& options) {
-  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_dataset(options.input, {.format = options.format});
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
+  const PointsSeen seen = look_at_points(*dataset);
+  const doctor::Diagnosis diagnosis = doctor::diagnose(*dataset, {}, Workers());
+  if (options.json) {
+    print_json(options, *dataset, seen, diagnosis);
+    return 0;
+  }
   fmt::print("input        {}\n", options.input);
   fmt::print("format       {}\n", dataset->format());
   fmt::print("scans        {}\n", dataset->size());
   print_time(*dataset);
-  print_points(*dataset);
+  print_points(seen);
   if (dataset->ground_truth().empty()) {
     fmt::print("ground truth none\n");
   } else {
-    fmt::print("ground truth {} ({} poses)\n", dataset->ground_truth_file().string(), dataset->ground_truth().size());
+    fmt::print("ground truth {} ({} poses, {:.0f} % of the scans)\n", dataset->ground_truth_file().string(),
+               dataset->ground_truth().size(), truth_coverage(*dataset));
   }
-  const DopplerCheck check = check_doppler(*dataset, Workers());
-  fmt::print("Doppler kind {}\n", check.verdict);
-  if (check.scans > 0) {
-    fmt::print("             static scene: {:.1f} % of the points within 0.5 m/s, median residual {:.3f} m/s\n",
-               100.0 * check.inlier_share, check.median_residual_mps);
-  }
+  print_diagnosis(diagnosis);
   for (const std::string& assumption : dataset->assumptions()) {
     fmt::print("assumed      {}\n", assumption);
   }
@@ -122,13 +228,10 @@ int info(const InfoOptions& options) {
 void add_info_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand(
-      "info", "What the program sees in a recording: layout, scans, times, ranges, sign of the Doppler");
+      "info", "What the program sees in a recording: layout, scans, times, ranges, and what is wrong with its numbers");
   command->add_option("INPUT", options->input, "Folder of the recording")->required();
-  command
-      ->add_option(
-          "--format", options->format,
-          fmt::format("Layout of the recording: auto, {} (default auto)", fmt::join(datasets::known_formats(), ", ")))
-      ->type_name("NAME");
+  add_input_options(*command, options->settings);
+  command->add_flag("--json", options->json, "Print it as JSON, with the numbers that the answers rest on");
   command->callback([options, &selected] { selected = [options] { return info(*options); }; });
 }
 

@@ -1,0 +1,117 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/doctor/column_scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "dynamic_icp/datasets/correction.hpp"
+#include "dynamic_icp/doctor/scan_look.hpp"
+#include "dynamic_icp/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/ego_motion/velocity_filter.hpp"
+
+namespace dynamic_icp::doctor {
+namespace {
+
+constexpr std::size_t kMostPoints = 6000;
+constexpr double kFarthest_m = 1000.0;
+constexpr double kNearest_m = 0.5;
+constexpr double kFastest_mps = 150.0;
+constexpr double kFastestInCentimetres = 3000.0;
+constexpr double kMostShare = 0.95;
+
+// A column is called the Doppler only where it is explained this well, and the one in its place this much worse.
+constexpr double kGoodResidual_mps = 0.15;
+constexpr double kTimesWorse = 3.0;
+
+/// Points evenly over the scan: a few thousand tell.
+RawScan thinned(const RawScan& scan) {
+  RawScan few;
+  few.stamp = scan.stamp;
+  const std::size_t step = scan.points.size() / kMostPoints + 1;
+  for (std::size_t i = 0; i < scan.points.size(); i += step) {
+    few.points.push_back(scan.points[i]);
+    few.doppler.push_back(scan.doppler[i]);
+  }
+  return few;
+}
+
+double median_residual(const RawScan& raw, const Workers& workers) {
+  const Scan scan = Scan::from_raw(raw);
+  ego_motion::ConsensusRegressionConfig config;
+  config.estimate_bias = false;
+  const ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, config, workers);
+  std::vector<double> residuals = ego_motion::compensated_doppler(scan, ego.velocity_sensor);
+  for (double& residual : residuals) {
+    residual = std::abs(residual);
+  }
+  return quantile(std::move(residuals), 0.5);
+}
+
+}  // namespace
+
+UnitGuess guess_units(std::span<const RawScan> scans) {
+  std::vector<double> far;
+  std::vector<double> fast;
+  for (const RawScan& raw : scans) {
+    const Scan scan = Scan::from_raw(thinned(raw));
+    std::vector<double> ranges;
+    std::vector<double> speeds;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      ranges.push_back(scan.points()[i].norm());
+      speeds.push_back(std::abs(scan.doppler()[i]));
+    }
+    if (!ranges.empty()) {
+      far.push_back(quantile(std::move(ranges), kMostShare));
+      fast.push_back(quantile(std::move(speeds), kMostShare));
+    }
+  }
+  UnitGuess units;
+  const double farthest = quantile(std::move(far), 0.5);
+  const double fastest = quantile(std::move(fast), 0.5);
+  if (farthest > kFarthest_m) {
+    units.points = 0.001;
+  } else if (farthest > 0.0 && farthest < kNearest_m) {
+    units.points = 1000.0;
+  }
+  if (fastest > kFastest_mps) {
+    units.doppler = fastest > kFastestInCentimetres ? 0.001 : 0.01;
+  }
+  return units;
+}
+
+ColumnScores score_columns(std::span<const RawScan> scans, const Workers& workers) {
+  ColumnScores scores;
+  for (int column = 0; column < 4; ++column) {
+    std::vector<double> residuals;
+    for (const RawScan& scan : scans) {
+      const RawScan few = prepared(thinned(scan), column, {});
+      // Each order of columns has its own guess: what is taken for the Doppler may be millimetres.
+      const UnitGuess units = guess_units(std::span(&few, 1));
+      residuals.push_back(median_residual(prepared(few, 3, units), workers));
+    }
+    scores.residual.at(static_cast<std::size_t>(column)) = quantile(std::move(residuals), 0.5);
+  }
+  const auto best = std::min_element(scores.residual.begin(), scores.residual.end());
+  if (*best < kGoodResidual_mps && scores.residual[3] > kTimesWorse * *best) {
+    scores.doppler = static_cast<int>(best - scores.residual.begin());
+  }
+  return scores;
+}
+
+std::array<int, 4> with_doppler_last(int doppler) {
+  std::array<int, 4> order = {0, 1, 2, 3};
+  std::stable_partition(order.begin(), order.end(), [&](int column) { return column != doppler; });
+  return order;
+}
+
+RawScan prepared(RawScan scan, int doppler, const UnitGuess& units) {
+  datasets::Correction correction;
+  correction.columns = with_doppler_last(doppler);
+  correction.point_scale = units.points;
+  correction.doppler_scale = units.doppler;
+  return datasets::corrected(std::move(scan), correction);
+}
+
+}  // namespace dynamic_icp::doctor

@@ -1,0 +1,123 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dynamic_icp/doctor/questions.hpp"
+
+namespace dynamic_icp::doctor {
+namespace {
+
+constexpr double kClearlyFlat = 0.5;  // spread of the flat axis over that of the z axis
+constexpr double kFlat = 0.35;
+constexpr double kLooksAhead = 0.4;  // length of the mean line of sight
+constexpr double kAlongAxis = 0.9;   // cosine
+constexpr double kMoving_mps = 1.0;
+
+struct View {
+  Eigen::Vector3d spread = Eigen::Vector3d::Zero();
+  Eigen::Vector3d looks = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moves = Eigen::Vector3d::Zero();
+};
+
+/// Means over the looks, with the remaining columns as x, y, z in their order.
+View mean_view(const Evidence& evidence) {
+  View view;
+  const double count = std::max(1.0, static_cast<double>(evidence.looks.size()));
+  for (const ScanLook& look : evidence.looks) {
+    view.spread += look.look_spread / count;
+    view.looks += look.look_direction / count;
+    if (look.has_velocity()) {
+      view.moves += look.ego.velocity_sensor / count;
+    }
+  }
+  return view;
+}
+
+/// The axis that is up: z, but where another one is clearly flatter than z.
+int up_axis(const View& view) {
+  int flattest = 2;
+  view.spread.minCoeff(&flattest);
+  const bool is_clear = view.spread[flattest] < kFlat && view.spread[flattest] < kClearlyFlat * view.spread[2];
+  return is_clear ? flattest : 2;
+}
+
+/// The axis along which the sensor both looks and moves; nothing where there is none.
+std::optional<int> forward_axis(const View& view, int up) {
+  if (view.looks.norm() < kLooksAhead || view.moves.norm() < kMoving_mps) {
+    return std::nullopt;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis != up && std::abs(view.looks.normalized()[axis]) > kAlongAxis &&
+        std::abs(view.moves.normalized()[axis]) > kAlongAxis) {
+      return axis;
+    }
+  }
+  return std::nullopt;
+}
+
+std::string stored_order(const Evidence& evidence, int up, std::optional<int> forward) {
+  std::array<std::string_view, 3> names = {"", "", ""};
+  names.at(static_cast<std::size_t>(up)) = "z";
+  if (forward) {
+    names.at(static_cast<std::size_t>(*forward)) = "x";
+  }
+  for (std::string_view& name : names) {
+    if (name.empty()) {
+      const bool has_x = std::find(names.begin(), names.end(), "x") != names.end();
+      name = has_x ? "y" : "x";
+    }
+  }
+  const std::array<int, 4> order = with_doppler_last(evidence.columns.doppler);
+  std::array<std::string_view, 4> stored;
+  for (std::size_t k = 0; k < 3; ++k) {
+    stored.at(static_cast<std::size_t>(order[k])) = names[k];
+  }
+  stored.at(static_cast<std::size_t>(order[3])) = "doppler";
+  return fmt::format("{}", fmt::join(stored, ","));
+}
+
+}  // namespace
+
+Finding columns(const Evidence& evidence) {
+  Finding finding{Question::kColumns, Verdict::kOk, ""};
+  const View view = mean_view(evidence);
+  const int up = up_axis(view);
+  const std::optional<int> forward = forward_axis(view, up);
+  const ColumnScores& scores = evidence.columns;
+  finding.evidence = {{"residual_as_stored_mps", scores.residual[3]},
+                      {"least_residual_mps", *std::min_element(scores.residual.begin(), scores.residual.end())},
+                      {"spread_x", view.spread.x()},
+                      {"spread_y", view.spread.y()},
+                      {"spread_z", view.spread.z()}};
+  const std::string order = stored_order(evidence, up, forward);
+  if (evidence.looks.empty()) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = "there are no scans";
+  } else if (scores.doppler != 3) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = fmt::format(
+        "column {} is the Doppler: a velocity explains it to {:.2f} m/s, the last column only to {:.2f}",
+        scores.doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.doppler)), scores.residual[3]);
+    finding.fix = "--columns " + order;
+  } else if (up != 2) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence =
+        fmt::format("column {} is up and down: the sensor sees least along it; or the sensor lies on its side", up + 1);
+    finding.fix = "--columns " + order;
+  } else if (forward && *forward == 1) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence =
+        "the sensor looks and moves along y: x and y may have changed places, or the axes are not x ahead, y left";
+    finding.fix = "--columns " + order;
+  } else {
+    finding.sentence = "x, y, z, Doppler";
+  }
+  return finding;
+}
+
+}  // namespace dynamic_icp::doctor

@@ -1,0 +1,73 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/doctor/comparison_text.hpp"
+#include "dynamic_icp/doctor/questions.hpp"
+
+namespace dynamic_icp::doctor {
+namespace {
+
+constexpr double kStill_mps = 0.5;
+constexpr double kMoves_mps = 1.0;
+constexpr double kShareLeft = 0.25;
+
+bool expects_compensated(const Evidence& evidence) {
+  return evidence.dataset->doppler_kind() == DopplerKind::kCompensated;
+}
+
+Finding relative(const Evidence& evidence, double speed) {
+  Finding finding{Question::kDopplerKind, Verdict::kOk, ""};
+  finding.sentence = fmt::format("relative: the static scene moves by {:.1f} m/s", speed);
+  if (expects_compensated(evidence)) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence += ", but the Doppler is said to be compensated";
+    finding.fix = "--doppler-kind relative";
+  }
+  return finding;
+}
+
+Finding compensated(const Evidence& evidence, const Comparison& reference) {
+  Finding finding{Question::kDopplerKind, Verdict::kOk, ""};
+  finding.sentence = fmt::format("compensated: the static scene stands still while the sensor moves at {:.1f} m/s {}",
+                                 reference.reference_speed_mps, reference_name(evidence, reference));
+  if (!expects_compensated(evidence)) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence += "; its own motion was taken out of the Doppler already";
+    finding.fix = "--doppler-kind compensated";
+  }
+  return finding;
+}
+
+/// Whether the Doppler is a column of zeros.
+bool has_no_doppler(const Evidence& evidence) {
+  return std::all_of(evidence.looks.begin(), evidence.looks.end(),
+                     [](const ScanLook& look) { return look.fast_mps == 0.0; });
+}
+
+}  // namespace
+
+Finding doppler_kind(const Evidence& evidence) {
+  const double speed = evidence.doppler_speed_mps().value_or(0.0);
+  const Comparison* reference = evidence.reference();
+  Finding finding{Question::kDopplerKind, Verdict::kCannotTell, ""};
+  if (has_no_doppler(evidence)) {
+    finding.sentence = "there is no Doppler: nearly all values are zero";
+  } else if (speed > kMoves_mps) {
+    finding = relative(evidence, speed);
+  } else if (reference != nullptr && speed < kStill_mps && speed < kShareLeft * reference->reference_speed_mps) {
+    finding = compensated(evidence, *reference);
+  } else {
+    finding.sentence = fmt::format("{} is assumed: {}", expects_compensated(evidence) ? "compensated" : "relative",
+                                   why_unknown(evidence));
+  }
+  finding.evidence = {{"doppler_speed_mps", speed}};
+  if (reference != nullptr) {
+    finding.evidence.emplace_back("reference_speed_mps", reference->reference_speed_mps);
+  }
+  return finding;
+}
+
+}  // namespace dynamic_icp::doctor

@@ -1,0 +1,59 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/doctor/questions.hpp"
+
+namespace dynamic_icp::doctor {
+namespace {
+
+constexpr double kNearPower = 0.15;
+
+/// How much farther the sensor moves by the points than by what knows metres: truth, else the Doppler.
+std::optional<double> scale_by_motion(const Evidence& evidence) {
+  const Comparison& matching = evidence.matching;
+  if (!matching.tells()) {
+    return std::nullopt;
+  }
+  if (evidence.truth.tells() && evidence.truth.reference_speed_mps > 0.0) {
+    return matching.reference_speed_mps / evidence.truth.reference_speed_mps;
+  }
+  return matching.doppler_speed_mps > 1.0 ? std::optional(1.0 / std::abs(matching.ratio)) : std::nullopt;
+}
+
+}  // namespace
+
+Finding point_units(const Evidence& evidence) {
+  Finding finding{Question::kPointUnits, Verdict::kOk, ""};
+  std::vector<double> far;
+  for (const ScanLook& look : evidence.looks) {
+    far.push_back(look.far_m / evidence.units.points);
+  }
+  const double as_stored = quantile(std::move(far), 0.5);
+  finding.evidence = {{"distance_95_percent", as_stored}};
+  if (!(as_stored > 0.0)) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = "there are no points";
+    return finding;
+  }
+  double factor = evidence.units.points;
+  if (const std::optional<double> scale = scale_by_motion(evidence); scale && *scale > 0.0) {
+    finding.evidence.emplace_back("way_by_points_over_way", *scale / evidence.units.points);
+    const double power = std::round(std::log10(*scale));
+    if (power != 0.0 && std::abs(std::log10(*scale) - power) < kNearPower) {
+      factor /= std::pow(10.0, power);
+    }
+  }
+  if (factor != 1.0) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = fmt::format("95 % of the points are nearer than {:.4g}: these are not metres", as_stored);
+    finding.fix = fmt::format("--point-scale {:g}", factor);
+  } else {
+    finding.sentence = fmt::format("m: 95 % of the points are nearer than {:.1f} m", as_stored);
+  }
+  return finding;
+}
+
+}  // namespace dynamic_icp::doctor

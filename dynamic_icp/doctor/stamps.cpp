@@ -1,0 +1,54 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/doctor/questions.hpp"
+
+namespace dynamic_icp::doctor {
+namespace {
+
+constexpr double kGapPeriods = 1.5;
+
+}  // namespace
+
+Finding stamps(const Evidence& evidence) {
+  Finding finding{Question::kStamps, Verdict::kOk, ""};
+  const datasets::Dataset& dataset = *evidence.dataset;
+  std::size_t gaps = 0;
+  std::size_t first_gap = 0;
+  double longest = 0.0;
+  std::size_t back = 0;
+  std::size_t first_back = 0;
+  for (std::size_t i = evidence.begin + 1; i < evidence.end; ++i) {
+    const double period = seconds_between(dataset.stamp(i - 1), dataset.stamp(i));
+    longest = std::max(longest, period);
+    if (period <= 0.0) {
+      first_back = back++ == 0 ? i : first_back;
+    } else if (period > kGapPeriods * evidence.period_s) {
+      first_gap = gaps++ == 0 ? i : first_gap;
+    }
+  }
+  finding.evidence = {{"period_s", evidence.period_s},
+                      {"longest_s", longest},
+                      {"gaps", static_cast<double>(gaps)},
+                      {"not_later", static_cast<double>(back)}};
+  if (evidence.end - evidence.begin < 2) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = "fewer than two scans";
+  } else if (back > 0) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence =
+        fmt::format("{} scans are not later than the one before, the first is scan {}", back, first_back);
+  } else if (gaps > 0) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence = fmt::format("{} gaps of more than {} periods, the first before scan {}, the longest {:.3f} s",
+                                   gaps, kGapPeriods, first_gap, longest);
+  } else {
+    finding.sentence = fmt::format("increasing, every {:.4f} s, without gaps", evidence.period_s);
+  }
+  return finding;
+}
+
+}  // namespace dynamic_icp::doctor

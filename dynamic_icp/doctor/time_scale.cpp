@@ -1,0 +1,37 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "dynamic_icp/doctor/comparison_text.hpp"
+#include "dynamic_icp/doctor/questions.hpp"
+#include "dynamic_icp/doctor/speed_ratio.hpp"
+
+namespace dynamic_icp::doctor {
+
+Finding time_scale(const Evidence& evidence) {
+  Finding finding{Question::kTimeScale, Verdict::kOk, ""};
+  const std::optional<SpeedRatio> speed = speed_ratio(evidence);
+  if (!speed) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = fmt::format(
+        "the stamps are taken as they are: {}",
+        evidence.reference() == nullptr ? why_unknown(evidence) : "the Doppler shows no motion of the sensor");
+    return finding;
+  }
+  finding.evidence = comparison_numbers(*speed->reference);
+  const std::string source = reference_name(evidence, *speed->reference);
+  const double ratio = speed->ratio / speed->unit_factor;
+  if (speed->is_one || !speed->unit.empty()) {
+    finding.sentence = fmt::format("the Doppler gives {:.3f} times the speed {}", ratio, source);
+  } else {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = fmt::format(
+        "the Doppler gives {:.2f} times the speed {} (+- {:.2f}): the stamps run {:.2f} times as fast as time, or a "
+        "unit is not what it seems",
+        ratio, source, speed->reference->ratio_error, ratio);
+    finding.fix = fmt::format("--time-scale {:.4g}", 1.0 / ratio);
+  }
+  return finding;
+}
+
+}  // namespace dynamic_icp::doctor
