@@ -17,6 +17,7 @@
 #include "dynamic_icp/benchmark/cell_plan.hpp"
 #include "dynamic_icp/benchmark/cell_queue.hpp"
 #include "dynamic_icp/benchmark/machine.hpp"
+#include "dynamic_icp/benchmark/manifest.hpp"
 #include "dynamic_icp/benchmark/sequences.hpp"
 #include "dynamic_icp/benchmark/tables.hpp"
 #include "dynamic_icp/benchmark/variants.hpp"
@@ -39,6 +40,8 @@ constexpr const char* kResultsName = "results.json";
 
 struct BenchmarkOptions {
   std::vector<std::string> inputs;
+  std::string manifest;
+  std::string root;
   std::string output;
   std::string tables;
   std::string methods = "all";
@@ -143,12 +146,22 @@ std::size_t run_plans(const BenchmarkOptions& options, const benchmark::Benchmar
       std::count_if(cells.begin(), cells.end(), [](const auto& cell) { return !cell || !cell->finished; }));
 }
 
+/// The recordings of the command line or of a manifest, whose settings the runs are to have.
+benchmark::Sequences open_recordings(BenchmarkOptions& options) {
+  if (options.manifest.empty()) {
+    return benchmark::open_sequences(options.inputs, options.run.input, options.output);
+  }
+  const benchmark::Manifest manifest = benchmark::read_manifest(options.manifest);
+  benchmark::apply(manifest, options.run.input);
+  return benchmark::open_manifest(manifest, options.root, options.run.input, options.output);
+}
+
 int run_benchmark(BenchmarkOptions options) {
   if (!options.run.config_file.empty()) {
     options.run.config_file = fs::absolute(options.run.config_file).string();
   }
   const std::vector<Candidate> rivals = choose_candidates(options.methods, options.ablations, options.run);
-  const benchmark::Sequences opened = benchmark::open_sequences(options.inputs, options.run.input, options.output);
+  const benchmark::Sequences opened = open_recordings(options);
   for (const std::string& reason : opened.skipped) {
     fmt::print(stderr, "dynamic-icp: warning: left out: {}\n", reason);
   }
@@ -172,8 +185,12 @@ int run_benchmark(BenchmarkOptions options) {
 
 int run(const BenchmarkOptions& options) {
   const bool tables_only = !options.tables.empty();
-  if (tables_only != options.inputs.empty() || tables_only != options.output.empty()) {
-    throw UsageError("expected INPUT... with --output DIR, or --tables DIR alone");
+  const bool from_manifest = !options.manifest.empty();
+  const int sources = (tables_only ? 1 : 0) + (from_manifest ? 1 : 0) + (options.inputs.empty() ? 0 : 1);
+  if (sources != 1 || tables_only != options.output.empty() || from_manifest == options.root.empty()) {
+    throw UsageError(
+        "expected INPUT... with --output DIR, or --manifest FILE with --root DIR and --output DIR, or --tables DIR "
+        "alone");
   }
   if (tables_only) {
     if (!fs::exists(fs::path(options.tables) / kResultsName)) {
@@ -207,6 +224,12 @@ void add_benchmark_command(CLI::App& app, std::function<int()>& selected) {
   command
       ->add_option("--output", options->output, "Folder for runs, results.json and tables; new, or that of a benchmark")
       ->type_name("DIR");
+  command
+      ->add_option("--manifest", options->manifest,
+                   "Take the recordings that this list names (manifests/paper-*.yaml: those of the paper), as many of "
+                   "them as lie below --root")
+      ->type_name("FILE");
+  command->add_option("--root", options->root, "Folder of the data set, for --manifest")->type_name("DIR");
   command
       ->add_option("--tables", options->tables, "Only make the tables of this benchmark again, from its results.json")
       ->type_name("DIR");

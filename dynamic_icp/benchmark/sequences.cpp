@@ -89,21 +89,6 @@ fs::path object_truth_of(const fs::path& path, const datasets::Dataset& dataset)
   return {};
 }
 
-Sequence open_sequence(const fs::path& path, const datasets::InputSettings& settings, const fs::path& output) {
-  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(path, settings);
-  if (dataset->size() == 0) {
-    throw DataError(fmt::format("{}: holds no scans", path.string()));
-  }
-  Sequence sequence;
-  sequence.path = path;
-  sequence.scans = dataset->size();
-  sequence.first_stamp = dataset->stamp(0);
-  sequence.last_stamp = dataset->stamp(dataset->size() - 1);
-  sequence.content = content_checksum(path, output);
-  sequence.object_truth = object_truth_of(path, *dataset);
-  return sequence;
-}
-
 std::vector<fs::path> visible_folders(const fs::path& path) {
   std::vector<fs::path> folders;
   std::error_code fault;
@@ -164,6 +149,21 @@ void label_sequences(std::vector<Sequence>& sequences) {
 }
 
 }  // namespace
+
+Sequence open_sequence(const fs::path& path, const datasets::InputSettings& settings, const fs::path& output) {
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(path, settings);
+  if (dataset->size() == 0) {
+    throw DataError(fmt::format("{}: holds no scans", path.string()));
+  }
+  Sequence sequence;
+  sequence.path = path;
+  sequence.scans = dataset->size();
+  sequence.first_stamp = dataset->stamp(0);
+  sequence.last_stamp = dataset->stamp(dataset->size() - 1);
+  sequence.content = content_checksum(path, output);
+  sequence.object_truth = object_truth_of(path, *dataset);
+  return sequence;
+}
 
 Sequences open_sequences(const std::vector<std::string>& inputs, const datasets::InputSettings& settings,
                          const fs::path& output) {

@@ -28,6 +28,10 @@ struct Sequences {
   std::vector<std::string> skipped;  ///< folders beside recordings that are none, with the reason
 };
 
+/// Opens one recording, without a label. Throws as `open_input` does, and DataError when it holds no scans.
+Sequence open_sequence(const std::filesystem::path& path, const datasets::InputSettings& settings,
+                       const std::filesystem::path& output);
+
 /// Opens the inputs. A folder that is no recording but whose direct sub-folders are counts as all of these, sorted by
 /// name. Two recordings of the same name get the name of their folder in front, or a number behind. Files in `output`
 /// do not count as part of a recording. Throws DataError for an input that is no recording and holds none; UsageError

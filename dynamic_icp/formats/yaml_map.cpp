@@ -243,6 +243,22 @@ std::vector<double> YamlMap::numbers(std::string_view key, std::size_t count, Li
   return has(key) ? numbers(key, count, limits) : fallback;
 }
 
+std::vector<std::string> YamlMap::texts(std::string_view key) const {
+  const std::string expected = "a list of texts";
+  const Entry& entry = at(key, expected);
+  if (!entry.value.IsSequence() || entry.value.size() == 0) {
+    contents_->refuse(entry, entry.value, expected);
+  }
+  std::vector<std::string> texts;
+  for (const YAML::Node& node : entry.value) {
+    if (!node.IsScalar() || node.Scalar().empty()) {
+      contents_->refuse(entry, node, expected);
+    }
+    texts.push_back(node.Scalar());
+  }
+  return texts;
+}
+
 std::vector<std::vector<double>> YamlMap::rows(std::string_view key, std::size_t columns, Limits limits) const {
   const std::string expected =
       columns == 0 ? "a list of equally long lists of numbers" : fmt::format("a list of lists of {} numbers", columns);

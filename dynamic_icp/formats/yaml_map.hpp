@@ -58,6 +58,9 @@ class YamlMap {
   /// A list of at least one list of `columns` numbers each; with `columns` 0 each is as long as the first.
   [[nodiscard]] std::vector<std::vector<double>> rows(std::string_view key, std::size_t columns, Limits limits) const;
 
+  /// A list of at least one text, none of them empty.
+  [[nodiscard]] std::vector<std::string> texts(std::string_view key) const;
+
   // Maps in this map, in the order of the file.
 
   [[nodiscard]] YamlMap map(std::string_view key) const;                ///< the key must be there

@@ -74,6 +74,14 @@ TEST(YamlMap, TextsMayHaveEveryCharacter) {
   }
 }
 
+TEST(YamlMap, ReadsTexts) {
+  const YamlMap map = YamlMap::parse("a: [one, 2, 'three four']\nb: []\nc: [x, [y]]\nd: x\n", "f.yaml");
+  EXPECT_EQ(map.texts("a"), (std::vector<std::string>{"one", "2", "three four"}));
+  for (const char* key : {"b", "c", "d", "e"}) {
+    EXPECT_THROW(static_cast<void>(map.texts(key)), UsageError) << key;
+  }
+}
+
 TEST(YamlMap, ReadsRows) {
   const YamlMap map = parse("profile:\n- [1, 2]\n- [3, 4]\n- [5, 6]\n");
   const std::vector<std::vector<double>> expected = {{1.0, 2.0}, {3.0, 4.0}, {5.0, 6.0}};
