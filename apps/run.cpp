@@ -11,6 +11,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/base/version.hpp"
 #include "dynamic_icp/datasets/input_settings.hpp"
+#include "dynamic_icp/datasets/read_ahead.hpp"
 #include "dynamic_icp/formats/output_folder.hpp"
 #include "dynamic_icp/formats/tum.hpp"
 #include "dynamic_icp/odometry/odometry.hpp"
@@ -252,8 +253,9 @@ void print_summary(const results::RunSummary& summary, const Findings& findings,
 void process_scans(const datasets::Dataset& dataset, const Selection& selection, odometry::Odometry& odometry,
                    results::RunWriter& writer, Findings& findings) {
   Progress progress("odometry", selection.end - selection.begin, findings.warnings.quiet);
+  datasets::ReadAhead scans(dataset, selection.begin, selection.end);
   for (std::size_t i = selection.begin; i < selection.end; ++i) {
-    const RawScan scan = dataset.scan(i);
+    const RawScan scan = scans.next();
     if (!scan.warning.empty()) {
       findings.warnings.add(scan.warning);
     }

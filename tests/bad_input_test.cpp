@@ -252,7 +252,8 @@ TEST_F(BadInput, FullDisk) {
 TEST_F(BadInput, AKilledRunLeavesNoResultAndTheNextOneCleansUp) {
   const std::string out = (folder_ / "out").string();
   const Outcome killed =
-      run_shell("timeout -s KILL 0.15 '" DYNAMIC_ICP_PROGRAM "' run --quiet " + street().string() + " --output " + out);
+      run_shell("timeout -s KILL 0.1 '" DYNAMIC_ICP_PROGRAM "' run --quiet --threads 1 --preset paper " +
+                street().string() + " --output " + out);
   if (killed.status == kDone) {
     GTEST_SKIP() << "the run was faster than the kill";
   }

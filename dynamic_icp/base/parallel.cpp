@@ -19,7 +19,8 @@ namespace {
 // The loops of one scan follow each other within microseconds, and a thread that sleeps needs some tens of them to wake
 // up: a helper looks around for the next loop for a while before it sleeps.
 constexpr std::chrono::microseconds kLookingTime{100};
-constexpr int kLooksPerClock = 64;  // reading the clock takes longer than a look
+constexpr std::size_t kDeepest = 64;  // loops in loops and of several callers; more of them are only slower
+constexpr int kLooksPerClock = 64;    // reading the clock takes longer than a look
 
 /// Tells the processor that this thread waits in a loop.
 void relax() {
@@ -32,9 +33,6 @@ void relax() {
 
 int machine_threads() { return std::max(1, static_cast<int>(std::thread::hardware_concurrency())); }
 
-/// Set while this thread works on a loop: a loop inside a loop runs on the thread that meets it.
-thread_local bool inside_loop = false;
-
 }  // namespace
 
 // Threads of our own instead of a task library: all that is needed is "take the next block", and every
@@ -42,6 +40,7 @@ thread_local bool inside_loop = false;
 class Workers::Pool {
  public:
   explicit Pool(int threads) : may_look_(threads <= machine_threads()) {
+    open_.reserve(kDeepest);
     for (int i = 1; i < threads; ++i) {
       helpers_.emplace_back([this] { help(); });
     }
@@ -51,9 +50,9 @@ class Workers::Pool {
     {
       const std::lock_guard lock(mutex_);
       stopping_ = true;
-      ++generation_;
+      ++opened_;
     }
-    wake_.notify_all();
+    changed_.notify_all();
     for (std::thread& helper : helpers_) {
       helper.join();
     }
@@ -65,29 +64,16 @@ class Workers::Pool {
   [[nodiscard]] int threads() const { return static_cast<int>(helpers_.size()) + 1; }
 
   void run(std::size_t blocks, const BlockCall& call) {
-    if (blocks <= 1 || helpers_.empty() || inside_loop) {
+    if (blocks <= 1 || helpers_.empty()) {
       for (std::size_t block = 0; block < blocks; ++block) {
         call.call(call.callable, block);
       }
       return;
     }
-    const std::lock_guard one_loop_at_a_time(caller_mutex_);
-    Loop loop{call, blocks};
-    {
-      const std::lock_guard lock(mutex_);
-      loop_ = &loop;
-      ++generation_;
-    }
-    if (sleeping_ > 0) {
-      wake_.notify_all();
-    }
-    work_on(loop);
-    {
-      // Nobody joins from here on: who still slept is not waited for.
-      const std::lock_guard lock(mutex_);
-      loop_ = nullptr;
-    }
-    wait_for_helpers();
+    Loop loop{.call = call, .blocks = blocks};
+    open(loop);
+    loop.work();
+    finish(loop);
     if (loop.fault) {
       std::rethrow_exception(loop.fault);
     }
@@ -98,7 +84,9 @@ class Workers::Pool {
   struct Loop {
     BlockCall call;
     std::size_t blocks = 0;
+    std::size_t number = 0;  ///< in the order of opening
     std::atomic<std::size_t> next{0};
+    std::atomic<std::size_t> active{0};  ///< helpers at work on it
     std::mutex fault_mutex = {};
     std::exception_ptr fault = {};
 
@@ -117,12 +105,6 @@ class Workers::Pool {
     }
   };
 
-  static void work_on(Loop& loop) {
-    inside_loop = true;
-    loop.work();
-    inside_loop = false;
-  }
-
   /// Looks whether something has come true until it has, or for long enough; not where that would take the processor
   /// from the thread that is waited for.
   template <class Condition>
@@ -138,49 +120,83 @@ class Workers::Pool {
     }
   }
 
-  void wait_for_helpers() {
-    look_for([this] { return active_ == 0; });
-    if (active_ == 0) {
-      return;
+  /// Lets others join a loop.
+  void open(Loop& loop) {
+    {
+      const std::lock_guard lock(mutex_);
+      loop.number = ++opened_;
+      open_.push_back(&loop);
     }
+    if (sleeping_ > 0) {
+      changed_.notify_all();
+    }
+  }
+
+  /// Closes a loop, whose blocks are all taken, and waits for those who still work on one. The time is used to help
+  /// with what they have opened meanwhile.
+  void finish(Loop& loop) {
     std::unique_lock lock(mutex_);
-    done_.wait(lock, [this] { return active_ == 0; });
+    std::erase(open_, &loop);  // nobody joins from here on: who still slept is not waited for
+    while (loop.active > 0) {
+      if (join(lock, loop.number)) {
+        continue;
+      }
+      const std::size_t seen = opened_;
+      lock.unlock();
+      const auto is_news = [&] { return loop.active == 0 || opened_ != seen; };
+      look_for(is_news);
+      lock.lock();
+      sleep(lock, is_news);
+    }
   }
 
   void help() {
-    std::size_t seen = 0;
-    while (true) {
-      look_for([&] { return generation_ != seen; });
-      std::unique_lock lock(mutex_);
-      ++sleeping_;
-      wake_.wait(lock, [&] { return generation_ != seen; });
-      --sleeping_;
-      seen = generation_;
-      if (stopping_) {
-        return;
-      }
-      if (loop_ == nullptr) {
+    std::unique_lock lock(mutex_);
+    while (!stopping_) {
+      if (join(lock, 0)) {
         continue;
       }
-      Loop& loop = *loop_;
-      ++active_;
+      const std::size_t seen = opened_;
       lock.unlock();
-      work_on(loop);
+      const auto is_news = [&] { return opened_ != seen; };
+      look_for(is_news);
       lock.lock();
-      if (--active_ == 0) {
-        done_.notify_one();
-      }
+      sleep(lock, is_news);
     }
   }
 
+  template <class Condition>
+  void sleep(std::unique_lock<std::mutex>& lock, const Condition& until) {
+    ++sleeping_;
+    changed_.wait(lock, until);
+    --sleeping_;
+  }
+
+  /// Works on the loop opened last that has blocks left; false when there is none newer than `number`: who waits inside
+  /// a loop goes deeper, never out of it and in again. Called and left with the lock held.
+  bool join(std::unique_lock<std::mutex>& lock, std::size_t number) {
+    const auto found = std::find_if(open_.rbegin(), open_.rend(), [&](const Loop* loop) {
+      return loop->number > number && loop->next < loop->blocks;
+    });
+    if (found == open_.rend()) {
+      return false;
+    }
+    Loop& loop = **found;
+    ++loop.active;
+    lock.unlock();
+    loop.work();
+    lock.lock();
+    if (--loop.active == 0 && sleeping_ > 0) {
+      changed_.notify_all();
+    }
+    return true;
+  }
+
   const bool may_look_;
-  std::mutex caller_mutex_;
   std::mutex mutex_;  // guards all below; the atomic ones are also looked at without it
-  std::condition_variable wake_;
-  std::condition_variable done_;
-  Loop* loop_ = nullptr;
-  std::atomic<std::size_t> generation_{0};
-  std::atomic<std::size_t> active_{0};
+  std::condition_variable changed_;
+  std::vector<Loop*> open_;
+  std::atomic<std::size_t> opened_{0};  ///< counts, so that news are told from what is known
   std::atomic<std::size_t> sleeping_{0};
   bool stopping_ = false;
   std::vector<std::thread> helpers_;

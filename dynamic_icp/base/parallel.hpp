@@ -25,8 +25,8 @@ class Workers {
   [[nodiscard]] int threads() const;
 
   /// Calls body(block, begin, end) once for each block [begin, end) of `block_size` indices that covers [0, n); blocks
-  /// may run at the same time. The first exception thrown by a body is thrown again here. A loop started from inside a
-  /// body runs on the thread that starts it. Allocates nothing.
+  /// may run at the same time. The first exception thrown by a body is thrown again here. A body may start loops of its
+  /// own: who has nothing else to do takes part. Allocates nothing.
   template <class Body>
   void for_blocks(std::size_t n, std::size_t block_size, const Body& body) const {
     const auto run_block = [&](std::size_t block) {
@@ -61,8 +61,8 @@ class Workers {
     return zero;
   }
 
-  /// Runs two tasks, at the same time where there are two threads. Loops inside a task run on its thread alone: meant
-  /// for tasks that are mostly no loops.
+  /// Runs two tasks, at the same time where there are two threads. Who is done with one helps with the loops of the
+  /// other.
   template <class First, class Second>
   void both(const First& first, const Second& second) const {
     for_blocks(2, 1, [&](std::size_t task, std::size_t, std::size_t) {

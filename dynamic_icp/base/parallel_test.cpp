@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cmath>
+#include <mutex>
 #include <numeric>
+#include <set>
 #include <stdexcept>
 #include <thread>
 
@@ -65,6 +68,53 @@ TEST(Workers, LoopsInsideLoopsAndFromSeveralThreadsComplete) {
   nested();
   other.join();
   EXPECT_EQ(count, 2 * 20 * 10);
+}
+
+TEST(Workers, WhoIsDoneHelpsWithTheLoopsOfTheOtherTask) {
+  const Workers workers(2);
+  std::mutex mutex;
+  std::set<std::thread::id> threads;
+  workers.both([] {},
+               [&] {
+                 // Each block waits until both threads are in the loop: alone no thread gets through in time.
+                 const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(5);
+                 workers.for_each(2, 1, [&](std::size_t) {
+                   while (std::chrono::steady_clock::now() < end) {
+                     const std::lock_guard lock(mutex);
+                     threads.insert(std::this_thread::get_id());
+                     if (threads.size() == 2) {
+                       return;
+                     }
+                   }
+                 });
+               });
+  EXPECT_EQ(threads.size(), 2u);
+}
+
+TEST(Workers, DeepAndManyLoopsComplete) {
+  for (const int threads : {2, 3, 5}) {
+    const Workers workers(threads);
+    std::atomic<int> count = 0;
+    for (int round = 0; round < 50; ++round) {
+      workers.for_each(30, 1, [&](std::size_t) {
+        workers.both([&] { workers.for_each(4, 1, [&](std::size_t) { ++count; }); },
+                     [&] { workers.for_each(3, 1, [&](std::size_t) { ++count; }); });
+      });
+    }
+    EXPECT_EQ(count, 50 * 30 * 7) << threads;
+  }
+}
+
+TEST(Workers, ExceptionsOfInnerLoopsReachTheOuterCaller) {
+  const Workers workers(3);
+  const auto inner = [&](std::size_t i) {
+    workers.for_each(10, 1, [&](std::size_t k) {
+      if (i == 3 && k == 7) {
+        throw std::runtime_error("stop");
+      }
+    });
+  };
+  EXPECT_THROW(workers.for_each(8, 1, inner), std::runtime_error);
 }
 
 TEST(Workers, PassExceptionsOn) {

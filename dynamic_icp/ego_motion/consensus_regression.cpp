@@ -178,8 +178,9 @@ struct Choice {
 
 Choice choose_mode(const DopplerRows& rows, const EgoPrior& prior, const DopplerModel& model,
                    const ConsensusRegressionConfig& config, const Workers& workers) {
-  const Electorate few = elect(rows, kVotesOnHypotheses);
-  const Electorate many = elect(rows, kVotesOnModes);
+  Electorate few;
+  Electorate many;
+  workers.both([&] { few = elect(rows, kVotesOnHypotheses); }, [&] { many = elect(rows, kVotesOnModes); });
   const std::vector<VelocityMode> coarse = coarse_modes(few, prior, model, config, workers);
   // A wrong velocity turns differences of direction into noise, so the smallest estimate is the right one.
   Choice choice;
@@ -196,9 +197,10 @@ Choice choose_mode(const DopplerRows& rows, const EgoPrior& prior, const Doppler
   for (const std::vector<VelocityMode>& of_one : parts) {
     modes.insert(modes.end(), of_one.begin(), of_one.end());
   }
-  for (VelocityMode& mode : modes) {
+  workers.for_each(modes.size(), 1, [&](std::size_t k) {
+    VelocityMode& mode = modes[k];
     mode.votes = votes(many, mode.x, 3.0 * choice.noise_mps) * prior_factor(prior, model, mode.x, config.prior_weight);
-  }
+  });
   remove_duplicates(few.rows, config.tukey_cutoff * choice.noise_mps, modes);
   choice.x = modes.front().x;
   choice.support = modes.front().votes;

@@ -17,6 +17,7 @@ namespace dynamic_icp::odometry {
 namespace {
 
 constexpr std::size_t kVelocitySamples = 3;
+constexpr std::size_t kBlock = 4096;
 
 // Fewer agree with a map only by chance: of the points on its patches, and of all. A sparse radar meets few patches in
 // the map of one scan (2 % of its points agree), and fits those well.
@@ -344,9 +345,7 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
 std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
   std::vector<Eigen::Vector3d> points = registration::points_at_stamp(now.still, state_->sweep, workers_);
   std::vector<Eigen::Vector3d> in_map(points.size());
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    in_map[i] = state_->T_map_sensor * points[i];
-  }
+  workers_.for_each(points.size(), kBlock, [&](std::size_t i) { in_map[i] = state_->T_map_sensor * points[i]; });
   map_.add(in_map, state_->T_map_sensor.translation(), workers_);
   ++state_->scans_in_map;
   return points;
@@ -356,9 +355,8 @@ std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
 void MapOdometry::track_objects(Frame& frame) {
   Scan& scan = memory_.whole;
   const std::vector<std::uint8_t>& is_moving = memory_.is_moving;
-  for (std::size_t row = 0; row < scan.size(); ++row) {
-    frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0;
-  }
+  workers_.for_each(scan.size(), kBlock,
+                    [&](std::size_t row) { frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0; });
   std::vector<std::uint8_t> in_track(scan.size(), 0);
   if (config_.dynamics.predict) {
     scan = registration::undo_sweep(std::move(scan), state_->sweep, workers_);

@@ -15,6 +15,7 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kCellBlock = 128;
 constexpr double kWiderThanReach = 1.001;  // rounding must not put cells within reach two cubes apart
 
 void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& cell) {
@@ -23,6 +24,27 @@ void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& c
   cell.radial_mps += radial;
   cell.time_s += scan.has_times() ? scan.times()[row] : 0.0;
   ++cell.count;
+}
+
+/// The rows that move, ascending.
+std::vector<std::uint32_t> moving_rows(std::span<const std::uint8_t> is_moving, const Workers& workers) {
+  std::vector<std::uint32_t> end_of_block(Workers::block_count(is_moving.size(), kBlock));
+  workers.for_blocks(is_moving.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    end_of_block[block] = static_cast<std::uint32_t>(std::count_if(
+        is_moving.begin() + static_cast<std::ptrdiff_t>(begin), is_moving.begin() + static_cast<std::ptrdiff_t>(end),
+        [](std::uint8_t moving) { return moving != 0; }));
+  });
+  std::partial_sum(end_of_block.begin(), end_of_block.end(), end_of_block.begin());
+  std::vector<std::uint32_t> rows(end_of_block.empty() ? 0 : end_of_block.back());
+  workers.for_blocks(is_moving.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::uint32_t next = block == 0 ? 0 : end_of_block[block - 1];
+    for (std::size_t row = begin; row < end; ++row) {
+      if (is_moving[row] != 0) {
+        rows[next++] = static_cast<std::uint32_t>(row);
+      }
+    }
+  });
+  return rows;
 }
 
 /// From sums to means.
@@ -118,29 +140,38 @@ ConfigFields fields(GroupingConfig& config) {
 MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
                          const GroupingConfig& config, const Workers& workers) {
   MovingCells result;
-  for (std::uint32_t row = 0; row < scan.size(); ++row) {
-    if (is_moving[row] != 0) {
-      result.rows.push_back(row);
-    }
-  }
+  result.rows = moving_rows(is_moving, workers);
   const std::size_t n = result.rows.size();
   std::vector<std::uint64_t> keys(n);
   workers.for_each(n, kBlock, [&](std::size_t i) {
     keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
   });
   spatial::KeyNumbers numbers;
+  std::vector<std::uint32_t> first = {0};  // of each cell, among the points sorted by cell
   result.cell_of.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    const std::uint32_t cell = numbers.number_of(keys[i]);
-    if (cell == result.cells.size()) {
-      result.cells.emplace_back();
+    // Points that follow each other often share a cell.
+    const bool same = i > 0 && keys[i] == keys[i - 1];
+    const std::uint32_t cell = same ? result.cell_of[i - 1] : numbers.number_of(keys[i]);
+    if (cell + 1 == first.size()) {
+      first.push_back(0);
     }
     result.cell_of[i] = cell;
-    add_point(scan, result.rows[i], radial[result.rows[i]], result.cells[cell]);
+    ++first[cell + 1];
   }
-  for (MovingCell& cell : result.cells) {
-    take_means(cell);
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> rows_by_cell(n);
+  std::vector<std::uint32_t> filled(first.begin(), first.end() - 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    rows_by_cell[filled[result.cell_of[i]]++] = result.rows[i];
   }
+  result.cells.resize(filled.size());
+  workers.for_each(result.cells.size(), kCellBlock, [&](std::size_t cell) {
+    for (std::uint32_t k = first[cell]; k < first[cell + 1]; ++k) {
+      add_point(scan, rows_by_cell[k], radial[rows_by_cell[k]], result.cells[cell]);
+    }
+    take_means(result.cells[cell]);
+  });
   return result;
 }
 

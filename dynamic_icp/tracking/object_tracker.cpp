@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <utility>
 
@@ -79,19 +80,25 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   last_stamp_ = scan.stamp();
   T_world_last_ = T_world_sensor;
 
+  std::optional<RangeImage> view;
+  MovingCells moving;
+  std::vector<std::uint32_t> groups;
+  workers.both([&] { view.emplace(scan, workers); },
+               [&] {
+                 moving = gather_cells(scan, radial, is_moving, config_.grouping, workers);
+                 groups = group_cells(moving.cells, config_.grouping);
+               });
   TrackingInput input{scan,
                       radial,
                       is_moving,
                       sensor,
                       seconds_between(*first_stamp_, scan.stamp()),
                       sweep_duration(scan),
+                      std::move(moving),
+                      std::move(groups),
                       {},
                       {},
-                      {},
-                      {},
-                      RangeImage(scan, workers)};
-  input.moving = gather_cells(scan, radial, is_moving, config_.grouping, workers);
-  input.groups = group_cells(input.moving.cells, config_.grouping);
+                      std::move(*view)};
   place_cells(input);
   std::vector<Expectation> expected;
   for (Entry& entry : entries_) {
@@ -166,7 +173,8 @@ void ObjectTracker::adopt(const TrackingInput& input, std::span<const Expectatio
 }
 
 /// Adds to slow tracks the points in their boxes that are not among the moving ones but move as they do.
-void ObjectTracker::gather_still(const TrackingInput& input, std::span<const Expectation> expectations) {
+void ObjectTracker::gather_still(const TrackingInput& input, std::span<const Expectation> expectations,
+                                 const Workers& workers) {
   std::vector<std::size_t> slow;
   std::vector<Expectation> expected;
   for (std::size_t k = 0; k < entries_.size(); ++k) {
@@ -177,7 +185,7 @@ void ObjectTracker::gather_still(const TrackingInput& input, std::span<const Exp
   }
   std::vector<std::vector<std::uint32_t>> still(slow.size());
   std::vector<std::size_t> contradictions(slow.size(), 0);
-  visit_still_points(input, expected, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+  visit_still_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
     if (contradicts(expected[i].W.dot(direction), input.radial[row], config_)) {
       ++contradictions[i];
     } else if (expected[i].deviation(direction, input.radial[row]) < 1.0) {
@@ -208,7 +216,7 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
       entries_[static_cast<std::size_t>(k)].members.push_back(input.moving.rows[i]);
     }
   }
-  gather_still(input, expectations);
+  gather_still(input, expectations, workers);
   workers.for_each(entries_.size(), 1, [&](std::size_t k) {
     Entry& entry = entries_[k];
     ++entry.age;
@@ -275,7 +283,7 @@ void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std
   }
   // Where many points stand still, some that seem to move are errors of measurement.
   std::vector<std::size_t> contradictions(newborn.size(), 0);
-  visit_still_points(input, expectations, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+  visit_still_points(input, expectations, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
     contradictions[i] += contradicts(expectations[i].W.dot(direction), input.radial[row], config_) ? 1 : 0;
   });
   for (std::size_t i = 0; i < newborn.size(); ++i) {

@@ -55,7 +55,7 @@ class ObjectTracker {
              std::vector<std::int32_t>& owner) const;
   void collect_members(const TrackingInput& input, std::span<const Expectation> expectations,
                        const std::vector<std::int32_t>& owner, const Workers& workers);
-  void gather_still(const TrackingInput& input, std::span<const Expectation> expectations);
+  void gather_still(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers);
   void give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner, const Workers& workers);
   [[nodiscard]] bool is_credible(const Entry& entry) const;
   [[nodiscard]] bool are_one(const Entry& a, const Entry& b) const;

@@ -39,6 +39,6 @@ using StillVisitor = std::function<void(std::size_t expectation, std::uint32_t r
 /// Visits each point that is not among the moving ones in the box of each expectation, without the lowest part of the
 /// box, where the ground may be. In the order of the rows.
 void visit_still_points(const TrackingInput& input, std::span<const Expectation> expectations,
-                        const StillVisitor& visit);
+                        const Workers& workers, const StillVisitor& visit);
 
 }  // namespace dynamic_icp::tracking
