@@ -23,6 +23,7 @@
 #include "apps/input_options.hpp"
 #include "apps/method_options.hpp"
 #include "apps/progress.hpp"
+#include "apps/recording_check.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -274,6 +275,8 @@ int run(const RunOptions& options) {
   Findings findings{{{}, options.quiet}, {}, {}, make_map(options)};
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const Selection selection = select_scans(*dataset, options);
+  const std::vector<std::string> doubts =
+      check_recording(*dataset, options.settings, selection.begin, selection.end, options.method.threads);
   const bool own_truth = options.ground_truth.empty();
   const fs::path truth_file = own_truth ? dataset->ground_truth_file() : fs::path(options.ground_truth);
   const formats::Trajectory truth =
@@ -282,14 +285,17 @@ int run(const RunOptions& options) {
   const fs::path map_file =
       findings.map ? results::map_destination(*options.map_file, options.output, output.path()) : fs::path();
 
-  const std::unique_ptr<odometry::Odometry> odometry =
-      odometry::make_odometry(options.method.method, config, {dataset->T_vehicle_sensor()}, options.method.threads);
+  const std::unique_ptr<odometry::Odometry> odometry = odometry::make_odometry(
+      options.method.method, config, {dataset->T_vehicle_sensor(), dataset->doppler_kind()}, options.method.threads);
   findings.assumptions = dataset->assumptions();
   for (const std::string& assumption : odometry->assumptions()) {
     findings.assumptions.push_back(assumption);
   }
   for (const std::string& assumption : findings.assumptions) {
     findings.warnings.add(assumption);
+  }
+  for (const std::string& doubt : doubts) {
+    findings.warnings.add(doubt);
   }
   results::RunWriter writer(output.path(), options.save_labels);
   process_scans(*dataset, selection, *odometry, writer, findings);

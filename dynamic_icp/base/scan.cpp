@@ -68,6 +68,7 @@ void Scan::take_over(const RawScan& raw, const RangeLimits& limits, const Worker
   check_lengths(raw);
   const std::size_t n = raw.points.size();
   stamp_ = raw.stamp;
+  doppler_kind_ = raw.doppler_kind;
   resize(n, !raw.times.empty());
   // Each block fills the beginning of its own rows; gaps, which are rare, are closed afterwards.
   std::vector<Dropped> counts(Workers::block_count(n, kBlock));
@@ -139,6 +140,7 @@ void Scan::move_rows(std::size_t from, std::size_t to, std::size_t count) {
 Scan Scan::select(std::span<const std::uint32_t> rows) const {
   Scan result;
   result.stamp_ = stamp_;
+  result.doppler_kind_ = doppler_kind_;
   result.points_.reserve(rows.size());
   result.directions_.reserve(rows.size());
   result.doppler_.reserve(rows.size());

@@ -73,6 +73,7 @@ class Scan {
   [[nodiscard]] bool empty() const { return points_.empty(); }
   [[nodiscard]] bool has_times() const { return !times_.empty(); }
   [[nodiscard]] Stamp stamp() const { return stamp_; }
+  [[nodiscard]] DopplerKind doppler_kind() const { return doppler_kind_; }
 
   [[nodiscard]] const std::vector<Eigen::Vector3d>& points() const { return points_; }          ///< m, sensor frame
   [[nodiscard]] const std::vector<Eigen::Vector3d>& directions() const { return directions_; }  ///< unit, as measured
@@ -91,6 +92,7 @@ class Scan {
   void move_rows(std::size_t from, std::size_t to, std::size_t count);
 
   Stamp stamp_;
+  DopplerKind doppler_kind_ = DopplerKind::kRelative;
   std::vector<Eigen::Vector3d> points_;
   std::vector<Eigen::Vector3d> directions_;
   std::vector<double> doppler_;

@@ -11,6 +11,7 @@
 #include "dynamic_icp/preprocess/range_crop.hpp"
 #include "dynamic_icp/preprocess/voxel_grid.hpp"
 #include "dynamic_icp/registration/align.hpp"
+#include "dynamic_icp/registration/way_search.hpp"
 #include "dynamic_icp/spatial/kd_tree.hpp"
 
 namespace dynamic_icp::doctor {
@@ -18,19 +19,15 @@ namespace {
 
 constexpr double kTargetVoxel_m = 0.4;
 constexpr double kSourceVoxel_m = 0.8;
-constexpr std::size_t kCoarsePoints = 700;
 constexpr std::size_t kFinePoints = 4000;
 constexpr double kFarthest_m = 100.0;
 constexpr std::size_t kFewestPoints = 200;
 
 constexpr double kFastest_mps = 45.0;
-constexpr double kStartStep_m = 0.8;
+constexpr double kLeastReach_m = 4.5;
 constexpr double kMostReach_m = 6.0;
 
-// A fit is judged by the distances from planes, each counted up to the width.
-constexpr double kWidth_m = 0.2;
-constexpr double kReach_m = 1.0;
-constexpr double kWorstCost = 0.5;
+constexpr double kWorstCost = 0.5;  // misfit of the best way
 // Another way, this far from the best one, must fit worse by this share of what fits.
 constexpr double kOtherWay_m = 0.3;
 constexpr double kClearMargin = 0.06;
@@ -50,15 +47,6 @@ struct Surroundings {
   spatial::KdTree tree;
   preprocess::Normals normals;
 };
-
-Scan at_most(const Scan& scan, std::size_t most) {
-  const std::size_t step = scan.size() / most + 1;
-  std::vector<std::uint32_t> rows;
-  for (std::size_t row = 0; row < scan.size(); row += step) {
-    rows.push_back(static_cast<std::uint32_t>(row));
-  }
-  return scan.select(rows);
-}
 
 /// The points as they would have been seen at the stamp by a sensor that moves by T_from_to in `dt_s`.
 Scan made_straight(const Scan& scan, const Eigen::Isometry3d& T_from_to, double dt_s) {
@@ -86,28 +74,6 @@ registration::Alignment align(const Scan& source, const Surroundings& later, con
   return registration::align(source, later.target(), T_later_earlier, config, workers);
 }
 
-/// 0: every point lies on a plane of the later scan, 1: none does.
-double cost(const Scan& source, const Surroundings& later, const Eigen::Isometry3d& T_later_earlier,
-            const Workers& workers) {
-  constexpr std::size_t kBlock = 256;
-  const double sum = workers.sum_blocks(source.size(), kBlock, 0.0, [&](std::size_t begin, std::size_t end) {
-    double part = 0.0;
-    for (std::size_t i = begin; i < end; ++i) {
-      const Eigen::Vector3d p = T_later_earlier * source.points()[i];
-      const auto nearest = later.tree.nearest(p, kReach_m);
-      double share = 1.0;
-      if (nearest && later.normals.has(nearest->index)) {
-        const double distance =
-            later.normals.vectors[nearest->index].dot(p - later.points.points()[nearest->index]) / kWidth_m;
-        share = std::min(1.0, distance * distance);
-      }
-      part += share;
-    }
-    return part;
-  });
-  return source.size() == 0 ? 1.0 : sum / static_cast<double>(source.size());
-}
-
 /// Of the way, along itself, by the alignment's own covariance; large where there is none.
 double way_deviation(const registration::Alignment& alignment) {
   if (!alignment.covariance) {
@@ -124,7 +90,7 @@ std::optional<Eigen::Isometry3d> refined(const Scan& earlier, const Scan& later,
   constexpr double kGates_m[] = {0.8, 0.4};
   for (const double gate_m : kGates_m) {
     const Eigen::Isometry3d T_from_to = T.inverse();
-    const Scan source = at_most(
+    const Scan source = registration::evenly_thinned(
         preprocess::voxel_grid(made_straight(earlier, T_from_to, dt_s), {kSourceVoxel_m}, workers), kFinePoints);
     const Surroundings surroundings(made_straight(later, T_from_to, dt_s), workers);
     const registration::Alignment found = align(source, surroundings, T, gate_m, 40, workers);
@@ -133,8 +99,8 @@ std::optional<Eigen::Isometry3d> refined(const Scan& earlier, const Scan& later,
       return std::nullopt;
     }
     T = found.T_target_source;
-    if (gate_m == kGates_m[1] &&
-        (way_deviation(found) > kTrustedDeviation_m || cost(source, surroundings, T, workers) > kWorstCost)) {
+    if (gate_m == kGates_m[1] && (way_deviation(found) > kTrustedDeviation_m ||
+                                  registration::misfit(source, surroundings.target(), T, workers) > kWorstCost)) {
       return std::nullopt;
     }
   }
@@ -154,39 +120,24 @@ std::optional<Eigen::Isometry3d> match_scans(const Scan& earlier, const Scan& la
   }
   const Surroundings surroundings(to, workers);
   const Scan thin = preprocess::voxel_grid(from, {kSourceVoxel_m}, workers);
-  const Scan source = at_most(thin, kCoarsePoints);
-  const Scan judged = at_most(thin, kFinePoints);
   // By the stamps, but they may be wrong: never less than some metres.
-  const double reach_m = std::clamp(kFastest_mps * dt_s, 4.5, kMostReach_m);
-  struct Candidate {
-    Eigen::Isometry3d T;
-    double cost;
-  };
-  std::vector<Candidate> candidates;
-  for (const Eigen::Vector3d& axis : axes) {
-    const int steps = static_cast<int>(reach_m / kStartStep_m);
-    for (int k = -steps; k <= steps; ++k) {
-      Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-      T.translation() = -kStartStep_m * k * axis;
-      const registration::Alignment found = align(source, surroundings, T, kReach_m, 15, workers);
-      if (found.correspondences > 0) {
-        T = found.T_target_source;
-      }
-      candidates.push_back({T, cost(judged, surroundings, T, workers)});
-    }
-  }
-  const auto best = std::min_element(candidates.begin(), candidates.end(),
-                                     [](const Candidate& a, const Candidate& b) { return a.cost < b.cost; });
-  if (best == candidates.end() || best->cost > kWorstCost) {
+  const double reach_m = std::clamp(kFastest_mps * dt_s, kLeastReach_m, kMostReach_m);
+  const std::vector<registration::WayCandidate> candidates =
+      registration::search_ways(thin, surroundings.target(), axes, reach_m, workers);
+  if (candidates.empty()) {
     return std::nullopt;
   }
-  for (const Candidate& other : candidates) {
-    const double apart_m = (other.T.translation() - best->T.translation()).norm();
-    if (apart_m > kOtherWay_m && other.cost - best->cost < kClearMargin * (1.0 - best->cost)) {
+  const registration::WayCandidate& best = registration::best_way(candidates);
+  if (best.cost > kWorstCost) {
+    return std::nullopt;
+  }
+  for (const registration::WayCandidate& other : candidates) {
+    const double apart_m = (other.T_target_source.translation() - best.T_target_source.translation()).norm();
+    if (apart_m > kOtherWay_m && other.cost - best.cost < kClearMargin * (1.0 - best.cost)) {
       return std::nullopt;
     }
   }
-  return refined(from, to, dt_s, best->T, workers);
+  return refined(from, to, dt_s, best.T_target_source, workers);
 }
 
 std::optional<Eigen::Isometry3d> match_scans(const Scan& earlier, const Scan& later, double dt_s,

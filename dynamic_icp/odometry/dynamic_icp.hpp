@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dynamic_icp/base/parallel.hpp"
@@ -22,8 +23,9 @@ namespace dynamic_icp::odometry {
 /// The same scans give the same bits for any number of threads.
 class DynamicIcp final : public Odometry {
  public:
-  /// `threads` = 0 takes as many as the machine has. Throws UsageError when the configuration is out of range.
-  explicit DynamicIcp(const Config& config, int threads = 0);
+  /// `threads` = 0 takes as many as the machine has; `expected` is what the Doppler will be, for `assumptions`. Throws
+  /// UsageError when the configuration is out of range.
+  explicit DynamicIcp(const Config& config, int threads = 0, DopplerKind expected = DopplerKind::kRelative);
   ~DynamicIcp() override;
   DynamicIcp(DynamicIcp&&) noexcept;
   DynamicIcp& operator=(DynamicIcp&&) noexcept;
@@ -33,17 +35,24 @@ class DynamicIcp final : public Odometry {
   /// the next usable scan is aligned to the last usable one.
   Frame process(const RawScan& raw) override;
 
+  [[nodiscard]] std::vector<std::string> assumptions() const override;
+
  private:
   struct Reference;
 
   void align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const;
   void continue_motion(Frame& frame, FrameStatus status) const;
+  [[nodiscard]] registration::Alignment align_without_doppler(const Scan& source, const registration::Target& target,
+                                                              Stamp stamp) const;
+  [[nodiscard]] ego_motion::EgoVelocity velocity_of_motion(const Frame& frame) const;
+  [[nodiscard]] bool has_motion(const Frame& frame) const;
   [[nodiscard]] Eigen::Isometry3d predicted_motion(Stamp stamp) const;
   [[nodiscard]] Eigen::Vector3d velocity_prior(const Frame& frame) const;
   [[nodiscard]] std::vector<std::int32_t> cluster(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) const;
 
   Config config_;
   Workers workers_;
+  DopplerKind expected_;
   std::optional<Stamp> last_stamp_;
   std::unique_ptr<Reference> last_;  ///< the last usable scan; empty before the first
 };

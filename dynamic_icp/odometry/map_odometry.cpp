@@ -9,6 +9,7 @@
 #include "dynamic_icp/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/odometry/compensated_motion.hpp"
 #include "dynamic_icp/odometry/frame_steps.hpp"
 #include "dynamic_icp/odometry/motion_uncertainty.hpp"
 #include "dynamic_icp/registration/gauss_newton.hpp"
@@ -44,9 +45,6 @@ constexpr double kStraight_rad_s = 3e-4;  // moves the end of a sweep of 0.1 s b
 // A displacement that is known no better is not known.
 constexpr double kUnknown_m = 100.0;
 
-// Where no scan tells, a vehicle changes its velocity by no more than this.
-constexpr double kBlindAcceleration_mps2 = 3.0;
-
 registration::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
   registration::SweepMotion sweep;
   sweep.velocity = ego.velocity_sensor - middle_s * ego.acceleration_sensor;
@@ -78,9 +76,13 @@ std::vector<std::uint32_t> still_rows(std::vector<std::uint32_t> rows, const std
 
 }  // namespace
 
-MapOdometry::MapOdometry(const Config& config, int threads)
-    : config_(config), workers_(threads), map_(config.mapping), tracker_(config.tracking) {
+MapOdometry::MapOdometry(const Config& config, int threads, DopplerKind expected)
+    : config_(config), workers_(threads), expected_(expected), map_(config.mapping), tracker_(config.tracking) {
   check(config_);
+}
+
+std::vector<std::string> MapOdometry::assumptions() const {
+  return expected_ == DopplerKind::kCompensated ? std::vector{compensated_sentence()} : std::vector<std::string>{};
 }
 
 Frame MapOdometry::process(const RawScan& raw) {
@@ -115,11 +117,14 @@ Frame MapOdometry::process(const RawScan& raw) {
   now.stamp_s = seconds_between(*first_stamp_, raw.stamp);
   now.middle_s = rows.reference_time_s;
   now.duration_s = rows.duration_s;
+  now.is_relative = whole.doppler_kind() == DopplerKind::kRelative;
   now.filtered = estimate_ego(whole, rows, now.stamp_s);
-  now.ego = ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift);
+  now.ego = now.is_relative ? ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift) : now.filtered;
   frame.ego = now.ego;
-  ego_motion::compensated_doppler(whole, now.ego, workers_, memory_.radial);
-  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, now.ego), workers_, memory_.is_moving);
+  const ego_motion::EgoVelocity in_doppler = now.is_relative ? now.ego : at_rest(whole);
+  ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
+  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, in_doppler), workers_,
+                           memory_.is_moving);
   now.still = whole.select(still_rows(thinned, memory_.is_moving));
   clock.finish(Stage::kEgoMotion);
 
@@ -130,9 +135,15 @@ Frame MapOdometry::process(const RawScan& raw) {
     extrapolate(now.stamp_s, FrameStatus::kTimeGap, frame);
     begin(now, frame.T_world_sensor);
   } else {
+    if (!now.is_relative && state_->scans_in_map == 1) {
+      now.ego = first_velocity(now);
+    }
     go_on(now, frame);
   }
-  frame.twist = twist_at_stamp(state_->turn, now.ego, now.middle_s);
+  if (!now.is_relative) {
+    frame.ego = state_->filtered;
+  }
+  frame.twist = twist_at_stamp(state_->turn, frame.ego, now.middle_s);
   clock.finish(Stage::kRegistration);
 
   workers_.both([&] { frame.static_points = add_to_map(now); }, [&] { track_objects(frame); });
@@ -143,6 +154,9 @@ Frame MapOdometry::process(const RawScan& raw) {
 ego_motion::EgoVelocity MapOdometry::estimate_ego(const Scan& scan, const ego_motion::DopplerRows& rows,
                                                   double stamp_s) const {
   const EgoMotionConfig& config = config_.ego_motion;
+  if (scan.doppler_kind() == DopplerKind::kCompensated) {
+    return state_ ? goes_on(state_->filtered, stamp_s - state_->stamp_s) : unknown_velocity();
+  }
   if (!config.use_consensus) {
     const Eigen::Vector3d start = state_ ? state_->filtered.velocity_sensor : Eigen::Vector3d::Zero();
     ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, start, config.regression, workers_);
@@ -193,7 +207,10 @@ registration::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
   prior.sweep.omega = turn.omega;
   prior.sweep.alpha = turn.alpha;
   prior.covariance = turn.covariance;
-
+  if (!now.is_relative) {
+    expect_even_motion(now, prior);
+    return prior;
+  }
   std::vector<VelocitySample> samples = velocities_with(now);
   const Eigen::Matrix3d R_stamp_middle = prior.sweep.rotation(now.middle_s);
   samples.back().R_map_sensor = prior.R_map_sensor * R_stamp_middle;
@@ -210,8 +227,9 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
   registration::MapAlignConfig config = config_.map_align;
   config.model_deviation_m = state_->model_deviation_m;
   const registration::MotionPrior prior = motion_prior(now);
-  registration::MapAlignment found = state_->scans_in_map == 1
-                                         ? align_second(now, prior)
+  registration::MapAlignment found = state_->scans_in_map == 1 ? align_second(now, prior)
+                                     : !now.is_relative
+                                         ? align_with_found_velocity(now, prior, config)
                                          : registration::align_to_map(now.still, map_, prior, config, workers_);
   const double least_match = std::max(kLeastMatch, config_.lost_match * state_->usual_match);
   if (is_lost(found, least_match)) {
@@ -221,6 +239,8 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
     lose(now, prior, frame);
     return;
   }
+  const ego_motion::EgoVelocity moved = velocity_of(motion_to(found), now.stamp_s - state_->stamp_s,
+                                                    found.T_map_sensor.linear(), found.covariance.block<3, 3>(3, 3));
   const TurnState expected = predict(state_->turn, now.stamp_s - state_->stamp_s, config_.turn);
   const TurnState turn = turn_state(found, expected, now.duration_s, config_.turn);
   describe(prior, found, turn.covariance.topLeftCorner<3, 3>(), registration::typical_distance(now.still), frame);
@@ -237,7 +257,7 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
   state_->T_map_sensor = found.T_map_sensor;
   state_->turn = turn;
   state_->sweep = found.sweep;
-  state_->filtered = now.filtered;
+  state_->filtered = now.is_relative ? now.filtered : moved;
   // The map is the mean of its last scans: a position drifts away from it only as long as it remembers.
   const double memory = config_.mapping.memory_scans;
   state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);
@@ -295,21 +315,6 @@ void MapOdometry::lose(const Moment& now, const registration::MotionPrior& prior
   state_->sweep.omega = sweep.omega;
 }
 
-/// A scan that cannot be used, or one after a long gap: the last motion goes on.
-void MapOdometry::extrapolate(double stamp_s, FrameStatus status, Frame& frame) const {
-  const double dt_s = stamp_s - state_->stamp_s;
-  Vector6d twist;
-  twist << state_->turn.omega, state_->filtered.velocity_sensor;
-  const Eigen::Isometry3d T_target_source = exp_se3(-dt_s * twist);
-  set_motion(frame, status, state_->T_map_sensor, T_target_source);
-  const double turned_rad = config_.turn.start_omega_rad_s * dt_s;
-  const double moved_m = 0.5 * kBlindAcceleration_mps2 * dt_s * dt_s;
-  Matrix6d covariance = Matrix6d::Zero();
-  covariance.diagonal().head<3>().setConstant(turned_rad * turned_rad);
-  covariance.diagonal().tail<3>().setConstant(moved_m * moved_m);
-  frame.alignment.covariance = covariance;
-}
-
 /// The first scan was laid down as if the sensor did not turn. With the turn that the second shows it is laid down
 /// again, until both agree.
 registration::MapAlignment MapOdometry::align_second(const Moment& now, const registration::MotionPrior& prior) {
@@ -330,8 +335,14 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
     }
     state_->sweep.omega = mean_omega;
     state_->turn.omega = mean_omega;
+    if (!now.is_relative) {
+      state_->sweep.velocity = log_se3(motion_to(found)).tail<3>() / dt_s;
+    }
     state_->velocities.back().R_map_sensor = state_->T_map_sensor.linear() * state_->sweep.rotation(first.middle_s);
-    const registration::MotionPrior straightened = motion_prior(now);
+    registration::MotionPrior straightened = motion_prior(now);
+    if (!now.is_relative) {
+      straightened.sweep.velocity = state_->sweep.velocity;
+    }
     map_.clear();
     state_->scans_in_map = 0;
     add_to_map(first);

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "dynamic_icp/base/parallel.hpp"
@@ -28,10 +29,13 @@ namespace dynamic_icp::odometry {
 /// The same scans give the same bits for any number of threads.
 class MapOdometry final : public Odometry {
  public:
-  /// `threads` = 0 takes as many as the machine has. Throws UsageError when the configuration is out of range.
-  explicit MapOdometry(const Config& config, int threads = 0);
+  /// `threads` = 0 takes as many as the machine has; `expected` is what the Doppler will be, for `assumptions`. Throws
+  /// UsageError when the configuration is out of range.
+  explicit MapOdometry(const Config& config, int threads = 0, DopplerKind expected = DopplerKind::kRelative);
 
   Frame process(const RawScan& raw) override;
+
+  [[nodiscard]] std::vector<std::string> assumptions() const override;
 
  private:
   /// A scan at hand, with its times.
@@ -40,6 +44,7 @@ class MapOdometry final : public Odometry {
     double stamp_s = 0.0;     ///< after the first scan
     double middle_s = 0.0;    ///< of the sweep, after the stamp
     double duration_s = 0.0;  ///< of the sweep
+    bool is_relative = true;  ///< the Doppler shows the sensor's motion; else `ego` is that of the alignments before
     ego_motion::EgoVelocity ego;
     ego_motion::EgoVelocity filtered;  ///< the same as the filter carries it on, see weigh_calibration
   };
@@ -81,12 +86,18 @@ class MapOdometry final : public Odometry {
                 const Eigen::Matrix3d& rotation_covariance, double length_m, Frame& frame) const;
   [[nodiscard]] std::vector<VelocitySample> velocities_with(const Moment& now) const;
   [[nodiscard]] registration::MotionPrior motion_prior(const Moment& now) const;
+  [[nodiscard]] ego_motion::EgoVelocity first_velocity(const Moment& now) const;
+  void expect_even_motion(const Moment& now, registration::MotionPrior& prior) const;
+  [[nodiscard]] registration::MapAlignment align_with_found_velocity(const Moment& now, registration::MotionPrior prior,
+                                                                     const registration::MapAlignConfig& config) const;
+  [[nodiscard]] Eigen::Isometry3d motion_to(const registration::MapAlignment& found) const;
   [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
   std::vector<Eigen::Vector3d> add_to_map(const Moment& now);
   void track_objects(Frame& frame);
 
   Config config_;
   Workers workers_;
+  DopplerKind expected_;
   ScanMemory memory_;
   mapping::PlaneMap map_;
   tracking::ObjectTracker tracker_;

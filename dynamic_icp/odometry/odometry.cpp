@@ -24,9 +24,9 @@ std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& c
   };
   if (method == "dynamic-icp") {
     if (config.scan_to_scan) {
-      return std::make_unique<DynamicIcp>(config, threads);
+      return std::make_unique<DynamicIcp>(config, threads, surroundings.doppler_kind);
     }
-    return std::make_unique<MapOdometry>(config, threads);
+    return std::make_unique<MapOdometry>(config, threads, surroundings.doppler_kind);
   }
   if (method == "doppler-icp") {
     return scan_to_scan(ScanToScanMethod::kDopplerIcp);

@@ -32,6 +32,8 @@ class Odometry {
 /// What a method may know besides the scans.
 struct Surroundings {
   std::optional<Eigen::Isometry3d> T_vehicle_sensor;  ///< mounting of the sensor, where the recording has it
+  /// What the Doppler of the scans will be, for `assumptions`; each scan says itself what is done with it.
+  DopplerKind doppler_kind = DopplerKind::kRelative;
 };
 
 /// dynamic-icp, doppler-icp, point-to-point, point-to-plane, gicp, kiss-icp.

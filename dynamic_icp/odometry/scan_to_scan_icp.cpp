@@ -17,6 +17,7 @@ Scan in_vehicle(const Scan& scan, const Eigen::Isometry3d& T_vehicle_sensor) {
   raw.stamp = scan.stamp();
   raw.doppler = scan.doppler();
   raw.times = scan.times();
+  raw.doppler_kind = scan.doppler_kind();
   for (std::size_t row = 0; row < scan.size(); ++row) {
     raw.points.emplace_back(T_vehicle_sensor * scan.points()[row]);
     raw.directions.emplace_back(T_vehicle_sensor.linear() * scan.directions()[row]);
@@ -62,7 +63,7 @@ struct ScanToScanIcp::Reference {
 
 ScanToScanIcp::ScanToScanIcp(ScanToScanMethod method, const Config& config, const Surroundings& surroundings,
                              int threads)
-    : method_(method), config_(config), workers_(threads) {
+    : method_(method), config_(config), workers_(threads), expected_(surroundings.doppler_kind) {
   check(config_);
   if (method == ScanToScanMethod::kDopplerIcp) {
     T_vehicle_sensor_ = surroundings.T_vehicle_sensor;
@@ -72,10 +73,17 @@ ScanToScanIcp::ScanToScanIcp(ScanToScanMethod method, const Config& config, cons
 ScanToScanIcp::~ScanToScanIcp() = default;
 
 std::vector<std::string> ScanToScanIcp::assumptions() const {
+  std::vector<std::string> sentences;
   if (method_ == ScanToScanMethod::kDopplerIcp && !T_vehicle_sensor_) {
-    return {"doppler-icp needs the mounting of the sensor and was given no calibration: the identity is taken"};
+    sentences.emplace_back(
+        "doppler-icp needs the mounting of the sensor and was given no calibration: the identity is taken");
   }
-  return {};
+  if (method_ == ScanToScanMethod::kDopplerIcp && expected_ == DopplerKind::kCompensated) {
+    sentences.emplace_back(
+        "the Doppler is compensated: doppler-icp has no Doppler term then, only its robust point-to-plane term is "
+        "left");
+  }
+  return sentences;
 }
 
 Frame ScanToScanIcp::process(const RawScan& raw) {
@@ -128,7 +136,7 @@ void ScanToScanIcp::align_to_last(const Reference& now, const spatial::KdTree& t
   if (T_vehicle_sensor_) {
     T_initial = *T_vehicle_sensor_ * T_initial * T_vehicle_sensor_->inverse();
   }
-  frame.alignment = registration::align(source, target, T_initial, objective(dt_s),
+  frame.alignment = registration::align(source, target, T_initial, objective(now.scan.doppler_kind(), dt_s),
                                         config_.registration.max_correspondence_distance_m,
                                         stop_rule(config_.registration), workers_);
   if (T_vehicle_sensor_) {
@@ -153,7 +161,7 @@ Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
   return exp_se3(seconds_between(last_->scan.stamp(), stamp) * last_->twist);
 }
 
-registration::Objective ScanToScanIcp::objective(double dt_s) const {
+registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {
   registration::Objective objective;
   objective.doppler = registration::DopplerTerm::kNone;
   objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
@@ -168,7 +176,9 @@ registration::Objective ScanToScanIcp::objective(double dt_s) const {
       objective.geometry = registration::GeometryTerm::kPlaneToPlane;
       break;
     case ScanToScanMethod::kDopplerIcp:
-      objective.doppler = registration::DopplerTerm::kSensorVelocity;
+      // What the sensor's own motion was taken out of cannot tell it.
+      objective.doppler = kind == DopplerKind::kRelative ? registration::DopplerTerm::kSensorVelocity
+                                                         : registration::DopplerTerm::kNone;
       objective.doppler_weight = config_.doppler_icp.doppler_weight;
       // Published: a row is scaled by the root of its share before the kernel sees it. A residual without that factor
       // meets a kernel that is wider by it.

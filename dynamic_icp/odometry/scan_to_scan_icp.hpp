@@ -36,12 +36,13 @@ class ScanToScanIcp final : public Odometry {
   void align_to_last(const Reference& now, const spatial::KdTree& tree, Frame& frame) const;
   void continue_motion(Frame& frame, FrameStatus status) const;
   [[nodiscard]] Eigen::Isometry3d predicted_motion(Stamp stamp) const;
-  [[nodiscard]] registration::Objective objective(double dt_s) const;
+  [[nodiscard]] registration::Objective objective(DopplerKind kind, double dt_s) const;
 
   ScanToScanMethod method_;
   Config config_;
   std::optional<Eigen::Isometry3d> T_vehicle_sensor_;  ///< of Doppler-ICP only: it then works in the vehicle frame
   Workers workers_;
+  DopplerKind expected_;
   std::optional<Stamp> last_stamp_;
   std::unique_ptr<Reference> last_;  ///< the last usable scan; empty before the first
 };

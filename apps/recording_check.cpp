@@ -1,0 +1,49 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "apps/recording_check.hpp"
+
+#include <algorithm>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/doctor/diagnosis.hpp"
+
+namespace dynamic_icp::apps {
+namespace {
+
+// Some seconds of driving are enough and keep the time that the check takes bounded, however long the recording is.
+constexpr std::size_t kScans = 60;
+constexpr std::size_t kProbes = 4;
+
+}  // namespace
+
+std::vector<std::string> check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
+                                         std::size_t begin, std::size_t end, int threads) {
+  doctor::DoctorConfig config;
+  config.begin = begin;
+  config.end = std::min(end, begin + kScans);
+  config.probes = kProbes;
+  config.always_match_scans = false;
+  const doctor::Diagnosis diagnosis = doctor::diagnose(dataset, config, Workers(threads));
+  std::vector<std::string> warnings;
+  for (const doctor::Finding& finding : diagnosis.findings) {
+    const bool is_sign = finding.question == doctor::Question::kDopplerSign;
+    const bool is_kind = finding.question == doctor::Question::kDopplerKind;
+    const bool is_said = (is_sign && settings.doppler_sign_is_said) || (is_kind && settings.correction.doppler_kind);
+    if (finding.verdict == doctor::Verdict::kWrong && (is_sign || is_kind) && !is_said) {
+      throw DataError(fmt::format("{}: the Doppler is {}. Run with {}; or say that it is not so with {}",
+                                  dataset.scan_file(begin).string(), finding.sentence, finding.fix,
+                                  is_sign                                            ? "--doppler-sign away"
+                                  : dataset.doppler_kind() == DopplerKind::kRelative ? "--doppler-kind relative"
+                                                                                     : "--doppler-kind compensated"));
+    }
+    if (finding.verdict == doctor::Verdict::kWrong || finding.verdict == doctor::Verdict::kSuspicious) {
+      warnings.push_back(fmt::format("{}: {}{}", doctor::to_string(finding.question), finding.sentence,
+                                     finding.fix.empty() ? "" : "; mend it with " + finding.fix));
+    }
+  }
+  return warnings;
+}
+
+}  // namespace dynamic_icp::apps

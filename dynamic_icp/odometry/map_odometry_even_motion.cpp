@@ -1,0 +1,67 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/odometry/compensated_motion.hpp"
+#include "dynamic_icp/odometry/frame_steps.hpp"
+#include "dynamic_icp/odometry/map_odometry.hpp"
+
+// What the map odometry does where no Doppler tells how the sensor moves: it is compensated, or the scan is unusable.
+namespace dynamic_icp::odometry {
+namespace {
+
+constexpr double kFirstWay_m = 0.2;
+
+}  // namespace
+
+/// Of the second scan in a map, by the points alone: well enough for the alignment to find the rest.
+ego_motion::EgoVelocity MapOdometry::first_velocity(const Moment& now) const {
+  const double dt_s = now.stamp_s - state_->stamp_s;
+  const Eigen::Isometry3d T_now_first = first_way(state_->first.still, now.still, dt_s, workers_);
+  return velocity_of(T_now_first.inverse(), dt_s, Eigen::Matrix3d::Identity(),
+                     kFirstWay_m * kFirstWay_m * Eigen::Matrix3d::Identity());
+}
+
+/// Without a Doppler that tells: the sensor goes on as it moved last, as well as that is known.
+void MapOdometry::expect_even_motion(const Moment& now, registration::MotionPrior& prior) const {
+  const double dt_s = now.stamp_s - state_->stamp_s;
+  const Eigen::Isometry3d T_now_last = even_motion(now.ego.velocity_sensor, state_->turn.omega, -dt_s);
+  prior.displacement_fixed = state_->T_map_sensor.translation();
+  prior.displacement_turned = -T_now_last.translation();
+  prior.translation_covariance = state_->position_covariance +
+                                 dt_s * dt_s * prior.R_map_sensor * now.ego.covariance * prior.R_map_sensor.transpose();
+}
+
+/// Two rounds without a Doppler that tells: the motion that the first one finds makes the sweep straight for the
+/// second.
+registration::MapAlignment MapOdometry::align_with_found_velocity(const Moment& now, registration::MotionPrior prior,
+                                                                  const registration::MapAlignConfig& config) const {
+  const registration::MapAlignment found = registration::align_to_map(now.still, map_, prior, config, workers_);
+  if (now.duration_s <= 0.0) {
+    return found;
+  }
+  prior.sweep.velocity =
+      velocity_of(motion_to(found), now.stamp_s - state_->stamp_s, found.T_map_sensor.linear(), Eigen::Matrix3d::Zero())
+          .velocity_sensor;
+  return registration::align_to_map(now.still, map_, prior, config, workers_);
+}
+
+/// A scan that cannot be used, or one after a long gap: the last motion goes on.
+void MapOdometry::extrapolate(double stamp_s, FrameStatus status, Frame& frame) const {
+  const double dt_s = stamp_s - state_->stamp_s;
+  Vector6d twist;
+  twist << state_->turn.omega, state_->filtered.velocity_sensor;
+  const Eigen::Isometry3d T_target_source = exp_se3(-dt_s * twist);
+  set_motion(frame, status, state_->T_map_sensor, T_target_source);
+  const double turned_rad = config_.turn.start_omega_rad_s * dt_s;
+  const double moved_m = 0.5 * kBlindAcceleration_mps2 * dt_s * dt_s;
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal().head<3>().setConstant(turned_rad * turned_rad);
+  covariance.diagonal().tail<3>().setConstant(moved_m * moved_m);
+  frame.alignment.covariance = covariance;
+}
+
+/// T_last_now.
+Eigen::Isometry3d MapOdometry::motion_to(const registration::MapAlignment& found) const {
+  return state_->T_map_sensor.inverse() * found.T_map_sensor;
+}
+
+}  // namespace dynamic_icp::odometry

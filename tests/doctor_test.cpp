@@ -1,0 +1,111 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+// What the program says and does about a recording whose numbers are wrong.
+#include <cstring>
+#include <fstream>
+#include <functional>
+
+#include <nlohmann/json.hpp>
+
+#include "tests/program.hpp"
+
+namespace dynamic_icp::tests {
+namespace {
+
+using nlohmann::json;
+
+class Doctor : public ProgramTest {
+ protected:
+  /// The street again with its Doppler changed, and no ground truth.
+  [[nodiscard]] fs::path changed(const std::string& name, const std::function<float(float)>& change) const {
+    fs::create_directories(folder_ / name / "point_clouds");
+    for (const fs::directory_entry& entry : fs::directory_iterator(street() / "point_clouds")) {
+      std::string bytes = read_file(entry.path());
+      for (std::size_t at = 12; at + 4 <= bytes.size(); at += 16) {
+        float doppler = 0.0F;
+        std::memcpy(&doppler, bytes.data() + at, 4);
+        doppler = change(doppler);
+        std::memcpy(bytes.data() + at, &doppler, 4);
+      }
+      std::ofstream(folder_ / name / "point_clouds" / entry.path().filename(), std::ios::binary) << bytes;
+    }
+    return folder_ / name;
+  }
+
+  [[nodiscard]] Outcome run(const fs::path& recording, const std::string& output, const std::string& more = "") const {
+    return run_program("run --quiet " + recording.string() + " --output " + (folder_ / output).string() + " " + more);
+  }
+};
+
+TEST_F(Doctor, InfoSaysItAsJson) {
+  const json healthy = json::parse(run_program("info --json " + street().string()).text);
+  ASSERT_EQ(healthy["diagnosis"].size(), 11u);
+  for (const json& finding : healthy["diagnosis"]) {
+    EXPECT_NE(finding["verdict"], "wrong") << finding;
+    EXPECT_NE(finding["verdict"], "suspicious") << finding;
+  }
+  const json turned = json::parse(run_program("info --json --doppler-sign towards " + street().string()).text);
+  EXPECT_EQ(turned["diagnosis"][0]["question"], "doppler_sign");
+  EXPECT_EQ(turned["diagnosis"][0]["verdict"], "wrong");
+  EXPECT_EQ(turned["diagnosis"][0]["fix"], "--doppler-sign towards");
+}
+
+TEST_F(Doctor, RunRefusesATurnedSignUntilItIsSaid) {
+  const fs::path turned = changed("turned", [](float doppler) { return -doppler; });
+  const Outcome refused = run(turned, "out");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_NE(refused.text.find("--doppler-sign towards"), std::string::npos) << refused.text;
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+
+  EXPECT_EQ(run(turned, "out", "--doppler-sign towards").status, 0);
+  const json record = json::parse(read_file(folder_ / "out" / "run.json"));
+  EXPECT_EQ(record["input"]["options"]["doppler-sign"], "towards");
+  const fs::path whole = changed("whole", [](float doppler) { return doppler; });
+  EXPECT_EQ(run(whole, "out2").status, 0);
+  EXPECT_EQ(read_file(folder_ / "out2" / "trajectory.tum"), read_file(folder_ / "out" / "trajectory.tum"))
+      << "mended on the way in, it is the same drive";
+
+  EXPECT_EQ(run(turned, "out3", "--doppler-sign away").status, 0) << "what was said is believed";
+}
+
+TEST_F(Doctor, RunWarnsOfWhatItCanLiveWith) {
+  const fs::path biased = changed("biased", [](float doppler) { return doppler + 0.3F; });
+  EXPECT_EQ(run(biased, "out").status, 0);
+  const json record = json::parse(read_file(folder_ / "out" / "run.json"));
+  EXPECT_NE(record["warnings"].dump().find("doppler_bias"), std::string::npos) << record["warnings"];
+}
+
+// A real drive of a 4D radar: relative, positive away, 12 Hz, the poses of its ground truth now and then repeated.
+TEST_F(Doctor, ARecordedRadarIsWhatItIs) {
+  const fs::path recording = source_folder() / ".." / "shared" / "data" / "radar-campus";
+  if (!fs::exists(recording)) {
+    GTEST_SKIP() << "no recording beside the sources";
+  }
+  const auto findings = [&](const std::string& options) {
+    json by_question;
+    for (const json& finding :
+         json::parse(run_program("info --json " + options + recording.string()).text)["diagnosis"]) {
+      by_question[finding["question"].get<std::string>()] = finding["verdict"];
+    }
+    return by_question;
+  };
+  const json healthy = findings("");
+  for (const char* question : {"doppler_sign", "doppler_kind", "doppler_units", "point_units", "columns", "mounting",
+                               "time_scale", "stamps", "unusable_points"}) {
+    EXPECT_EQ(healthy[question], "ok") << question;
+  }
+  EXPECT_EQ(findings("--doppler-sign towards ")["doppler_sign"], "wrong");
+  EXPECT_EQ(findings("--time-scale 1.2 ")["time_scale"], "wrong") << "as if it came at 10 Hz";
+  EXPECT_EQ(findings("--point-scale 1000 ")["point_units"], "wrong");
+}
+
+TEST_F(Doctor, WrongOptionsAreWrongUse) {
+  for (const char* options : {"--doppler-sign up", "--doppler-kind raw", "--columns x,y,z", "--time-scale 0",
+                              "--point-scale nan", "--field doppler", "--period -1"}) {
+    const Outcome outcome = run_program("info " + street().string() + " " + options);
+    EXPECT_EQ(outcome.status, 2) << options << outcome.text;
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tests
