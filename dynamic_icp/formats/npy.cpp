@@ -144,6 +144,7 @@ std::size_t columns_of(const NpyArray& array) {
 
 std::vector<double> column_as_doubles(const NpyArray& array, std::size_t column) {
   std::vector<double> values;
+  values.reserve(rows_of(array));
   for_column(array, column, [&](auto value) { values.push_back(static_cast<double>(value)); });
   return values;
 }

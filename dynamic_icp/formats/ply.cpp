@@ -10,7 +10,6 @@
 #include <cstring>
 #include <limits>
 #include <optional>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
@@ -353,32 +352,14 @@ const PlyElement* PlyFile::find(std::string_view element) const {
   return found == elements.end() ? nullptr : &*found;
 }
 
-PlyFile read_ply(const std::filesystem::path& path) { return parse_ply(read_whole_file(path), path); }
+PlyFile read_ply(const std::filesystem::path& path) {
+  const std::string content = read_whole_file(path);
+  refuse_lfs_pointer(path, content);
+  return parse_ply(content, path);
+}
 
 PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin) {
   return Reader(content, origin).read();
-}
-
-std::string ply_bytes(std::span<const Eigen::Vector3d> points) {
-  std::string bytes = fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
-      "property float z\nend_header\n",
-      points.size());
-  bytes.reserve(bytes.size() + points.size() * 3 * sizeof(float));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (const double coordinate : points[i]) {
-      // Written so that NaN fails as well.
-      if (!(std::abs(coordinate) <= std::numeric_limits<float>::max())) {
-        throw std::invalid_argument(fmt::format("point {} of a PLY file has a number that is no finite float32", i));
-      }
-      append_value(bytes, static_cast<float>(coordinate));
-    }
-  }
-  return bytes;
-}
-
-void write_ply(const std::filesystem::path& path, std::span<const Eigen::Vector3d> points) {
-  write_whole_file(path, ply_bytes(points));
 }
 
 }  // namespace dynamic_icp::formats
