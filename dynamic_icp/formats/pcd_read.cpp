@@ -3,6 +3,7 @@
 #include "dynamic_icp/formats/pcd_read.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <optional>
 #include <type_traits>
 
@@ -58,6 +59,27 @@ bool append_text(std::string& bytes, NpyType type, std::string_view text) {
       return append_text<std::uint64_t>(bytes, text);
   }
   return false;
+}
+
+/// Copies `kBytes` from the beginning of each record.
+template <std::size_t kBytes>
+void copy_field(const char* records, std::size_t record_bytes, std::size_t points, char* to) {
+  for (std::size_t i = 0; i < points; ++i) {
+    std::memcpy(to + i * kBytes, records + i * record_bytes, kBytes);
+  }
+}
+
+/// The same for any number of bytes; those of one number are quick.
+void copy_field(const char* records, std::size_t record_bytes, std::size_t points, char* to, std::size_t bytes) {
+  if (bytes == 4) {
+    copy_field<4>(records, record_bytes, points, to);
+  } else if (bytes == 8) {
+    copy_field<8>(records, record_bytes, points, to);
+  } else {
+    for (std::size_t i = 0; i < points; ++i) {
+      std::copy_n(records + i * record_bytes, bytes, to + i * bytes);
+    }
+  }
 }
 
 std::size_t numbers_of_a_point(const PcdHeader& header) {
@@ -190,9 +212,7 @@ NpyArray PcdFile::read(std::string_view name) const {
     return array;
   }
   array.bytes.resize(bytes * header_.points);
-  for (std::size_t i = 0; i < header_.points; ++i) {
-    std::copy_n(data.data() + i * header_.record_bytes + field->offset_bytes, bytes, array.bytes.data() + i * bytes);
-  }
+  copy_field(data.data() + field->offset_bytes, header_.record_bytes, header_.points, array.bytes.data(), bytes);
   return array;
 }
 
