@@ -18,6 +18,7 @@ void add_register_command(CLI::App& app, std::function<int()>& selected);
 void add_evaluate_command(CLI::App& app, std::function<int()>& selected);
 void add_benchmark_command(CLI::App& app, std::function<int()>& selected);
 void add_simulate_command(CLI::App& app, std::function<int()>& selected);
+void add_convert_command(CLI::App& app, std::function<int()>& selected);
 void add_info_command(CLI::App& app, std::function<int()>& selected);
 void add_plot_command(CLI::App& app, std::function<int()>& selected);
 void add_report_command(CLI::App& app, std::function<int()>& selected);

@@ -48,7 +48,7 @@ int main(int argc, char** argv) {
   std::function<int()> selected;
   for (const auto add : {apps::add_run_command, apps::add_register_command, apps::add_evaluate_command,
                          apps::add_benchmark_command, apps::add_simulate_command, apps::add_report_command,
-                         apps::add_plot_command, apps::add_info_command, apps::add_config_command}) {
+                         apps::add_plot_command, apps::add_convert_command, apps::add_info_command, apps::add_config_command}) {
     add(app, selected);
   }
   try {

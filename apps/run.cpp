@@ -24,6 +24,7 @@
 #include "apps/method_options.hpp"
 #include "apps/progress.hpp"
 #include "apps/recording_check.hpp"
+#include "apps/scan_selection.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -47,29 +48,6 @@ struct RunOptions {
   bool quiet = false;
   MethodOptions method;
 };
-
-/// The scans [begin, end) of the recording, checked before anything is computed.
-struct Selection {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
-
-Selection select_scans(const datasets::Dataset& dataset, const RunOptions& options) {
-  if (options.start >= dataset.size()) {
-    throw UsageError(fmt::format("--start is {}, expected 0 to {}: the recording has {} scans", options.start,
-                                 dataset.size() - 1, dataset.size()));
-  }
-  const std::size_t rest = dataset.size() - options.start;
-  const Selection selection{options.start, options.start + std::min(rest, options.max_frames.value_or(rest))};
-  for (std::size_t i = selection.begin + 1; i < selection.end; ++i) {
-    if (dataset.stamp(i) <= dataset.stamp(i - 1)) {
-      throw DataError(fmt::format("{}: scan {} is at {} s, expected later than scan {} at {} s",
-                                  dataset.scan_file(i).string(), i, format_seconds(dataset.stamp(i)), i - 1,
-                                  format_seconds(dataset.stamp(i - 1))));
-    }
-  }
-  return selection;
-}
 
 /// The map to be made, if one is asked for. What cannot be is refused before anything is computed.
 std::optional<results::MapWriter> make_map(const RunOptions& options) {
@@ -251,7 +229,7 @@ void print_summary(const results::RunSummary& summary, const Findings& findings,
   fmt::print("written to   {}\n", options.output);
 }
 
-void process_scans(const datasets::Dataset& dataset, const Selection& selection, odometry::Odometry& odometry,
+void process_scans(const datasets::Dataset& dataset, const ScanSelection& selection, odometry::Odometry& odometry,
                    results::RunWriter& writer, Findings& findings) {
   Progress progress("odometry", selection.end - selection.begin, findings.warnings.quiet);
   datasets::ReadAhead scans(dataset, selection.begin, selection.end);
@@ -274,7 +252,7 @@ int run(const RunOptions& options) {
   const odometry::Config config = make_config(options.method);
   Findings findings{{{}, options.quiet}, {}, {}, make_map(options)};
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
-  const Selection selection = select_scans(*dataset, options);
+  const ScanSelection selection = select_scans(*dataset, options.start, options.max_frames);
   const std::vector<std::string> doubts =
       check_recording(*dataset, options.settings, selection.begin, selection.end, options.method.threads);
   const bool own_truth = options.ground_truth.empty();

@@ -30,6 +30,7 @@ if(DYNAMIC_ICP_BUILD_APPS)
 endif()
 if(DYNAMIC_ICP_BUILD_TESTS)
   find_package(GTest REQUIRED)
+  find_package(rapidcheck QUIET)
 endif()
 
 # Older yaml-cpp packages export a plain target name.

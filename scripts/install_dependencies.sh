@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages the build needs, if any is missing. For Debian 12, Ubuntu 22.04 and newer; as root or with sudo.
-# usage: scripts/install_dependencies.sh [tests] [benchmarks [peers]]
+# usage: scripts/install_dependencies.sh [tests] [benchmarks [peers]] [fuzzing]
 #   benchmarks   for scripts/benchmark_speed.sh; peers: also the libraries it compares with (1.2 GB)
 set -euo pipefail
 
@@ -11,14 +11,17 @@ for purpose in "$@"; do
   case $purpose in
     tests)
       packages+=(libgtest-dev)
-      optional+=(python3-open3d) ;;  # an independent implementation to compare with; not in every release
+      # An independent implementation to compare with, and random tests; not in every release.
+      optional+=(python3-open3d librapidcheck-dev) ;;
     benchmarks)
       packages+=(libbenchmark-dev)
       optional+=(libnanoflann-dev) ;;
     peers)
       optional+=(pkg-config libopen3d-dev libpcl-dev python3-open3d) ;;
+    fuzzing)
+      packages+=(clang) ;;
     *)
-      echo "unknown purpose '$purpose'; known are: tests, benchmarks, peers" >&2
+      echo "unknown purpose '$purpose'; known are: tests, benchmarks, peers, fuzzing" >&2
       exit 2 ;;
   esac
 done

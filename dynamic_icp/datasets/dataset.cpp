@@ -5,6 +5,8 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/aevascenes.hpp"
+#include "dynamic_icp/datasets/column_folder.hpp"
 #include "dynamic_icp/datasets/dicp.hpp"
 
 namespace dynamic_icp::datasets {
@@ -22,6 +24,11 @@ struct Layout {
 
 constexpr Layout kLayouts[] = {
     {"dicp", "a folder with point_clouds/*.bin", find_dicp, open_dicp},
+    {"aevascenes", "sequence.json beside pointcloud_compensated/ or pointcloud_raw/", find_aevascenes, open_aevascenes},
+    // What any data set may hold comes last.
+    {"npz", "*.npz, or <name>.npy with <name>_dop.npy", find_npz, open_npz},
+    {"pcd", "*.pcd", find_pcd, open_pcd},
+    {"ply", "*.ply", find_ply, open_ply},
 };
 
 std::string looked_for() {

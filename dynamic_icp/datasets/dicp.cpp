@@ -25,7 +25,7 @@ constexpr int kSearchDepth = 3;
 /// Seconds after the stamp, one float32 per point. Our own addition to the layout, for scans that take time.
 std::vector<double> read_times(const fs::path& path, std::size_t points) {
   const formats::RecordFile file = formats::read_record_file(path, sizeof(float));
-  if (file.records != points || !file.warning.empty()) {
+  if (file.bytes.size() != points * sizeof(float)) {
     throw DataError(
         fmt::format("{}: {} times for {} points, expected one float32 per point", path.string(), file.records, points));
   }

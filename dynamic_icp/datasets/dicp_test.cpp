@@ -69,6 +69,15 @@ TEST_F(Dicp, ReadsTimesOfPointsWhereThereAreSome) {
   }
 }
 
+TEST_F(Dicp, AnEmptyScanHasNoTimes) {
+  fs::create_directories(folder_ / "times");
+  write("point_clouds/00001.bin", "");
+  write("times/00001.bin", "");
+  EXPECT_TRUE(open_dataset(folder_)->scan(0).times.empty());
+  write("times/00001.bin", "ab");
+  EXPECT_THROW((void)open_dataset(folder_)->scan(0), DataError);
+}
+
 TEST_F(Dicp, ReadsScansInOrderWithTheStampsOfThePoses) {
   write("ref_poses.txt", kThreePoses);
   const std::unique_ptr<Dataset> dataset = open_dataset(folder_);

@@ -34,12 +34,13 @@ bool smaller_number(const std::string& a, const std::string& b) {
 
 }  // namespace
 
-std::vector<fs::path> numbered_files(const fs::path& folder, std::string_view extension) {
+std::vector<fs::path> numbered_files(const fs::path& folder, std::string_view ending) {
   std::error_code fault;
   std::vector<std::pair<std::string, fs::path>> numbered;
   for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
     const fs::path& path = entry.path();
-    if (path.extension() == extension && path.filename().string().front() != '.') {
+    const std::string name = path.filename().string();
+    if (name.ends_with(ending) && name.front() != '.') {
       std::string number = number_in(path.stem().string());
       if (!number.empty()) {
         numbered.emplace_back(std::move(number), path);

@@ -8,9 +8,9 @@
 
 namespace dynamic_icp::datasets {
 
-/// The files of a folder with the given extension (".bin"), ordered by the number in their names, as an integer of any
-/// length: 2.bin comes before 10.bin. Files without a number are left out; hidden files too. Throws DataError when the
-/// folder cannot be read or two files carry the same number.
-std::vector<std::filesystem::path> numbered_files(const std::filesystem::path& folder, std::string_view extension);
+/// The files of a folder whose names end with `ending` (".bin", "_dop.npy"), ordered by the number in their names, as
+/// an integer of any length: 2.bin comes before 10.bin. Files without a number are left out; hidden files too. Throws
+/// DataError when the folder cannot be read or two files carry the same number.
+std::vector<std::filesystem::path> numbered_files(const std::filesystem::path& folder, std::string_view ending);
 
 }  // namespace dynamic_icp::datasets

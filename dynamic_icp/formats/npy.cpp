@@ -143,8 +143,9 @@ std::size_t columns_of(const NpyArray& array) {
 }
 
 std::vector<double> column_as_doubles(const NpyArray& array, std::size_t column) {
-  std::vector<double> values;
-  for_column(array, column, [&](auto value) { values.push_back(static_cast<double>(value)); });
+  std::vector<double> values(rows_of(array));
+  double* next = values.data();
+  for_column(array, column, [&](auto value) { *next++ = static_cast<double>(value); });
   return values;
 }
 

@@ -23,6 +23,12 @@ struct NpyArray {
   std::string origin;              ///< names the array in messages
 };
 
+/// An array with its name among those of a file: a member of an archive, a field of points.
+struct NamedArray {
+  std::string name;
+  NpyArray array;
+};
+
 /// Takes an array from memory; `origin` stands for the file in messages. Any byte order and both orders of indices are
 /// understood. Throws DataError naming what was expected: no NPY array, objects or records instead of numbers, a size
 /// that is not what the header says. Never takes more memory than a small multiple of the input.

@@ -158,6 +158,18 @@ bool NpzFile::contains(std::string_view name) const {
   return zip_name_locate(archive_->handle(), member_name(name).c_str(), 0) >= 0;
 }
 
+bool NpzFile::holds_numbers(std::string_view name) const {
+  const std::unique_ptr<zip_file_t, FileCloser> file(zip_fopen(archive_->handle(), member_name(name).c_str(), 0));
+  std::array<char, kChunkBytes> chunk;
+  const zip_int64_t got = file ? zip_fread(file.get(), chunk.data(), chunk.size()) : 0;
+  try {
+    parse_npy_header(std::string_view(chunk.data(), static_cast<std::size_t>(std::max<zip_int64_t>(got, 0))), name);
+    return true;
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
 NpyArray NpzFile::read(std::string_view name) const {
   const std::string origin = fmt::format("{}: array '{}'", path_.string(), name);
   const zip_int64_t index = zip_name_locate(archive_->handle(), member_name(name).c_str(), 0);

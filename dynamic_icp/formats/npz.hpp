@@ -32,6 +32,9 @@ class NpzFile {
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] bool contains(std::string_view name) const;
 
+  /// Whether the member of that name is an array of numbers, by its header: Python objects and tables are not.
+  [[nodiscard]] bool holds_numbers(std::string_view name) const;
+
   /// Unpacks one array. Throws DataError naming file and member when there is none of that name, it is damaged, claims
   /// more than kMaxNpzMemberBytes or is not an array of numbers (see parse_npy). The other members stay readable.
   [[nodiscard]] NpyArray read(std::string_view name) const;
@@ -42,11 +45,7 @@ class NpzFile {
   std::unique_ptr<Archive> archive_;
 };
 
-/// An array with its name in the archive.
-struct NpzMember {
-  std::string name;
-  NpyArray array;
-};
+using NpzMember = NamedArray;
 
 /// The bytes of an archive, not compressed: the same for the same arrays, whenever and wherever it is made. Throws
 /// std::invalid_argument when there is no member or a name is empty or used twice.

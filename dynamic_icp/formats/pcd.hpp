@@ -9,6 +9,8 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/formats/npy.hpp"
+
 namespace dynamic_icp::formats {
 
 /// A number more for every point, beside x, y, z.
@@ -25,8 +27,13 @@ struct PcdColumn {
 /// is taken, and when a number is not finite as a float32: such files never leave the program.
 std::string pcd_bytes(std::span<const Eigen::Vector3d> points, std::span<const PcdColumn> columns = {});
 
-/// Writes such a file whole or not at all (see write_whole_file). Throws as `pcd_bytes` does, and DataError naming file
-/// and reason when the machine fails.
+/// The same of any columns, each with the type it has, bit by bit: arrays of shape (N,) or (N, k), at least one.
+/// Numbers that are not finite stay. Throws std::invalid_argument when they differ in length or names are missing,
+/// taken or have blanks.
+std::string pcd_table_bytes(std::span<const NamedArray> columns);
+
+/// Writes a file of points whole or not at all (see write_whole_file). Throws as `pcd_bytes` does, and DataError naming
+/// file and reason when the machine fails.
 void write_pcd(const std::filesystem::path& path, std::span<const Eigen::Vector3d> points,
                std::span<const PcdColumn> columns = {});
 

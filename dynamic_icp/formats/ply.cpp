@@ -4,99 +4,23 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
-#include <limits>
 #include <optional>
-#include <stdexcept>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/base/parse_number.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/ply_values.hpp"
 #include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
 
-static_assert(std::endian::native == std::endian::little, "values of little-endian files are copied as they are");
-
 enum class Encoding { kAscii, kLittleEndian, kBigEndian };
-
-struct TypeName {
-  std::string_view name;
-  PlyType type;
-};
-
-constexpr std::array<TypeName, 16> kTypeNames = {{{"char", PlyType::kInt8},
-                                                  {"int8", PlyType::kInt8},
-                                                  {"uchar", PlyType::kUint8},
-                                                  {"uint8", PlyType::kUint8},
-                                                  {"short", PlyType::kInt16},
-                                                  {"int16", PlyType::kInt16},
-                                                  {"ushort", PlyType::kUint16},
-                                                  {"uint16", PlyType::kUint16},
-                                                  {"int", PlyType::kInt32},
-                                                  {"int32", PlyType::kInt32},
-                                                  {"uint", PlyType::kUint32},
-                                                  {"uint32", PlyType::kUint32},
-                                                  {"float", PlyType::kFloat32},
-                                                  {"float32", PlyType::kFloat32},
-                                                  {"double", PlyType::kFloat64},
-                                                  {"float64", PlyType::kFloat64}}};
-
-/// Size and range of a type; floating-point types have no range.
-struct TypeTraits {
-  std::size_t bytes;
-  double minimum;
-  double maximum;
-  bool whole;
-};
-
-template <class Number>
-constexpr TypeTraits traits_of() {
-  using Range = std::numeric_limits<Number>;
-  return {sizeof(Number), static_cast<double>(Range::lowest()), static_cast<double>(Range::max()), Range::is_integer};
-}
-
-/// In the order of PlyType.
-constexpr std::array<TypeTraits, 8> kTraits = {
-    traits_of<std::int8_t>(),  traits_of<std::uint8_t>(),  traits_of<std::int16_t>(), traits_of<std::uint16_t>(),
-    traits_of<std::int32_t>(), traits_of<std::uint32_t>(), traits_of<float>(),        traits_of<double>()};
-
-const TypeTraits& traits(PlyType type) { return kTraits[static_cast<std::size_t>(type)]; }
-
-template <class Number>
-double load(const char* bytes) {
-  Number number;
-  std::memcpy(&number, bytes, sizeof(number));
-  return static_cast<double>(number);
-}
-
-double load_as(PlyType type, const char* bytes) {
-  switch (type) {
-    case PlyType::kInt8:
-      return load<std::int8_t>(bytes);
-    case PlyType::kUint8:
-      return load<std::uint8_t>(bytes);
-    case PlyType::kInt16:
-      return load<std::int16_t>(bytes);
-    case PlyType::kUint16:
-      return load<std::uint16_t>(bytes);
-    case PlyType::kInt32:
-      return load<std::int32_t>(bytes);
-    case PlyType::kUint32:
-      return load<std::uint32_t>(bytes);
-    case PlyType::kFloat32:
-      return load<float>(bytes);
-    default:
-      return load<double>(bytes);
-  }
-}
 
 class Reader {
  public:
@@ -186,13 +110,12 @@ class Reader {
   }
 
   PlyType type_of(std::string_view name) const {
-    const auto found =
-        std::find_if(kTypeNames.begin(), kTypeNames.end(), [&](const TypeName& type) { return type.name == name; });
-    if (found == kTypeNames.end()) {
+    const std::optional<PlyType> type = ply_type_of(name);
+    if (!type) {
       fail(
           fmt::format("type '{}', expected one of: int8, uint8, int16, uint16, int32, uint32, float32, float64", name));
     }
-    return found->type;
+    return *type;
   }
 
   void add_column(std::string_view name, std::string_view type, std::optional<std::string_view> count_type) {
@@ -236,6 +159,10 @@ class Reader {
 
   void read_element(PlyElement& element, const std::vector<PlyType>& count_types) {
     reserve(element, count_types);
+    if (encoding_ != Encoding::kAscii && has_no_lists(element)) {
+      read_columns(element);
+      return;
+    }
     for (std::size_t record = 0; record < element.count; ++record) {
       if (encoding_ == Encoding::kAscii) {
         read_line(element);
@@ -243,6 +170,26 @@ class Reader {
         read_record(element, count_types, record);
       }
     }
+  }
+
+  static bool has_no_lists(const PlyElement& element) {
+    return std::none_of(element.columns.begin(), element.columns.end(), [](const PlyColumn& c) { return c.is_list; });
+  }
+
+  /// All records of an element whose records are equally long: column by column, many times as fast as one by one.
+  /// That the file has as many bytes is known.
+  void read_columns(PlyElement& element) {
+    std::size_t record_bytes = 0;
+    for (const PlyColumn& column : element.columns) {
+      record_bytes += traits(column.type).bytes;
+    }
+    const char* field = rest_.data();
+    for (PlyColumn& column : element.columns) {
+      column.values.resize(element.count);
+      load_column(column, field, record_bytes, encoding_ == Encoding::kBigEndian);
+      field += traits(column.type).bytes;
+    }
+    rest_.remove_prefix(element.count * record_bytes);
   }
 
   void read_line(PlyElement& element) {
@@ -276,7 +223,7 @@ class Reader {
       fail(fmt::format("{} values, expected more: '{}' is missing", words.size(), column.name));
     }
     const std::optional<double> number = parse_number<double>(words[i]);
-    const TypeTraits& range = traits(type);
+    const PlyTypeTraits& range = traits(type);
     const bool fits =
         number &&
         (!range.whole || (*number >= range.minimum && *number <= range.maximum && *number == std::floor(*number)));
@@ -319,7 +266,7 @@ class Reader {
       std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
     }
     rest_.remove_prefix(size);
-    return load_as(type, bytes.data());
+    return load_number(type, bytes.data());
   }
 
   static void end_list(PlyColumn& column) {
@@ -353,32 +300,14 @@ const PlyElement* PlyFile::find(std::string_view element) const {
   return found == elements.end() ? nullptr : &*found;
 }
 
-PlyFile read_ply(const std::filesystem::path& path) { return parse_ply(read_whole_file(path), path); }
+PlyFile read_ply(const std::filesystem::path& path) {
+  const std::string content = read_whole_file(path);
+  refuse_lfs_pointer(path, content);
+  return parse_ply(content, path);
+}
 
 PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin) {
   return Reader(content, origin).read();
-}
-
-std::string ply_bytes(std::span<const Eigen::Vector3d> points) {
-  std::string bytes = fmt::format(
-      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty float x\nproperty float y\n"
-      "property float z\nend_header\n",
-      points.size());
-  bytes.reserve(bytes.size() + points.size() * 3 * sizeof(float));
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    for (const double coordinate : points[i]) {
-      // Written so that NaN fails as well.
-      if (!(std::abs(coordinate) <= std::numeric_limits<float>::max())) {
-        throw std::invalid_argument(fmt::format("point {} of a PLY file has a number that is no finite float32", i));
-      }
-      append_value(bytes, static_cast<float>(coordinate));
-    }
-  }
-  return bytes;
-}
-
-void write_ply(const std::filesystem::path& path, std::span<const Eigen::Vector3d> points) {
-  write_whole_file(path, ply_bytes(points));
 }
 
 }  // namespace dynamic_icp::formats

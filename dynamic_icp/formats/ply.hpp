@@ -11,6 +11,8 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/formats/npy.hpp"
+
 namespace dynamic_icp::formats {
 
 enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
@@ -61,8 +63,13 @@ PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin)
 /// Throws std::invalid_argument when a number is not finite as a float32: such files never leave the program.
 std::string ply_bytes(std::span<const Eigen::Vector3d> points);
 
-/// Writes such a file whole or not at all (see write_whole_file). Throws as `ply_bytes` does, and DataError naming file
-/// and reason when the machine fails.
+/// The same with the element "vertex" of any columns, each with the type it has, bit by bit: arrays of shape (N,), at
+/// least one. Numbers that are not finite stay. Throws std::invalid_argument when they differ in length, names are
+/// missing, taken or have blanks, and for integers of 64 bits, which PLY does not know.
+std::string ply_table_bytes(std::span<const NamedArray> columns);
+
+/// Writes a file of points whole or not at all (see write_whole_file). Throws as `ply_bytes` does, and DataError naming
+/// file and reason when the machine fails.
 void write_ply(const std::filesystem::path& path, std::span<const Eigen::Vector3d> points);
 
 }  // namespace dynamic_icp::formats

@@ -3,6 +3,7 @@
 #include "dynamic_icp/formats/ply.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <functional>
 #include <iterator>
@@ -209,6 +210,40 @@ TEST(PlyPoints, WritesAFileWholeOrNotAtAll) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
   fs::remove_all(folder);
   EXPECT_THROW(write_ply(path, points), DataError);
+}
+
+TEST(PlyTable, KeepsTypesAndBits) {
+  const std::vector<float> x = {1.5F, std::numeric_limits<float>::quiet_NaN()};
+  const std::vector<double> y = {0.1, -2e300};
+  const std::vector<std::uint8_t> line = {7, 255};
+  const std::vector<std::int32_t> time = {-1, 100'000'000};
+  const std::vector<NamedArray> columns = {{"x", npy_array<float>({2}, x)},
+                                           {"y", npy_array<double>({2}, y)},
+                                           {"line", npy_array<std::uint8_t>({2}, line)},
+                                           {"time", npy_array<std::int32_t>({2}, time)}};
+  std::string expected =
+      "ply\nformat binary_little_endian 1.0\nelement vertex 2\nproperty float x\nproperty double y\n"
+      "property uchar line\nproperty int time\nend_header\n";
+  for (std::size_t i = 0; i < 2; ++i) {
+    expected.append(reinterpret_cast<const char*>(&x[i]), 4).append(reinterpret_cast<const char*>(&y[i]), 8);
+    expected.append(reinterpret_cast<const char*>(&line[i]), 1).append(reinterpret_cast<const char*>(&time[i]), 4);
+  }
+  EXPECT_EQ(ply_table_bytes(columns), expected);
+  const PlyFile file = parse_ply(expected, "scan.ply");
+  EXPECT_EQ(file.find("vertex")->find("y")->values, y);
+  EXPECT_EQ(file.find("vertex")->find("line")->type, PlyType::kUint8);
+  EXPECT_TRUE(std::isnan(file.find("vertex")->find("x")->values[1]));
+}
+
+TEST(PlyTable, RefusesWhatPlyCannotHold) {
+  const std::vector<std::int64_t> big = {1};
+  const NamedArray wide{"t", npy_array<std::int64_t>({1}, big)};
+  EXPECT_THROW(ply_table_bytes(std::vector<NamedArray>{wide}), std::invalid_argument);
+  EXPECT_THROW(ply_table_bytes({}), std::invalid_argument);
+  const std::vector<float> two = {1, 2};
+  const NamedArray x{"x", npy_array<float>({2}, two)};
+  EXPECT_THROW(ply_table_bytes(std::vector<NamedArray>{x, x}), std::invalid_argument);
+  EXPECT_THROW(ply_table_bytes(std::vector<NamedArray>{{"x", npy_array<float>({1, 2}, two)}}), std::invalid_argument);
 }
 
 }  // namespace

@@ -1,0 +1,108 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <memory>
+#include <optional>
+
+#include <CLI/CLI.hpp>
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/base/version.hpp"
+#include "dynamic_icp/conversion/conversion.hpp"
+#include "dynamic_icp/datasets/input_settings.hpp"
+#include "dynamic_icp/formats/output_folder.hpp"
+#include "dynamic_icp/formats/whole_file.hpp"
+
+#include "apps/command_line.hpp"
+#include "apps/commands.hpp"
+#include "apps/input_options.hpp"
+#include "apps/progress.hpp"
+#include "apps/scan_selection.hpp"
+
+namespace dynamic_icp::apps {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kRecord = "conversion.json";  // what was converted how; marks the folder as a result
+
+struct ConvertOptions {
+  std::string input;
+  std::string to;
+  std::string output;
+  datasets::InputSettings settings;  ///< what was said about the input
+  std::size_t start = 0;
+  std::optional<std::size_t> max_frames;
+  bool force = false;
+  bool quiet = false;
+};
+
+std::string record_json(const ConvertOptions& options, const datasets::Dataset& dataset, const ScanSelection& selection,
+                        const std::vector<std::string>& left_out) {
+  const nlohmann::ordered_json json = {{"version", version()},
+                                       {"command", command_line()},
+                                       {"input",
+                                        {{"path", fs::absolute(options.input).string()},
+                                         {"format", dataset.format()},
+                                         {"options", datasets::texts(options.settings)},
+                                         {"scans", dataset.size()}}},
+                                       {"format", options.to},
+                                       {"start", selection.begin},
+                                       {"scans", selection.end - selection.begin},
+                                       {"ground_truth", dataset.ground_truth_file().string()},
+                                       {"assumptions", dataset.assumptions()},
+                                       {"notes", left_out}};
+  // File names need not be UTF-8.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+int convert(const ConvertOptions& options) {
+  const conversion::Target target = conversion::find_target(options.to);
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
+  const ScanSelection selection = select_scans(*dataset, options.start, options.max_frames);
+  if (!options.quiet) {
+    for (const std::string& assumption : dataset->assumptions()) {
+      fmt::print(stderr, "dynamic-icp: warning: {}\n", assumption);
+    }
+  }
+  formats::OutputFolder output(options.output, kRecord, options.force);
+  std::vector<std::string> notes;
+  {
+    Progress progress("convert", 2 * (selection.end - selection.begin), options.quiet);
+    notes = conversion::convert(*dataset, {selection.begin, selection.end}, target, output.path(),
+                                [&] { progress.advance(); });
+  }
+  formats::write_whole_file(output.path() / kRecord, record_json(options, *dataset, selection, notes));
+  output.commit();
+  if (!options.quiet) {
+    for (const std::string& note : notes) {
+      fmt::print("note         {}\n", note);
+    }
+    fmt::print("scans        {}, {} to {}\n", selection.end - selection.begin, dataset->format(), options.to);
+    fmt::print("written to   {}\n", options.output);
+  }
+  return 0;
+}
+
+}  // namespace
+
+void add_convert_command(CLI::App& app, std::function<int()>& selected) {
+  const auto options = std::make_shared<ConvertOptions>();
+  CLI::App* command = app.add_subcommand("convert", "Write a recording in another layout");
+  command->add_option("INPUT", options->input, "Folder or file of the recording")->required();
+  command->add_option("--to", options->to, "Layout to write: dicp, npz, pcd or ply")->required()->type_name("NAME");
+  command->add_option("--output", options->output, "Folder for the result; must be new or empty")
+      ->required()
+      ->type_name("DIR");
+  add_input_options(*command, options->settings);
+  command->add_option("--start", options->start, "First scan, counted from 0 (default 0)")->type_name("N");
+  command->add_option("--max-frames", options->max_frames, "Most scans to convert, 1 or more (default: all)")
+      ->type_name("N")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--force", options->force, "Replace an earlier conversion in DIR");
+  command->add_flag("--quiet", options->quiet, "Print errors only");
+  command->callback([options, &selected] { selected = [options] { return convert(*options); }; });
+}
+
+}  // namespace dynamic_icp::apps

@@ -1,0 +1,51 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace dynamic_icp::datasets {
+
+/// A column of a file whose arrays have names.
+struct FieldColumn {
+  std::string array;
+  std::size_t column = 0;  ///< of an array with several
+  bool whole = true;       ///< the array must have this column only
+
+  bool operator==(const FieldColumn&) const = default;
+};
+
+/// Which columns say what.
+struct FieldMap {
+  std::array<FieldColumn, 3> point;  ///< x, y, z
+  FieldColumn doppler;
+  std::optional<FieldColumn> time;
+  std::optional<std::array<FieldColumn, 3>> line_of_sight;
+  std::vector<std::string> assumptions;  ///< what was chosen where the name was not the obvious one, in sentences
+
+  /// Whether anything is taken from the array of that name.
+  [[nodiscard]] bool uses(const std::string& array) const;
+};
+
+/// Finds the columns by the names that are in use, whatever their case. `names` are those of the arrays of one file,
+/// `origin` the file that messages name.
+///
+///   point          x, y, z; or one array of them: points, xyz, pts, positions
+///   doppler        doppler, velocity, radial_velocity, radial_vel, v_radial, doppler_velocity, dopplers, velocity_mps,
+///                  vel, v_r, vr, rv, v, in this order
+///   time           time_offset_ns, time_offset_s, offset_time, t, time_stamp, timestamp, time, time_offset,
+///                  time_offsets, in this order
+///   line of sight  los or directions, or los_x, los_y, los_z
+///
+/// `wanted` goes before that: the column of x, y, z, doppler or time, "points[3]" being the fourth of an array, and the
+/// array of los. Throws UsageError for other keys; DataError naming the columns there are where a wanted one is not
+/// among them or none has a known name (time and line of sight may be missing).
+FieldMap map_fields(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
+                    const std::string& origin);
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,29 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/datasets/column_folder.hpp"
+
+#include "fuzz/memory_file.hpp"
+
+// Any bytes are read or refused with a DataError.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace dynamic_icp;
+  try {
+    // PCD, PLY or NPZ as a recording of one scan, by the first byte.
+    if (size == 0) {
+      return 0;
+    }
+    const fuzz::MemoryFile input(data + 1, size - 1);
+    const auto open = data[0] % 3 == 0   ? datasets::open_pcd
+                      : data[0] % 3 == 1 ? datasets::open_ply
+                                         : datasets::open_npz;
+    const std::unique_ptr<datasets::Dataset> dataset = open(input.path(), {});
+    const RawScan raw = dataset->scan(0);
+    fuzz::must(Scan::from_raw(raw).size() <= raw.points.size());
+    (void)dataset->columns(0);
+  } catch (const DataError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,22 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/formats/npy.hpp"
+
+#include <string_view>
+
+#include "dynamic_icp/base/error.hpp"
+
+#include "fuzz/memory_file.hpp"
+
+// Any bytes are read or refused with a DataError.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace dynamic_icp;
+  try {
+    const formats::NpyArray array = formats::parse_npy({reinterpret_cast<const char*>(data), size}, "input");
+    fuzz::must(formats::parse_npy(formats::npy_bytes(array), "again").bytes == array.bytes);
+    fuzz::must(formats::column_as_doubles(array).size() == formats::rows_of(array));
+    (void)formats::column_as_integers(array);
+  } catch (const DataError&) {
+  }
+  return 0;
+}

@@ -1,0 +1,24 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/formats/ply.hpp"
+
+#include <string_view>
+
+#include "dynamic_icp/base/error.hpp"
+
+#include "fuzz/memory_file.hpp"
+
+// Any bytes are read or refused with a DataError.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace dynamic_icp;
+  try {
+    const formats::PlyFile file = formats::parse_ply({reinterpret_cast<const char*>(data), size}, "input");
+    for (const formats::PlyElement& element : file.elements) {
+      for (const formats::PlyColumn& column : element.columns) {
+        fuzz::must((column.is_list ? column.list_begins.size() - 1 : column.values.size()) == element.count);
+      }
+    }
+  } catch (const DataError&) {
+  }
+  return 0;
+}

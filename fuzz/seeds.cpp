@@ -1,0 +1,118 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+// Small valid files for the fuzzers to begin with: fuzz_seeds DIR writes DIR/<target>/<name>.
+#include <filesystem>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/npz.hpp"
+#include "dynamic_icp/formats/pcd.hpp"
+#include "dynamic_icp/formats/ply.hpp"
+#include "dynamic_icp/formats/tum.hpp"
+
+namespace dynamic_icp::fuzz {
+namespace {
+
+namespace fs = std::filesystem;
+using formats::NamedArray;
+
+template <class Number>
+NamedArray array(const char* name, std::vector<std::size_t> shape, const std::vector<Number>& values) {
+  return {name, formats::npy_array<Number>(std::move(shape), values)};
+}
+
+/// Two points.
+std::vector<NamedArray> table() {
+  return {array<float>("x", {2}, {1, 2}),
+          array<float>("y", {2}, {3, -4}),
+          array<float>("z", {2}, {0.5F, 0.25F}),
+          array<float>("doppler", {2}, {-1.5F, 2}),
+          array<int>("time_offset_ns", {2}, {0, 99}),
+          array<std::uint8_t>("line", {2}, {1, 2})};
+}
+
+/// A header of PCD with these data.
+std::string pcd(const std::string& encoding, const std::string& data) {
+  return "FIELDS x y z v t\nSIZE 4 4 4 4 8\nTYPE F F F F U\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA " + encoding + "\n" +
+         data;
+}
+
+class Seeds {
+ public:
+  explicit Seeds(fs::path folder) : folder_(std::move(folder)) {}
+
+  void write(const std::string& target, const std::string& content) {
+    formats::make_folder(folder_ / target);
+    formats::write_bytes(folder_ / target / fmt::format("seed-{}", ++written_), std::as_bytes(std::span(content)));
+  }
+
+  void write_all() {
+    const NamedArray points = array<double>("points", {2, 3}, {1, 2, 3, 4, 5, 6});
+    std::string npy = formats::npy_bytes(points.array);
+    write("npy", npy);
+    npy.replace(npy.find("False"), 5, "True ");
+    npy.replace(npy.find("<f8"), 3, ">f8");
+    write("npy", npy);
+    const std::string npz = formats::npz_bytes(
+        std::vector<NamedArray>{points, array<float>("doppler", {2}, {1, 2}), array<double>("t", {2}, {0, 0.1}),
+                                array<float>("los", {2, 3}, {1, 0, 0, 0, 1, 0})});
+    write("npz", npz);
+    write("columns", "2" + npz);
+    const std::string binary_pcd = formats::pcd_table_bytes(table());
+    const std::string ascii_pcd = pcd("ascii", "1 2 3 -4.5 1724479779384729506\n");
+    std::string packed = "\x17";
+    packed += std::string(24, 'a');
+    std::string sizes;
+    formats::append_value(sizes, static_cast<std::uint32_t>(packed.size()));
+    formats::append_value(sizes, std::uint32_t{24});
+    for (const std::string& content : {binary_pcd, ascii_pcd, pcd("binary_compressed", sizes + packed)}) {
+      write("pcd", content);
+      write("columns", "0" + content);
+    }
+    const std::string binary_ply = formats::ply_table_bytes(table());
+    const std::string ascii_ply =
+        "ply\nformat ascii 1.0\ncomment c\nelement face 1\nproperty list uchar int c\nelement vertex 1\n"
+        "property double x\nproperty float y\nproperty int z\nproperty float velocity\nproperty float time\n"
+        "end_header\n3 0 1 2\n1 2 3 -4 0.5\n";
+    std::string big_ply = binary_ply;
+    big_ply.replace(big_ply.find("little"), 6, "big");
+    for (const std::string& content : {binary_ply, ascii_ply, big_ply}) {
+      write("ply", content);
+      write("columns", "1" + content);
+    }
+    write("tum", "# c\n0.0 0 0 0 0 0 0 1\n1724479779384729506, 1, 2, 3, 0, 0, 0.6, 0.8\n1.8e9 1 2 3 0 0 0 -1\n");
+    std::string records;
+    for (const float value : {1.0F, 2.0F, 3.0F, -4.0F, 5.0F, 6.0F, 7.0F, 8.0F, 9.0F, 10.0F}) {
+      formats::append_value(records, value);
+    }
+    write("xyzd", records);
+    write("aeva", records);
+    write(
+        "aevascenes",
+        R"({"metadata":{"sensors":{"lidars":["a"]},"vehicle_to_lidar_extrinsics":{"a":{"translation":{"x":1,"y":2,"z":3},)"
+        R"("rotation":{"w":1,"x":0,"y":0,"z":0}}}},"frames":[{"timestamp_ns":"17","ego_pose":{"translation":{"x":1,"y":2,)"
+        R"("z":3},"rotation":{"w":1,"x":0,"y":0,"z":0}},"point_cloud":{"a":{"point_cloud_raw_path":"p"}},"boxes":[{"id":)"
+        R"("b","reference_frame":"a","dimensions":{"x":1,"y":2,"z":3},"pose":{"translation":{"x":1,"y":2,"z":3},)"
+        R"("rotation":{"w":1,"x":0,"y":0,"z":0}},"linear_velocity":{"x":1,"y":2,"z":3},"class":"car"}]}]})");
+  }
+
+ private:
+  fs::path folder_;
+  int written_ = 0;
+};
+
+}  // namespace
+}  // namespace dynamic_icp::fuzz
+
+int main(int argc, char** argv) {
+  if (argc != 2) {
+    fmt::print(stderr, "usage: fuzz_seeds DIR\n");
+    return 2;
+  }
+  dynamic_icp::fuzz::Seeds(argv[1]).write_all();
+  return 0;
+}

@@ -1,0 +1,19 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+
+#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/formats/xyzd_bin.hpp"
+
+#include "fuzz/memory_file.hpp"
+
+// Any bytes are read or refused with a DataError.
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
+  using namespace dynamic_icp;
+  try {
+    const fuzz::MemoryFile input(data, size);
+    const RawScan raw = formats::read_xyzd(input.path());
+    fuzz::must(Scan::from_raw(raw).size() <= size / 16);
+  } catch (const DataError&) {
+  }
+  return 0;
+}

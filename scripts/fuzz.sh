@@ -1,0 +1,53 @@
+#!/usr/bin/env bash
+# Feeds the readers of files with damaged ones until something breaks, under the address and undefined-behaviour
+# sanitizers: libFuzzer, two targets at a time. Installs clang when it is missing.
+# usage: scripts/fuzz.sh [SECONDS] [TARGET...]     each target for SECONDS (default 60); default: all targets
+# Findings stay in build-fuzz/findings, inputs that reach new code in build-fuzz/corpus. Status 1 after a finding.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+seconds=${1:-60}
+[[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "usage: scripts/fuzz.sh [SECONDS] [TARGET...]" >&2; exit 2; }
+shift $(($# > 0 ? 1 : 0))
+known=(npy npz pcd ply tum xyzd aeva aevascenes columns)
+targets=("$@")
+[[ $# -eq 0 ]] && targets=("${known[@]}")
+for target in "${targets[@]}"; do
+  [[ " ${known[*]} " == *" $target "* ]] || { echo "unknown target '$target'; known are: ${known[*]}" >&2; exit 2; }
+done
+
+scripts/install_dependencies.sh fuzzing
+
+build=build-fuzz
+echo "== Configuring and building"
+cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_COMPILER=clang++ \
+  -DDYNAMIC_ICP_BUILD_FUZZERS=ON -DDYNAMIC_ICP_BUILD_TESTS=OFF -DDYNAMIC_ICP_BUILD_APPS=OFF \
+  -DDYNAMIC_ICP_SANITIZE=address,undefined | grep -iE 'warning|error' || true
+cmake --build $build --target fuzzers
+$build/fuzz/fuzz_seeds $build/seeds
+mkdir -p $build/findings
+
+run() {  # target
+  mkdir -p "$build/corpus/$1"
+  if "$build/fuzz/fuzz_$1" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=8192 \
+    -artifact_prefix="$build/findings/$1-" "$build/corpus/$1" "$build/seeds/$1" >"$build/$1.log" 2>&1; then
+    echo "$1: $(grep -E '^Done' "$build/$1.log" || echo done)"
+  else
+    echo "$1: FINDING, see $build/$1.log"
+    return 1
+  fi
+}
+
+echo "== Fuzzing, $seconds s each"
+status=0
+for ((i = 0; i < ${#targets[@]}; i += 2)); do
+  jobs=()
+  for target in "${targets[@]:i:2}"; do
+    run "$target" &
+    jobs+=($!)
+  done
+  for job in "${jobs[@]}"; do
+    wait "$job" || status=1
+  done
+done
+exit $status
