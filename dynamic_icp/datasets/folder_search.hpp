@@ -1,0 +1,38 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string_view>
+#include <vector>
+
+namespace dynamic_icp::datasets {
+
+// Names are compared without regard to upper and lower case (of ASCII letters): releases of the same data set differ.
+
+/// The absolute path without a slash at its end and without "." and "..", so that it has a name and a parent.
+std::filesystem::path named_path(const std::filesystem::path& path);
+
+bool same_name(const std::filesystem::path& path, std::string_view name);
+
+/// The file or folder of that name in a folder, by way of folders with '/' ("LiDAR/Aeva"); empty when there is none. Of
+/// several the one spelled so, else the first in the order of names.
+std::filesystem::path child(const std::filesystem::path& folder, std::string_view name);
+
+/// Whether it is a folder with at least one file of this extension (".bin") that is not hidden.
+bool holds_files(const std::filesystem::path& folder, std::string_view extension);
+
+/// The folder `input` or those up to three levels below it that are what is looked for, in the order of names. Below
+/// one that is there is no further search. Archives are often unpacked into a folder more than expected.
+std::vector<std::filesystem::path> find_folders(const std::filesystem::path& input,
+                                                const std::function<bool(const std::filesystem::path&)>& wanted);
+
+/// The only one of them, or empty when there is none. Throws DataError that lists them when there are several.
+std::filesystem::path find_folder(const std::filesystem::path& input,
+                                  const std::function<bool(const std::filesystem::path&)>& wanted);
+
+/// The only one of recordings already found, as above.
+std::filesystem::path only_one(const std::filesystem::path& input, const std::vector<std::filesystem::path>& found);
+
+}  // namespace dynamic_icp::datasets
