@@ -235,7 +235,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& selected) {
   command->add_option("--show-sensor", options->show_sensor, "Print the file of a sensor and end")->type_name("NAME");
   command
       ->add_option("--layout", options->layout,
-                   "Files to write: dicp, hercules or aevascenes (default dicp); the truth is the same for all")
+                   "Files to write: dicp, hercules, helipr, boreas or aevascenes (default dicp); the truth is the same for all")
       ->type_name("NAME");
   command->add_option("--frames", options->frames, "Number of scans, the length of the drive (default 60)")
       ->type_name("N");

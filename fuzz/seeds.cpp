@@ -90,7 +90,7 @@ class Seeds {
       formats::append_value(records, value);
     }
     write("xyzd", records);
-    write("aeva", records);
+    write("records", records + records);
     write(
         "aevascenes",
         R"({"metadata":{"sensors":{"lidars":["a"]},"vehicle_to_lidar_extrinsics":{"a":{"translation":{"x":1,"y":2,"z":3},)"

@@ -92,6 +92,34 @@ std::optional<Stamp> parse_seconds(std::string_view text) {
   return Stamp{decimal->negative ? -ns : ns};
 }
 
+std::optional<Stamp> parse_unix_time(std::string_view digits) {
+  std::int64_t number = 0;
+  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
+  if (fault != std::errc() || end != digits.data() + digits.size() || number < 0) {
+    return std::nullopt;
+  }
+  std::int64_t unit_ns = 1;
+  switch (digits.size()) {
+    case 10:
+      unit_ns = kNanosecondsPerSecond;
+      break;
+    case 13:
+      unit_ns = 1'000'000;
+      break;
+    case 16:
+      unit_ns = 1'000;
+      break;
+    case 19:
+      break;
+    default:
+      return std::nullopt;
+  }
+  if (number > std::numeric_limits<std::int64_t>::max() / unit_ns) {
+    return std::nullopt;
+  }
+  return Stamp{number * unit_ns};
+}
+
 std::string format_seconds(Stamp stamp) {
   // The magnitude as unsigned: the most negative stamp has no positive counterpart.
   const bool negative = stamp.ns < 0;

@@ -26,6 +26,10 @@ double seconds_between(Stamp earlier, Stamp later);
 /// the ninth decimal are rounded half away from zero. Empty for anything that is not one number, or out of range.
 std::optional<Stamp> parse_seconds(std::string_view text);
 
+/// Reads Unix time as a whole number whose unit its length tells (dates from 2001 to 2286): 10 digits s, 13 ms, 16 us,
+/// 19 ns. Empty for anything else, or out of range.
+std::optional<Stamp> parse_unix_time(std::string_view digits);
+
 /// Decimal seconds with exactly nine decimals, e.g. "-0.500000000"; `parse_seconds` gives the same stamp back.
 std::string format_seconds(Stamp stamp);
 

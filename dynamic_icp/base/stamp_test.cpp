@@ -20,6 +20,17 @@ TEST(Stamp, ParsesDecimalSecondsExactly) {
   EXPECT_EQ(parse_seconds("-0.000000001")->ns, -1);
 }
 
+TEST(ParseUnixTime, TheNumberOfDigitsTellsTheUnit) {
+  EXPECT_EQ(parse_unix_time("1724479779")->ns, 1'724'479'779'000'000'000);
+  EXPECT_EQ(parse_unix_time("1724479779384")->ns, 1'724'479'779'384'000'000);
+  EXPECT_EQ(parse_unix_time("1724479779384729")->ns, 1'724'479'779'384'729'000);
+  EXPECT_EQ(parse_unix_time("1724479779384729506")->ns, 1'724'479'779'384'729'506);
+  for (const char* text : {"", "172447977", "17244797793", "-724479779", "1724479779.5", " 724479779", "1724479779x",
+                           "9999999999999999", "9999999999999999999", "17244797793847295060"}) {
+    EXPECT_FALSE(parse_unix_time(text)) << text;
+  }
+}
+
 TEST(Stamp, ParsesExponentsByShiftingThePoint) {
   EXPECT_EQ(parse_seconds("1.724479779384729506e+09")->ns, 1724479779384729506);
   EXPECT_EQ(parse_seconds("1e-9")->ns, 1);

@@ -13,6 +13,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/base/parse_number.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/file_kind.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -135,7 +136,7 @@ AevaScenesSequence read_aevascenes_sequence(const std::filesystem::path& path) {
   Place place{path, "metadata"};
   try {
     const std::string content = formats::read_whole_file(path);
-    formats::refuse_lfs_pointer(path, content);
+    formats::refuse_other_kind(path, content, formats::FileKind::kUnknown);
     const Json json = Json::parse(content);
     read_metadata(json.at("metadata"), sequence, place);
     place.where = "frames";

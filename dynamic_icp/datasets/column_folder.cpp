@@ -175,16 +175,11 @@ class ColumnDataset final : public Dataset {
   }
 
   void find_stamps(const fs::path& folder, double period_s) {
-    std::vector<std::string> said;
-    stamps_ = stamps_of(files_, period_s, said);
-    for (std::size_t i = 1; i < stamps_.size(); ++i) {
-      if (stamps_[i] <= stamps_[i - 1]) {
-        throw DataError(fmt::format("{}: is at {} s by its name, expected later than {} at {} s", files_[i].string(),
-                                    format_seconds(stamps_[i]), files_[i - 1].filename().string(),
-                                    format_seconds(stamps_[i - 1])));
-      }
-    }
-    const bool are_indices = !said.empty();
+    StampedFiles stamped = stamped_files(files_, period_s);
+    files_ = std::move(stamped.files);
+    stamps_ = std::move(stamped.stamps);
+    std::vector<std::string>& said = stamped.assumptions;
+    const bool are_indices = stamped.are_indices;
     truth_ = find_truth(folder, stamps_, are_indices, assumptions_);
     if (are_indices && !truth_.poses.empty()) {
       std::transform(truth_.poses.begin(), truth_.poses.end(), stamps_.begin(),

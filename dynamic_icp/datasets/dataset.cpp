@@ -5,9 +5,15 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/aeva_folder.hpp"
 #include "dynamic_icp/datasets/aevascenes.hpp"
+#include "dynamic_icp/datasets/bin_folder.hpp"
+#include "dynamic_icp/datasets/boreas.hpp"
 #include "dynamic_icp/datasets/column_folder.hpp"
 #include "dynamic_icp/datasets/dicp.hpp"
+#include "dynamic_icp/datasets/helipr.hpp"
+#include "dynamic_icp/datasets/hercules.hpp"
+#include "dynamic_icp/datasets/not_a_recording.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -20,15 +26,23 @@ struct Layout {
   std::string_view looks_like;
   fs::path (*find)(const fs::path& input);  ///< the folder to open; empty when the input is not of this layout
   std::unique_ptr<Dataset> (*open)(const fs::path& folder, const OpenOptions& options);
+  fs::path (*find_named)(const fs::path& input) = nullptr;  ///< instead of `find` when the user names the layout
 };
 
+// The first that finds something is taken.
 constexpr Layout kLayouts[] = {
-    {"dicp", "a folder with point_clouds/*.bin", find_dicp, open_dicp},
+    {"dicp", "a folder with point_clouds/*.bin", find_dicp, open_dicp, find_dicp_scans},
+    {"hercules", "LiDAR/Aeva/*.bin with PR_GT/ or Radar/, or of 2024 and later", find_hercules, open_hercules,
+     find_aeva_folder},
+    {"helipr", "LiDAR/Aeva/*.bin otherwise", find_helipr, open_helipr, find_aeva_folder},
+    {"boreas", "aeva/*.bin with applanix/ or calib/; frames/*.bin with timestamps.txt and aeva_poses.txt", find_boreas,
+     open_boreas, find_boreas_scans},
     {"aevascenes", "sequence.json beside pointcloud_compensated/ or pointcloud_raw/", find_aevascenes, open_aevascenes},
     // What any data set may hold comes last.
     {"npz", "*.npz, or <name>.npy with <name>_dop.npy", find_npz, open_npz},
     {"pcd", "*.pcd", find_pcd, open_pcd},
     {"ply", "*.ply", find_ply, open_ply},
+    {"bin", "a folder of *.bin whose records are told by their content", find_bin_folder, open_bin_folder},
 };
 
 std::string looked_for() {
@@ -40,7 +54,8 @@ std::string looked_for() {
 }
 
 std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& input, const OpenOptions& options) {
-  const fs::path folder = layout.find(input);
+  const bool is_named = options.format == layout.name && layout.find_named != nullptr;
+  const fs::path folder = is_named ? layout.find_named(input) : layout.find(input);
   return folder.empty() ? nullptr : layout.open(folder, options);
 }
 
@@ -70,6 +85,9 @@ std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& 
   }
   if (!known) {
     throw UsageError(fmt::format("unknown format '{}'; known are: auto{}", format, looked_for()));
+  }
+  if (const std::string obstacle = known_obstacle(input); !obstacle.empty()) {
+    throw DataError(obstacle);
   }
   throw DataError(fmt::format("{}: not a recording of a known layout. Looked for:{}", input.string(), looked_for()));
 }

@@ -34,7 +34,8 @@ struct AnnotatedBox {
 
 /// A recording: scans by index, their time stamps, and the ground truth where the recording has one.
 ///
-/// Opening reads no points; `scan` reads one scan. Doppler leaves a dataset in m/s, positive away from the sensor.
+/// Opening reads no points, but for one scan at most to tell how points are stored; `scan` reads one scan. Doppler leaves
+/// a dataset in m/s, positive away from the sensor.
 class Dataset {
  public:
   virtual ~Dataset() = default;

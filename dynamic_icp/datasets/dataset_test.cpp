@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/datasets/dataset.hpp"
 
+#include <algorithm>
+#include <fstream>
+
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -38,9 +41,33 @@ TEST_F(OpenDataset, AnUnknownLayoutSaysWhatWasLookedFor) {
   EXPECT_THROW(open_dataset(folder_, {.format = "dicp"}), DataError);
 }
 
+TEST_F(OpenDataset, ArchivesAndTheLikeAreNamed) {
+  const auto fault = [&](const fs::path& input) -> std::string {
+    try {
+      open_dataset(input);
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "no error";
+  };
+  std::ofstream(folder_ / "b.tar.gz", std::ios::binary) << std::string("\x1F\x8B\x08\0\0\0\0\0\0\x03", 10);
+  EXPECT_EQ(fault(folder_), (folder_ / "b.tar.gz").string() +
+                                ": is compressed with gzip; unpack it first ('gunzip', or 'tar xzf' for a .tar.gz)");
+  std::ofstream(folder_ / "a.zip", std::ios::binary) << "PK\x03\x04";
+  EXPECT_EQ(fault(folder_), (folder_ / "a.zip").string() + ": is a zip archive; unpack it first");
+  EXPECT_EQ(fault(folder_ / "a.zip"), fault(folder_));
+  std::ofstream(folder_ / "drive.mcap", std::ios::binary) << "\x89MCAP0\r\n";
+  EXPECT_EQ(fault(folder_ / "drive.mcap"), (folder_ / "drive.mcap").string() + ": is an MCAP recording");
+  std::ofstream(folder_ / "notes.txt") << "nothing";
+  EXPECT_NE(fault(folder_ / "notes.txt").find("not a recording of a known layout"), std::string::npos);
+}
+
 TEST_F(OpenDataset, AnUnknownFormatNameIsWrongUse) {
   EXPECT_THROW(open_dataset(folder_, {.format = "vhs"}), UsageError);
-  EXPECT_EQ(known_formats(), (std::vector<std::string>{"dicp", "aevascenes", "npz", "pcd", "ply"}));
+  const std::vector<std::string> known = known_formats();
+  for (const char* format : {"dicp", "hercules", "helipr", "boreas", "aevascenes", "npz", "pcd", "ply", "bin"}) {
+    EXPECT_NE(std::find(known.begin(), known.end(), format), known.end()) << format;
+  }
 }
 
 }  // namespace

@@ -2,15 +2,20 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/datasets/dicp.hpp"
 
-#include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/folder_search.hpp"
 #include "dynamic_icp/datasets/numbered_files.hpp"
+#include "dynamic_icp/datasets/record_guess.hpp"
+#include "dynamic_icp/datasets/scan_stamps.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/point_records.hpp"
+#include "dynamic_icp/formats/record_file.hpp"
 #include "dynamic_icp/formats/tum.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 #include "dynamic_icp/formats/xyzd_bin.hpp"
@@ -20,28 +25,31 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kSearchDepth = 3;
+constexpr const char* kScans = "point_clouds";
+
+bool is_dicp(const fs::path& folder) { return holds_files(folder / kScans, ".bin"); }
 
 /// Seconds after the stamp, one float32 per point. Our own addition to the layout, for scans that take time.
 std::vector<double> read_times(const fs::path& path, std::size_t points) {
-  const formats::RecordFile file = formats::read_record_file(path, sizeof(float));
-  if (file.bytes.size() != points * sizeof(float)) {
-    throw DataError(
-        fmt::format("{}: {} times for {} points, expected one float32 per point", path.string(), file.records, points));
+  formats::RecordFile file(path, sizeof(float));
+  if (file.records() != points || (points > 0 && !file.warning().empty())) {
+    throw DataError(fmt::format("{}: {} times for {} points, expected one float32 per point", path.string(),
+                                file.records(), points));
   }
-  std::vector<double> times(points);
-  for (std::size_t i = 0; i < points; ++i) {
-    times[i] = formats::value_at<float>(file.bytes, i * sizeof(float));
+  std::vector<double> times;
+  times.reserve(points);
+  for (std::string_view block = file.next(); !block.empty(); block = file.next()) {
+    for (std::size_t at = 0; at < block.size(); at += sizeof(float)) {
+      times.push_back(formats::value_at<float>(block, at));
+    }
   }
   return times;
 }
 
 class DicpDataset final : public Dataset {
  public:
-  DicpDataset(const fs::path& folder, const OpenOptions& options) : files_(numbered_files(folder / "point_clouds", ".bin")) {
-    if (files_.empty()) {
-      throw DataError(fmt::format("{}: holds no *.bin scans", (folder / "point_clouds").string()));
-    }
+  DicpDataset(const fs::path& folder, const OpenOptions& options) {
+    const fs::path scans = is_dicp(folder) ? folder / kScans : folder;
     if (fs::is_directory(folder / "times")) {
       times_ = folder / "times";
     }
@@ -50,13 +58,15 @@ class DicpDataset final : public Dataset {
     }
     const fs::path poses = folder / "ref_poses.txt";
     if (fs::exists(poses)) {
+      files_ = numbered_files(scans, ".bin");
       read_poses(poses);
-    } else {
-      const std::int64_t period_ns = std::llround(1e9 * options.period_s);
-      for (std::size_t i = 0; i < files_.size(); ++i) {
-        stamps_.push_back(Stamp{static_cast<std::int64_t>(i) * period_ns});
-      }
-      assumptions_.push_back(fmt::format("no ref_poses.txt: a scan period of {} s is assumed", options.period_s));
+      return;
+    }
+    StampedFiles stamped = stamped_files(scans, ".bin", options.period_s);
+    files_ = std::move(stamped.files);
+    stamps_ = std::move(stamped.stamps);
+    for (const std::string& sentence : stamped.assumptions) {
+      assumptions_.push_back("no ref_poses.txt: " + sentence);
     }
   }
 
@@ -72,6 +82,7 @@ class DicpDataset final : public Dataset {
 
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     RawScan raw = formats::read_xyzd(files_.at(index));
+    refuse_foreign_numbers(raw, files_[index], formats::kXyzd);
     raw.stamp = stamps_[index];
     if (!times_.empty()) {
       raw.times = read_times(times_ / files_[index].filename(), raw.points.size());
@@ -102,40 +113,25 @@ class DicpDataset final : public Dataset {
   std::vector<std::string> assumptions_;
 };
 
-bool holds_scans(const fs::path& folder) {
-  return fs::is_directory(folder / "point_clouds") && !numbered_files(folder / "point_clouds", ".bin").empty();
-}
-
 }  // namespace
 
 fs::path find_dicp(const fs::path& input) {
   // Given the folder of the scans itself, its parent is meant.
-  if (input.filename() == "point_clouds" && holds_scans(input.parent_path())) {
-    return input.parent_path();
+  const fs::path whole = named_path(input);
+  if (whole.filename() == kScans && is_dicp(whole.parent_path())) {
+    return whole.parent_path();
   }
-  if (holds_scans(input)) {
-    return input;
+  return find_folder(input, is_dicp);
+}
+
+fs::path find_dicp_scans(const fs::path& input) {
+  const fs::path folder = find_dicp(input);
+  if (!folder.empty()) {
+    return folder;
   }
-  std::vector<fs::path> found;
-  std::error_code ignored;
-  for (auto entry = fs::recursive_directory_iterator(input, fs::directory_options::skip_permission_denied, ignored);
-       entry != fs::recursive_directory_iterator(); entry.increment(ignored)) {
-    if (entry.depth() + 1 >= kSearchDepth) {
-      entry.disable_recursion_pending();
-    }
-    if (entry->is_directory(ignored) && holds_scans(entry->path())) {
-      found.push_back(entry->path());
-    }
-  }
-  if (found.size() > 1) {
-    std::sort(found.begin(), found.end());
-    std::string names;
-    for (const fs::path& path : found) {
-      names += "\n  " + path.string();
-    }
-    throw DataError(fmt::format("{}: holds several recordings, name one of them:{}", input.string(), names));
-  }
-  return found.empty() ? fs::path() : found.front();
+  return holds_files(input, ".bin") ? input : find_folder(input, [](const fs::path& below) {
+    return same_name(below, "velodyne") && holds_files(below, ".bin");
+  });
 }
 
 Eigen::Isometry3d read_calibration(const fs::path& path) {

@@ -69,13 +69,13 @@ TEST_F(Dicp, ReadsTimesOfPointsWhereThereAreSome) {
   }
 }
 
-TEST_F(Dicp, AnEmptyScanHasNoTimes) {
+TEST_F(Dicp, EmptyScansHaveEmptyTimes) {
   fs::create_directories(folder_ / "times");
   write("point_clouds/00001.bin", "");
   write("times/00001.bin", "");
-  EXPECT_TRUE(open_dataset(folder_)->scan(0).times.empty());
-  write("times/00001.bin", "ab");
-  EXPECT_THROW((void)open_dataset(folder_)->scan(0), DataError);
+  const RawScan scan = open_dataset(folder_)->scan(0);
+  EXPECT_TRUE(scan.points.empty() && scan.times.empty());
+  EXPECT_NE(scan.warning.find("00001.bin: empty file"), std::string::npos);
 }
 
 TEST_F(Dicp, ReadsScansInOrderWithTheStampsOfThePoses) {
@@ -99,6 +99,45 @@ TEST_F(Dicp, AssumesAPeriodWithoutPosesAndSaysSo) {
   EXPECT_TRUE(dataset->ground_truth().empty());
   EXPECT_TRUE(dataset->ground_truth_file().empty());
   EXPECT_EQ(dataset->assumptions().size(), 1u);
+}
+
+TEST_F(Dicp, NamesMayBeTimeStampsWithoutPoses) {
+  fs::remove_all(folder_ / "point_clouds");
+  fs::create_directories(folder_ / "point_clouds");
+  write("point_clouds/1724479779484729506.bin", record(2, 2, 3, -4));
+  write("point_clouds/1724479779384729506.bin", record(1, 2, 3, -4));
+  const std::unique_ptr<Dataset> dataset = open_dataset(folder_);
+  EXPECT_EQ(dataset->stamp(0).ns, 1'724'479'779'384'729'506);
+  EXPECT_EQ(dataset->scan(1).points.at(0).x(), 2.0);
+  EXPECT_TRUE(dataset->assumptions().empty());
+}
+
+TEST_F(Dicp, ForeignNumbersAreRefusedWithFileAndPlace) {
+  std::string bytes;
+  for (int i = 1; i < 50; ++i) {
+    bytes += record(12.3F, -1.7F * static_cast<float>(i), 0.37F, -3.1F);
+  }
+  for (std::size_t at = 0; at < bytes.size(); at += 4) {
+    std::swap(bytes[at], bytes[at + 3]);
+    std::swap(bytes[at + 1], bytes[at + 2]);
+  }
+  write("point_clouds/00002.bin", bytes);
+  try {
+    (void)open_dataset(folder_)->scan(1);
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("00002.bin: record 0 at byte 0 has x, y, z = "), std::string::npos)
+        << error.what();
+    EXPECT_NE(std::string(error.what()).find("records of 16 bytes (xyzd)"), std::string::npos) << error.what();
+  }
+}
+
+TEST_F(Dicp, ReadsAnyFolderOfScansWhenNamed) {
+  fs::create_directories(folder_ / "above");
+  fs::rename(folder_ / "point_clouds", folder_ / "above" / "velodyne");
+  EXPECT_THROW(open_dataset(folder_), DataError) << "KITTI";
+  EXPECT_EQ(open_dataset(folder_, {.format = "dicp"})->size(), 3u);
+  EXPECT_EQ(open_dataset(folder_ / "above" / "velodyne", {.format = "dicp"})->size(), 3u);
 }
 
 TEST_F(Dicp, CalibrationTurnsVehiclePosesIntoSensorPoses) {

@@ -19,16 +19,26 @@ constexpr int kSearchDepth = 3;
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// What lies in a folder, in the order of names; nothing when it cannot be read.
-std::vector<fs::path> entries_of(const fs::path& folder) {
+/// What lies in a folder and passes the test, in the order of names; nothing when the folder cannot be read. Folders of
+/// scans are large: the entry knows its type without asking the system again.
+template <class Test>
+std::vector<fs::path> entries_of(const fs::path& folder, const Test& test) {
   std::vector<fs::path> entries;
   std::error_code fault;
   for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
        entry.increment(fault)) {
-    entries.push_back(entry->path());
+    if (test(*entry)) {
+      entries.push_back(entry->path());
+    }
   }
   std::sort(entries.begin(), entries.end());
   return entries;
+}
+
+/// Links to folders are not: they may lead round in circles.
+bool is_own_folder(const fs::directory_entry& entry) {
+  std::error_code ignored;
+  return !entry.is_symlink(ignored) && entry.is_directory(ignored);
 }
 
 void search(const fs::path& folder, const std::function<bool(const fs::path&)>& wanted, int levels,
@@ -37,19 +47,16 @@ void search(const fs::path& folder, const std::function<bool(const fs::path&)>& 
     found.push_back(folder);
     return;
   }
-  if (levels == 0) {
-    return;
-  }
-  std::error_code ignored;
-  for (const fs::path& entry : entries_of(folder)) {
-    // Links to folders may lead round in circles.
-    if (fs::is_directory(entry, ignored) && !fs::is_symlink(entry, ignored)) {
-      search(entry, wanted, levels - 1, found);
+  if (levels > 0) {
+    for (const fs::path& below : entries_of(folder, is_own_folder)) {
+      search(below, wanted, levels - 1, found);
     }
   }
 }
 
 }  // namespace
+
+fs::path named_path(const fs::path& path) { return (fs::absolute(path) / ".").lexically_normal().parent_path(); }
 
 bool same_name(const fs::path& path, std::string_view name) {
   const std::string own = path.filename().string();
@@ -63,13 +70,12 @@ fs::path child(const fs::path& folder, std::string_view name) {
   fs::path found = folder / first;
   std::error_code ignored;
   if (!fs::exists(found, ignored)) {
-    const std::vector<fs::path> entries = entries_of(folder);
-    const auto match =
-        std::find_if(entries.begin(), entries.end(), [&](const fs::path& entry) { return same_name(entry, first); });
-    if (match == entries.end()) {
+    const std::vector<fs::path> matches =
+        entries_of(folder, [&](const fs::directory_entry& entry) { return same_name(entry.path(), first); });
+    if (matches.empty()) {
       return {};
     }
-    found = *match;
+    found = matches.front();
   }
   return slash == std::string_view::npos ? found : child(found, name.substr(slash + 1));
 }

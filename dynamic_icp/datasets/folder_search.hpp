@@ -11,6 +11,9 @@ namespace dynamic_icp::datasets {
 
 // Names are compared without regard to upper and lower case (of ASCII letters): releases of the same data set differ.
 
+/// The absolute path without a slash at its end and without "." and "..", so that it has a name and a parent.
+std::filesystem::path named_path(const std::filesystem::path& path);
+
 bool same_name(const std::filesystem::path& path, std::string_view name);
 
 /// The file or folder of that name in a folder, by way of folders with '/' ("LiDAR/Aeva"); empty when there is none. Of

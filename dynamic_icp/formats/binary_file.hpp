@@ -42,20 +42,6 @@ Number value_at(std::string_view bytes, std::size_t offset) {
   return value;
 }
 
-/// The content of a file of records of equal size.
-struct RecordFile {
-  std::string bytes;
-  std::size_t records = 0;  ///< whole ones
-  std::string warning;      ///< for an empty file and for bytes after the last whole record; empty: nothing odd
-};
-
-/// Reads such a file. Throws DataError for files that cannot be read, and names what it is when it is a Git LFS pointer
-/// or a zip archive instead of data.
-RecordFile read_record_file(const std::filesystem::path& path, std::size_t record_bytes);
-
-/// Throws DataError when the content of a file is that of a Git LFS pointer: what stands for data that was not fetched.
-void refuse_lfs_pointer(const std::filesystem::path& path, std::string_view content);
-
 /// Makes a folder and those above it. Throws DataError naming folder and reason.
 void make_folder(const std::filesystem::path& path);
 

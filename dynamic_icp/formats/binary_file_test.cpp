@@ -73,26 +73,5 @@ TEST_F(BinaryFile, FoldersAreMadeWithThoseAboveAndMayExist) {
   EXPECT_TRUE(fs::is_directory(folder_ / "a" / "b"));
 }
 
-TEST_F(BinaryFile, RecordFilesTellWhatIsOdd) {
-  const fs::path path = folder_ / "a";
-  write_whole_file(path, "");
-  EXPECT_EQ(read_record_file(path, 3).records, 0U);
-  EXPECT_NE(read_record_file(path, 3).warning.find("empty file"), std::string::npos);
-  write_whole_file(path, "abcdef");
-  EXPECT_EQ(read_record_file(path, 3).records, 2U);
-  EXPECT_EQ(read_record_file(path, 3).warning, "");
-  EXPECT_EQ(read_record_file(path, 4).records, 1U);
-  EXPECT_NE(read_record_file(path, 4).warning.find("2 bytes after record 1"), std::string::npos);
-}
-
-TEST_F(BinaryFile, RecordFilesNameWhatIsNotData) {
-  const fs::path path = folder_ / "a";
-  write_whole_file(path, "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 16\n");
-  EXPECT_NE(fault([&] { read_record_file(path, 4); }).find("Git LFS pointer"), std::string::npos);
-  write_whole_file(path, "PK\x03\x04 and so on");
-  EXPECT_NE(fault([&] { read_record_file(path, 4); }).find("zip archive"), std::string::npos);
-  EXPECT_NE(fault([&] { read_record_file(folder_ / "missing", 4); }).find("cannot open"), std::string::npos);
-}
-
 }  // namespace
 }  // namespace dynamic_icp::formats

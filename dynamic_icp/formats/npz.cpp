@@ -14,6 +14,7 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/file_kind.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
@@ -41,10 +42,10 @@ std::string text_of(int code) {
 
 /// Says what a file is that is no archive.
 [[noreturn]] void refuse(const std::filesystem::path& path, const std::string& reason) {
-  std::array<char, 64> head{};
+  std::array<char, kKindBytes> head{};
   std::ifstream file(path, std::ios::binary);
   file.read(head.data(), head.size());
-  refuse_lfs_pointer(path, std::string_view(head.data(), static_cast<std::size_t>(file.gcount())));
+  refuse_other_kind(path, std::string_view(head.data(), static_cast<std::size_t>(file.gcount())), FileKind::kZip);
   throw DataError(fmt::format("{}: cannot be read as a zip archive: {}", path.string(), reason));
 }
 

@@ -13,6 +13,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/base/parse_number.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/file_kind.hpp"
 #include "dynamic_icp/formats/lzf.hpp"
 #include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
@@ -96,7 +97,7 @@ PcdFile::PcdFile(const std::filesystem::path& path) : PcdFile(read_whole_file(pa
 
 PcdFile::PcdFile(std::string content, const std::filesystem::path& origin)
     : origin_(origin.string()), bytes_(std::move(content)) {
-  refuse_lfs_pointer(origin, bytes_);
+  refuse_other_kind(origin, bytes_, FileKind::kPcd);
   header_ = parse_pcd_header(bytes_, origin_);
   if (header_.encoding == PcdEncoding::kAscii) {
     read_ascii();

@@ -13,6 +13,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/base/parse_number.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/file_kind.hpp"
 #include "dynamic_icp/formats/ply_values.hpp"
 #include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
@@ -302,7 +303,7 @@ const PlyElement* PlyFile::find(std::string_view element) const {
 
 PlyFile read_ply(const std::filesystem::path& path) {
   const std::string content = read_whole_file(path);
-  refuse_lfs_pointer(path, content);
+  refuse_other_kind(path, content, FileKind::kPly);
   return parse_ply(content, path);
 }
 

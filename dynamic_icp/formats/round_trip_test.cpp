@@ -3,7 +3,9 @@
 // What is written is read back, whatever it is: random files that shrink to the smallest one that fails.
 #include <bit>
 #include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <fstream>
 #include <set>
 
 #include <fmt/format.h>
@@ -11,11 +13,11 @@
 #include <rapidcheck/gtest.h>
 #include <unistd.h>
 
-#include "dynamic_icp/formats/aeva_bin.hpp"
 #include "dynamic_icp/formats/npz.hpp"
 #include "dynamic_icp/formats/pcd.hpp"
 #include "dynamic_icp/formats/pcd_read.hpp"
 #include "dynamic_icp/formats/ply.hpp"
+#include "dynamic_icp/formats/point_records.hpp"
 #include "dynamic_icp/formats/tum.hpp"
 #include "dynamic_icp/formats/xyzd_bin.hpp"
 
@@ -159,28 +161,28 @@ RC_GTEST_PROP(RoundTrip, Xyzd, ()) {
   }
 }
 
-RC_GTEST_PROP(RoundTrip, Aeva, ()) {
-  std::vector<AevaRecord> records;
-  const std::size_t points = below(20);
-  for (std::size_t i = 0; i < points; ++i) {
-    AevaRecord record{any_float(), any_float(), any_float(), any_float(), any_float()};
-    record.time_offset_ns = *rc::gen::arbitrary<std::int32_t>();
-    record.line_index = *rc::gen::arbitrary<std::uint8_t>();
-    record.intensity = any_float();
-    records.push_back(record);
-  }
-  const TemporaryFile file;
-  write_aeva(file.path, records);
-  const AevaScan scan = read_aeva(file.path, AevaRecordKind::kWithIntensity);
-  RC_ASSERT(scan.raw.points.size() == records.size());
-  for (std::size_t i = 0; i < records.size(); ++i) {
-    RC_ASSERT(same(scan.raw.points[i].x(), records[i].x));
-    RC_ASSERT(same(scan.raw.points[i].z(), records[i].z));
-    RC_ASSERT(same(scan.raw.doppler[i], records[i].velocity));
-    RC_ASSERT(same(static_cast<double>(scan.reflectivity[i]), records[i].reflectivity));
-    RC_ASSERT(same(static_cast<double>(scan.intensity[i]), records[i].intensity));
-    RC_ASSERT(std::llround(scan.raw.times[i] * 1e9) == records[i].time_offset_ns);
-    RC_ASSERT(scan.line_index[i] == records[i].line_index);
+RC_GTEST_PROP(RoundTrip, RecordsOfEveryLayout, ()) {
+  for (const RecordLayout* layout : {&kXyzd, &kAeva25, &kAeva29, &kBoreas24, &kBoreas28, &kBoreas32, &kXyzdTime}) {
+    std::string bytes;
+    const std::size_t points = below(20);
+    for (std::size_t i = 0; i < points * layout->bytes; ++i) {
+      bytes += static_cast<char>(*rc::gen::arbitrary<std::uint8_t>());
+    }
+    const TemporaryFile file;
+    std::ofstream(file.path, std::ios::binary) << bytes;
+    const RawScan scan = read_points(file.path, *layout);
+    RC_ASSERT(scan.points.size() == points);
+    for (std::size_t i = 0; i < points; ++i) {
+      const auto number = [&](std::size_t offset) {
+        float value = 0.0F;
+        std::memcpy(&value, bytes.data() + i * layout->bytes + offset, sizeof(value));
+        return value;
+      };
+      for (std::size_t k = 0; k < 3; ++k) {
+        RC_ASSERT(same(scan.points[i][static_cast<Eigen::Index>(k)], number(4 * k)));
+      }
+      RC_ASSERT(same(scan.doppler[i], number(layout->doppler)));
+    }
   }
 }
 

@@ -28,4 +28,13 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
+std::string quoted_text(std::string_view text) {
+  constexpr std::size_t kMaxLength = 40;
+  std::string result(text.substr(0, kMaxLength));
+  for (char& c : result) {
+    c = c >= ' ' && c <= '~' ? c : '?';
+  }
+  return "'" + result + (text.size() > kMaxLength ? "...'" : "'");
+}
+
 }  // namespace dynamic_icp::formats

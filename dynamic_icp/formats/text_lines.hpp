@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 #include <string_view>
 #include <vector>
 
@@ -13,5 +14,8 @@ std::optional<std::string_view> take_line(std::string_view& rest);
 
 /// The words of a line: what stands between blanks, tabs, carriage returns and the like.
 std::vector<std::string_view> words_of(std::string_view line);
+
+/// Text of a file as it may appear in a message: in quotation marks, short and printable.
+std::string quoted_text(std::string_view text);
 
 }  // namespace dynamic_icp::formats

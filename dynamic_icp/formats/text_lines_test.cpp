@@ -27,5 +27,13 @@ TEST(TextLines, WordsStandBetweenBlanks) {
   EXPECT_EQ(words_of("  a bc\td \r"), (Words{"a", "bc", "d"}));
 }
 
+TEST(QuotedText, IsShortAndPrintable) {
+  EXPECT_EQ(quoted_text("ab c"), "'ab c'");
+  EXPECT_EQ(quoted_text("a\xE9\n"),
+            "'a?"
+            "?'");
+  EXPECT_EQ(quoted_text(std::string(50, 'x')), "'" + std::string(40, 'x') + "...'");
+}
+
 }  // namespace
 }  // namespace dynamic_icp::formats

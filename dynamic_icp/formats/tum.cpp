@@ -13,6 +13,8 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/formats/file_kind.hpp"
+#include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
@@ -40,16 +42,6 @@ struct Place {
 
 [[noreturn]] void fail(const Place& place, const std::string& message) {
   throw DataError(fmt::format("{}: line {}: {}", place.file, place.line, message));
-}
-
-/// Text of the file as it may appear in a message: short and printable.
-std::string quoted(std::string_view text) {
-  constexpr std::size_t kMaxLength = 40;
-  std::string result(text.substr(0, kMaxLength));
-  for (char& c : result) {
-    c = c >= ' ' && c <= '~' ? c : '?';
-  }
-  return "'" + result + (text.size() > kMaxLength ? "...'" : "'");
 }
 
 bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
@@ -84,36 +76,16 @@ std::vector<std::string_view> split_columns(std::string_view line) {
   return columns;
 }
 
-/// Unix time in other units than seconds, told by the number of digits (dates from 2001 to 2286). None of these can be
-/// seconds: they are beyond the range of a stamp.
-std::optional<Stamp> parse_unix_integer(std::string_view text) {
-  std::int64_t number = 0;
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-  if (fault != std::errc() || end != text.data() + text.size() || number < 0) {
-    return std::nullopt;
-  }
-  switch (text.size()) {
-    case 13:
-      return Stamp{number * 1'000'000};
-    case 16:
-      return Stamp{number * 1'000};
-    case 19:
-      return Stamp{number};
-    default:
-      return std::nullopt;
-  }
-}
-
 bool in_range(Stamp stamp) { return stamp.ns <= kMaxStampNs && stamp.ns >= -kMaxStampNs; }
 
 Stamp parse_stamp(const Place& place, std::string_view text) {
   std::optional<Stamp> stamp = parse_seconds(text);
   if (!stamp) {
-    stamp = parse_unix_integer(text);
+    stamp = parse_unix_time(text);  // cannot be seconds: beyond the range of a stamp
   }
   if (!stamp || !in_range(*stamp)) {
     fail(place, fmt::format("the time stamp is {}, expected seconds up to {} or Unix time in whole nanoseconds",
-                            quoted(text), kMaxStampNs / 1'000'000'000));
+                            quoted_text(text), kMaxStampNs / 1'000'000'000));
   }
   return *stamp;
 }
@@ -126,7 +98,7 @@ double parse_number(const Place& place, std::string_view column, std::string_vie
   double number = 0.0;
   const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
   if (fault != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number)) {
-    fail(place, fmt::format("{} is {}, expected a finite number", column, quoted(text)));
+    fail(place, fmt::format("{} is {}, expected a finite number", column, quoted_text(text)));
   }
   return number;
 }
@@ -169,21 +141,11 @@ void check_order(const Place& place, Stamp previous, Stamp stamp) {
   }
 }
 
-/// Takes the next line off `text`.
-std::string_view take_line(std::string_view& text) {
-  const std::size_t end = text.find('\n');
-  const std::string_view line = text.substr(0, end);
-  text.remove_prefix(end == std::string_view::npos ? text.size() : end + 1);
-  return line;
-}
-
 }  // namespace
 
 TumFile parse_tum(std::string_view text, std::string_view name) {
-  if (text.starts_with("version https://git-lfs")) {
-    throw DataError(fmt::format(
-        "{}: line 1: a Git LFS pointer instead of the file itself, expected poses ({}); fetch it with 'git lfs pull'",
-        name, kLayout));
+  if (const FileKind kind = kind_of(text); kind != FileKind::kUnknown) {
+    throw DataError(fmt::format("{}: line 1: the file {}; expected poses ({})", name, sentence(kind), kLayout));
   }
   if (text.starts_with("\xEF\xBB\xBF")) {
     text.remove_prefix(3);  // the byte order mark some editors put in front
@@ -191,7 +153,7 @@ TumFile parse_tum(std::string_view text, std::string_view name) {
   TumFile file;
   std::optional<Row> previous;
   for (Place place{name, 1}; !text.empty(); ++place.line) {
-    const std::vector<std::string_view> columns = split_columns(take_line(text));
+    const std::vector<std::string_view> columns = split_columns(take_line(text).value_or(""));
     if (columns.empty()) {
       continue;
     }

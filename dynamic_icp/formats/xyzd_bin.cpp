@@ -6,28 +6,11 @@
 #include <vector>
 
 #include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/point_records.hpp"
 
 namespace dynamic_icp::formats {
-namespace {
 
-constexpr std::size_t kRecordBytes = 16;
-
-}  // namespace
-
-RawScan read_xyzd(const std::filesystem::path& path) {
-  const RecordFile file = read_record_file(path, kRecordBytes);
-  RawScan raw;
-  raw.points.resize(file.records);
-  raw.doppler.resize(file.records);
-  for (std::size_t i = 0; i < file.records; ++i) {
-    const std::size_t at = i * kRecordBytes;
-    raw.points[i] = {value_at<float>(file.bytes, at), value_at<float>(file.bytes, at + 4),
-                     value_at<float>(file.bytes, at + 8)};
-    raw.doppler[i] = value_at<float>(file.bytes, at + 12);
-  }
-  raw.warning = file.warning;
-  return raw;
-}
+RawScan read_xyzd(const std::filesystem::path& path) { return read_points(path, kXyzd); }
 
 void write_xyzd(const std::filesystem::path& path, const RawScan& scan) {
   if (scan.doppler.size() != scan.points.size()) {

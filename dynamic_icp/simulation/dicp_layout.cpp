@@ -6,13 +6,23 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/formats/binary_file.hpp"
-#include "dynamic_icp/formats/xyzd_bin.hpp"
 #include "dynamic_icp/simulation/point_layout.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// x, y, z, Doppler, one point after the other.
+std::vector<float> values_of(const RawScan& scan) {
+  std::vector<float> values;
+  values.reserve(4 * scan.points.size());
+  for (std::size_t i = 0; i < scan.points.size(); ++i) {
+    const Eigen::Vector3f p = scan.points[i].cast<float>();
+    values.insert(values.end(), {p.x(), p.y(), p.z(), static_cast<float>(scan.doppler[i])});
+  }
+  return values;
+}
 
 class DicpLayout : public PointLayout {
  public:
@@ -27,7 +37,7 @@ class DicpLayout : public PointLayout {
   void add(const SimulatedFrame& frame, std::size_t /*sensor*/) override {
     const RawScan& scan = frame.scan.measured;
     const std::string name = fmt::format("{:05}.bin", frame.index + 1);
-    formats::write_xyzd(points_ / name, scan);
+    formats::write_values<float>(points_ / name, values_of(scan));
     if (takes_time_) {
       formats::write_values<float>(times_ / name, std::vector<float>(scan.times.begin(), scan.times.end()));
     }

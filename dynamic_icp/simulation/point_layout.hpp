@@ -27,6 +27,10 @@ class PointLayout {
 /// Stamp 0 of a simulation in layouts with Unix time: 2025-01-01 00:00:00 UTC.
 constexpr std::int64_t kUnixTimeOfStart = 1'735'689'600'000'000'000;  // ns
 
+/// The same in the layout helipr, which is told from hercules by the year: 2023-06-01 00:00:00 UTC, when its records
+/// had no intensity yet.
+constexpr std::int64_t kHeliprTimeOfStart = 1'685'577'600'000'000'000;  // ns
+
 /// point_clouds/00001.bin: float32 x, y, z, Doppler. For sensors whose scans take time also times/00001.bin: float32
 /// seconds after the stamp, for each point.
 std::unique_ptr<PointLayout> make_dicp_layout(const std::filesystem::path& folder, bool takes_time);
@@ -34,6 +38,14 @@ std::unique_ptr<PointLayout> make_dicp_layout(const std::filesystem::path& folde
 /// LiDAR/Aeva/<stamp_ns>.bin in records of 29 bytes, with the reflectivity in percent, and PR_GT/Aeva_gt.txt with the
 /// poses of the sensor relative to its first scan. `add` throws UsageError for sensors with more rows than fit (256).
 std::unique_ptr<PointLayout> make_hercules_layout(const std::filesystem::path& folder);
+
+/// The same in records of 25 bytes, without the intensity, and LiDAR_GT/Aeva_gt.txt. The Doppler is as measured.
+std::unique_ptr<PointLayout> make_helipr_layout(const std::filesystem::path& folder);
+
+/// aeva/<stamp_us>.bin in records of ten float32 (Boreas-RT), with the reflectivity in percent and the line among the
+/// flags; applanix/aeva_poses.csv with the poses of the sensor in a frame whose origin is far from the scene. `add`
+/// throws UsageError for sensors with more rows than fit (256) and for stamps that are no whole microseconds.
+std::unique_ptr<PointLayout> make_boreas_layout(const std::filesystem::path& folder);
 
 /// All sensors of the vehicle in one recording:
 ///   sequence.json                                    mountings; poses of the vehicle and boxes of moving bodies

@@ -20,8 +20,11 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-constexpr std::array<std::pair<std::string_view, Layout>, 3> kLayouts = {
-    {{"dicp", Layout::kDicp}, {"hercules", Layout::kHercules}, {"aevascenes", Layout::kAevaScenes}}};
+constexpr std::array<std::pair<std::string_view, Layout>, 5> kLayouts = {{{"dicp", Layout::kDicp},
+                                                                          {"hercules", Layout::kHercules},
+                                                                          {"helipr", Layout::kHelipr},
+                                                                          {"boreas", Layout::kBoreas},
+                                                                          {"aevascenes", Layout::kAevaScenes}}};
 
 std::string_view name_of(Layout layout) {
   return std::find_if(kLayouts.begin(), kLayouts.end(), [&](const auto& known) { return known.second == layout; })
@@ -46,6 +49,31 @@ Json rig_json(const Rig& rig) {
   return {{"name", rig.name}, {"sensors", sensors}};
 }
 
+/// Stamp 0 of the simulation in the files of a layout.
+std::int64_t epoch_ns(Layout layout) {
+  if (layout == Layout::kDicp) {
+    return 0;
+  }
+  return layout == Layout::kHelipr ? kHeliprTimeOfStart : kUnixTimeOfStart;
+}
+
+/// The points of one sensor; nothing for layouts that hold all sensors together.
+std::unique_ptr<PointLayout> make_layout(Layout layout, const fs::path& folder, bool takes_time) {
+  switch (layout) {
+    case Layout::kDicp:
+      return make_dicp_layout(folder, takes_time);
+    case Layout::kHercules:
+      return make_hercules_layout(folder);
+    case Layout::kHelipr:
+      return make_helipr_layout(folder);
+    case Layout::kBoreas:
+      return make_boreas_layout(folder);
+    case Layout::kAevaScenes:
+      break;
+  }
+  return nullptr;
+}
+
 /// Where the truth of a sensor lies.
 fs::path folder_of(const fs::path& folder, const Rig& rig, std::size_t sensor) {
   return rig.sensors.size() == 1 ? folder : folder / rig.sensors[sensor].name;
@@ -57,7 +85,7 @@ Layout find_layout(std::string_view name) {
   const auto* const found =
       std::find_if(kLayouts.begin(), kLayouts.end(), [&](const auto& known) { return known.first == name; });
   if (found == kLayouts.end()) {
-    throw UsageError(fmt::format("unknown layout '{}', expected dicp, hercules or aevascenes", name));
+    throw UsageError(fmt::format("unknown layout '{}', expected dicp, hercules, helipr, boreas or aevascenes", name));
   }
   return found->second;
 }
@@ -68,18 +96,13 @@ SequenceWriter::SequenceWriter(const fs::path& folder, const Simulation& simulat
     throw UsageError(fmt::format("calibration.json belongs to the layout dicp, not to {}", name_of(options.layout)));
   }
   const Rig& rig = simulation.config().rig;
-  TruthOptions truth{0, options.calibration, options.point_truth};
-  if (options.layout != Layout::kDicp) {
-    truth.epoch_ns = kUnixTimeOfStart;
-  }
+  const TruthOptions truth{epoch_ns(options.layout), options.calibration, options.point_truth};
   for (std::size_t sensor = 0; sensor < rig.sensors.size(); ++sensor) {
     const fs::path own = folder_of(folder, rig, sensor);
     formats::make_folder(own);
     truth_.push_back(std::make_unique<TruthWriter>(own, simulation, sensor, truth));
-    if (options.layout == Layout::kDicp) {
-      points_.push_back(make_dicp_layout(own, rig.sensors[sensor].lidar.sweep_s > 0.0));
-    } else if (options.layout == Layout::kHercules) {
-      points_.push_back(make_hercules_layout(own));
+    if (auto points = make_layout(options.layout, own, rig.sensors[sensor].lidar.sweep_s > 0.0)) {
+      points_.push_back(std::move(points));
     }
   }
   if (options.layout == Layout::kAevaScenes) {

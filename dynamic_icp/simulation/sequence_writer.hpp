@@ -16,9 +16,9 @@
 namespace dynamic_icp::simulation {
 
 /// The layout of the points.
-enum class Layout { kDicp, kHercules, kAevaScenes };
+enum class Layout { kDicp, kHercules, kHelipr, kBoreas, kAevaScenes };
 
-/// The layout of that name: dicp, hercules or aevascenes. Throws UsageError with the known names.
+/// The layout of that name: dicp, hercules, helipr, boreas or aevascenes. Throws UsageError with the known names.
 Layout find_layout(std::string_view name);
 
 struct SequenceOptions {

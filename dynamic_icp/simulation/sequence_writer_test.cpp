@@ -61,7 +61,8 @@ TEST_F(SequenceFiles, SummaryTellsWhatWasMade) {
 }
 
 TEST_F(SequenceFiles, SameBytesForAnyNumberOfThreadsInEveryLayout) {
-  for (const Layout layout : {Layout::kDicp, Layout::kHercules, Layout::kAevaScenes}) {
+  for (const Layout layout :
+       {Layout::kDicp, Layout::kHercules, Layout::kHelipr, Layout::kBoreas, Layout::kAevaScenes}) {
     fs::remove_all(folder_);
     write(folder_ / "a", {layout, true, false}, 1);
     write(folder_ / "b", {layout, true, false}, 7);
@@ -99,6 +100,8 @@ TEST_F(SequenceFiles, AevaScenesKeepsAllSensorsInOneRecording) {
 
 TEST_F(SequenceFiles, LayoutsAreFoundByName) {
   EXPECT_EQ(find_layout("hercules"), Layout::kHercules);
+  EXPECT_EQ(find_layout("helipr"), Layout::kHelipr);
+  EXPECT_EQ(find_layout("boreas"), Layout::kBoreas);
   EXPECT_THROW(find_layout("kitti"), UsageError);
   EXPECT_THROW(SequenceWriter(folder_, simulation_, {Layout::kHercules, false, true}), UsageError);
 }
