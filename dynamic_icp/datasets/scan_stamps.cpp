@@ -3,6 +3,7 @@
 #include "dynamic_icp/datasets/scan_stamps.hpp"
 
 #include <cmath>
+#include <limits>
 #include <optional>
 
 #include <fmt/format.h>
@@ -26,7 +27,8 @@ std::optional<Stamp> stamp_in(const std::string& stem) {
                             : digits.size() == 13 ? 1'000'000
                             : digits.size() == 10 ? 1'000'000'000
                                                   : 0;
-  return number && unit != 0 ? std::optional(Stamp{*number * unit}) : std::nullopt;
+  const bool fits = number && unit != 0 && *number <= std::numeric_limits<std::int64_t>::max() / unit;
+  return fits ? std::optional(Stamp{*number * unit}) : std::nullopt;
 }
 
 }  // namespace

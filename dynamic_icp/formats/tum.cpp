@@ -92,16 +92,9 @@ std::optional<Stamp> parse_unix_integer(std::string_view text) {
   if (fault != std::errc() || end != text.data() + text.size() || number < 0) {
     return std::nullopt;
   }
-  switch (text.size()) {
-    case 13:
-      return Stamp{number * 1'000'000};
-    case 16:
-      return Stamp{number * 1'000};
-    case 19:
-      return Stamp{number};
-    default:
-      return std::nullopt;
-  }
+  const std::int64_t unit_ns = text.size() == 13 ? 1'000'000 : text.size() == 16 ? 1'000 : text.size() == 19 ? 1 : 0;
+  const bool fits = unit_ns > 0 && number <= std::numeric_limits<std::int64_t>::max() / unit_ns;
+  return fits ? std::optional(Stamp{number * unit_ns}) : std::nullopt;
 }
 
 bool in_range(Stamp stamp) { return stamp.ns <= kMaxStampNs && stamp.ns >= -kMaxStampNs; }
