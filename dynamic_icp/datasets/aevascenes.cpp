@@ -97,7 +97,7 @@ class AevaScenesDataset final : public Dataset {
     PointColumn lidar{"lidar", {}, true};
     for (const Cloud& cloud : clouds_of(index)) {
       const formats::NpzFile file(cloud.path);
-      const std::size_t points = formats::rows_of(file.read("xyz"));
+      const std::size_t points = formats::column_as_doubles(file.read("xyz"), 2).size();  // checks the shape as well
       for (const char* name : kOtherColumns) {
         if (file.contains(name)) {
           append_column(columns, rows, read_column(file, name, points), name);

@@ -74,14 +74,19 @@ void with_type(NpyType type, const Use& use) {
   }
 }
 
-/// Calls `use` with each number of a column, from the first row on.
+/// An array may have any number of rows that take no bytes, as long as it has no columns.
+void check_column(const NpyArray& array, std::size_t column) {
+  if (column >= columns_of(array)) {
+    throw DataError(
+        fmt::format("{}: has {} columns, expected at least {}", array.origin, columns_of(array), column + 1));
+  }
+  check_size(array);
+}
+
+/// Calls `use` with each number of a column, which must be there, from the first row on.
 template <class Use>
 void for_column(const NpyArray& array, std::size_t column, const Use& use) {
   const std::size_t columns = columns_of(array);
-  if (column >= columns) {
-    throw DataError(fmt::format("{}: has {} columns, expected at least {}", array.origin, columns, column + 1));
-  }
-  check_size(array);
   const std::size_t rows = rows_of(array);
   with_type(array.type, [&](auto zero) {
     for (std::size_t row = 0; row < rows; ++row) {
@@ -144,6 +149,7 @@ std::size_t columns_of(const NpyArray& array) {
 }
 
 std::vector<double> column_as_doubles(const NpyArray& array, std::size_t column) {
+  check_column(array, column);
   std::vector<double> values(rows_of(array));
   double* next = values.data();
   for_column(array, column, [&](auto value) { *next++ = static_cast<double>(value); });
@@ -151,6 +157,7 @@ std::vector<double> column_as_doubles(const NpyArray& array, std::size_t column)
 }
 
 std::vector<std::int64_t> column_as_integers(const NpyArray& array, std::size_t column) {
+  check_column(array, column);
   std::vector<std::int64_t> values;
   for_column(array, column, [&](auto value) {
     if constexpr (std::is_floating_point_v<decltype(value)>) {

@@ -134,6 +134,12 @@ TEST(Npy, LiesOfTheHeaderAreNoticed) {
   expect_fault(npy(1, "{'descr': '<f4", ""), "the end of a string");
 }
 
+TEST(Npy, RowsWithoutColumnsTakeNoMemory) {
+  const NpyArray array = parse_npy(npy(1, header("<f8", "(999999999999, 0)"), ""), "a.npy");
+  EXPECT_THROW(column_as_doubles(array), DataError);
+  EXPECT_THROW(column_as_integers(array), DataError);
+}
+
 TEST(Npy, EveryShortenedFileIsRefused) {
   for (const int version : {1, 2, 3}) {
     const std::string whole = npy(version, header("<f4", "(2, 1)"), "12345678");

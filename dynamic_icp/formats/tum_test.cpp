@@ -77,6 +77,7 @@ TEST(Tum, IntegersBeyondSecondsAreSmallerUnits) {
   EXPECT_EQ(stamp("1724479779384"), 1724479779384000000);
   EXPECT_EQ(stamp("1724479779"), 1724479779000000000);
   expect_error("17244797793847295 0 0 0 0 0 0 1", 1, "seconds");
+  expect_error("9779384729506 0 0 0 0 0 0 1", 1, "seconds");  // more nanoseconds than 64 bits hold
   expect_error("9223372036854775807 0 0 0 0 0 0 1", 1, "seconds");
   expect_error("-9000000000 0 0 0 0 0 0 1", 1, "seconds");
 }
