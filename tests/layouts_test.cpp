@@ -30,7 +30,8 @@ struct WrittenLayout {
 constexpr WrittenLayout kReference = {"dicp", "ref_poses.txt", 8e-9};
 constexpr WrittenLayout kOthers[] = {{"hercules", "PR_GT/Aeva_gt.txt", 1e-9},
                                      {"helipr", "LiDAR_GT/Aeva_gt.txt", 1e-9},
-                                     {"boreas", "applanix/aeva_poses.csv", 8e-9}};
+                                     {"boreas", "applanix/aeva_poses.csv", 8e-9},
+                                     {"aevascenes", "sequence.json", 1e-9}};
 
 class Layouts : public ProgramTest {
  protected:

@@ -23,6 +23,7 @@ constexpr std::string_view kDigits = "0123456789";
 constexpr std::size_t kLongestIndex = 9;  // digits
 constexpr std::size_t kSecondsDigits = 10;
 constexpr std::size_t kDecimals = 9;
+constexpr std::size_t kNanosecondDigits = 19;
 // Half of the range of 64 bits, so that the difference of any two stamps fits as well.
 constexpr std::int64_t kMaxStampNs = std::numeric_limits<std::int64_t>::max() / 2;
 
@@ -47,8 +48,10 @@ std::string_view last_digits(std::string_view text) {
 NamedTime time_in(const fs::path& file) {
   const std::string stem = file.stem().string();
   const std::string_view digits = last_digits(stem);
-  // Zeros in front are those of an index, however many.
-  const std::size_t nonzero = std::min(digits.find_first_not_of('0'), digits.empty() ? 0 : digits.size() - 1);
+  // Zeros in front are those of an index, however many; but 19 digits are nanoseconds, also soon after time 0.
+  const bool counts_ns = digits.size() == kNanosecondDigits;
+  const std::size_t nonzero =
+      counts_ns || digits.empty() ? 0 : std::min(digits.find_first_not_of('0'), digits.size() - 1);
   NamedTime named{file, std::string(digits.substr(nonzero)), {}};
   const std::size_t first = stem.rfind(digits);
   if (!digits.empty() && first > 0 && stem[first - 1] == '.') {
@@ -76,6 +79,11 @@ Stamp whole_stamp(const NamedTime& named) {
     Stamp index;
     std::from_chars(named.whole.data(), named.whole.data() + named.whole.size(), index.ns);
     return index;
+  }
+  if (named.whole.size() == kNanosecondDigits && named.whole.front() == '0') {
+    Stamp soon;
+    std::from_chars(named.whole.data(), named.whole.data() + named.whole.size(), soon.ns);
+    return soon;
   }
   const std::optional<Stamp> stamp = parse_unix_time(named.whole);
   if (!stamp || stamp->ns > kMaxStampNs) {

@@ -99,7 +99,13 @@ TEST_F(ScanStamps, ShortNumbersAreIndicesAPeriodApartAndItIsSaid) {
 
 TEST_F(ScanStamps, ZerosInFrontMakeAnIndexOfAnyLength) {
   EXPECT_EQ(stamps({"0000000000.bin", "0000000002.bin"}), (Ns{0, 200'000'000}));
-  EXPECT_EQ(stamps({"0000000000000000007.bin"}), Ns{0});
+  EXPECT_EQ(stamps({"000000000000000007.bin"}), Ns{0});
+  EXPECT_EQ(stamps({"00000000000000000007.bin"}), Ns{0});
+}
+
+TEST_F(ScanStamps, NineteenDigitsAreNanosecondsEvenSoonAfterZero) {
+  EXPECT_EQ(stamps({"0000000000000000000.bin", "0000000000083333333.bin", "1724479779384729506.bin"}),
+            (Ns{0, 83'333'333, 1'724'479'779'384'729'506}));
 }
 
 TEST_F(ScanStamps, OtherFilesAreLeftOut) {
