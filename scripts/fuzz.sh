@@ -2,7 +2,7 @@
 # Feeds the readers of files with damaged ones until something breaks, under the address and undefined-behaviour
 # sanitizers: libFuzzer, two targets at a time. Installs clang when it is missing.
 # usage: scripts/fuzz.sh [SECONDS] [TARGET...]     each target for SECONDS (default 60); default: all targets
-# Findings stay in build-fuzz/findings, inputs that reach new code in build-fuzz/corpus. Status 1 after a finding.
+# The random numbers begin with SEED (environment, default 1). Findings stay in build-fuzz/findings, inputs that reach new code in build-fuzz/corpus. Status 1 after a finding.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -29,7 +29,7 @@ mkdir -p $build/findings
 
 run() {  # target
   mkdir -p "$build/corpus/$1"
-  if "$build/fuzz/fuzz_$1" -max_total_time="$seconds" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=8192 \
+  if "$build/fuzz/fuzz_$1" -max_total_time="$seconds" -seed="${SEED:-1}" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=8192 \
     -artifact_prefix="$build/findings/$1-" "$build/corpus/$1" "$build/seeds/$1" >"$build/$1.log" 2>&1; then
     echo "$1: $(grep -E '^Done' "$build/$1.log" || echo done)"
   else
