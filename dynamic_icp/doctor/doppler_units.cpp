@@ -21,7 +21,7 @@ Finding doppler_units(const Evidence& evidence) {
     finding.evidence.emplace_back("ratio", speed->ratio);
   }
   if (evidence.looks.empty() || as_stored == 0.0) {
-    finding.verdict = evidence.looks.empty() ? Verdict::kCannotTell : Verdict::kWrong;
+    finding.verdict = evidence.looks.empty() ? Verdict::kCannotTell : Verdict::kSuspicious;
     finding.sentence = evidence.looks.empty() ? "there are no scans" : "nearly all Doppler values are zero";
   } else if (speed && !speed->unit.empty()) {
     finding.verdict = Verdict::kWrong;
