@@ -11,11 +11,11 @@
 namespace dynamic_icp::registration {
 namespace {
 
-/// A wall across and a wall along, seen from a sensor at `x`, with their normals.
+/// A wall across, a wall along and the ground, seen from a sensor at `x`, with their normals.
 struct Corner {
   explicit Corner(double x) : scan(points(x)), tree(scan.points()), valid(scan.size(), 1) {
     for (std::size_t i = 0; i < scan.size(); ++i) {
-      normals.push_back(i % 2 == 0 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitY());
+      normals.emplace_back(Eigen::Vector3d::Unit(static_cast<Eigen::Index>(i % 3)));
     }
   }
 
@@ -25,8 +25,10 @@ struct Corner {
     for (std::uint64_t i = 0; i < 1000; ++i) {
       const double along = random.uniform(2 * i, -8.0, 8.0);
       const double up = random.uniform(2 * i + 1, -2.0, 2.0);
-      raw.points.push_back(i % 2 == 0 ? Eigen::Vector3d(20.0 - x, along, up)
-                                      : Eigen::Vector3d(12.0 + along - x, 6.0, up));
+      const std::array<Eigen::Vector3d, 3> at = {Eigen::Vector3d(20.0, along, up),
+                                                 Eigen::Vector3d(12.0 + along, 6.0, up),
+                                                 Eigen::Vector3d(12.0 + along, 3.0 * up, -2.0)};
+      raw.points.emplace_back(at.at(i % 3) - x * Eigen::Vector3d::UnitX());
       raw.doppler.push_back(0.0);
     }
     return Scan::from_raw(raw);
@@ -49,14 +51,27 @@ TEST(WaySearch, FindsAWayOfSeveralMetres) {
   const WayCandidate& best = best_way(candidates);
   EXPECT_NEAR(best.T_target_source.translation().x(), -3.3, 0.01);
   EXPECT_LT(best.cost, 0.01);
+  EXPECT_TRUE(is_clear(candidates));
+}
+
+TEST(WaySearch, AWallAlongTheWayLeavesItOpen) {
+  Corner before(0.0);
+  Corner after(0.5);
+  for (Corner* corner : {&before, &after}) {
+    for (std::size_t i = 0; i < corner->valid.size(); i += 3) {
+      corner->valid[i] = 0;  // the wall across
+    }
+  }
+  const std::array axes = {Eigen::Vector3d(Eigen::Vector3d::UnitX())};
+  EXPECT_FALSE(is_clear(search_ways(before.scan, after.target(), axes, 4.5, Workers(1))));
 }
 
 TEST(WaySearch, MisfitIsTheShareThatLiesOnNoPlane) {
   const Corner corner(0.0);
   EXPECT_EQ(misfit(corner.scan, corner.target(), Eigen::Isometry3d::Identity(), Workers(1)), 0.0);
   Eigen::Isometry3d ahead = Eigen::Isometry3d::Identity();
-  ahead.translation().x() = 0.1;  // half the width of the wall across, none of the wall along
-  EXPECT_NEAR(misfit(corner.scan, corner.target(), ahead, Workers(1)), 0.5 * 0.25, 1e-3);
+  ahead.translation().x() = 0.1;  // half the width of the wall across, none of the others
+  EXPECT_NEAR(misfit(corner.scan, corner.target(), ahead, Workers(1)), 0.334 * 0.25, 1e-3);
   ahead.translation().x() = 500.0;
   EXPECT_EQ(misfit(corner.scan, corner.target(), ahead, Workers(1)), 1.0);
   EXPECT_EQ(misfit(Scan(), corner.target(), ahead, Workers(1)), 1.0);
