@@ -83,8 +83,8 @@ TEST_F(Doctor, ARecordedRadarIsWhatItIs) {
   }
   const auto findings = [&](const std::string& options) {
     json by_question;
-    for (const json& finding :
-         json::parse(run_program("info --json " + options + recording.string()).text)["diagnosis"]) {
+    const json about = json::parse(run_program("info --json " + options + recording.string()).text);
+    for (const json& finding : about["diagnosis"]) {
       by_question[finding["question"].get<std::string>()] = finding["verdict"];
     }
     return by_question;

@@ -14,7 +14,7 @@
 namespace dynamic_icp::doctor {
 namespace {
 
-constexpr std::size_t kMostPoints = 6000;
+constexpr std::size_t kMostPoints = 30000;
 constexpr double kFarthest_m = 1000.0;
 constexpr double kNearest_m = 0.5;
 constexpr double kFastest_mps = 150.0;
@@ -22,8 +22,14 @@ constexpr double kFastestInCentimetres = 3000.0;
 constexpr double kMostShare = 0.95;
 
 // A column is called the Doppler only where it is explained this well, and the one in its place this much worse.
-constexpr double kGoodResidual_mps = 0.15;
-constexpr double kTimesWorse = 3.0;
+constexpr double kStaticShare = 0.3;  // more than half of the points may be traffic
+constexpr double kGoodResidual_mps = 0.25;
+constexpr double kTimesWorse = 2.5;
+
+/// A ray that met nothing, as some sensors write it: zeros fit to any velocity, in whatever order the columns are.
+bool is_void(const Eigen::Vector3d& point, double doppler) {
+  return (point.array() == 0.0).count() + (doppler == 0.0 ? 1 : 0) >= 3;
+}
 
 /// Points evenly over the scan: a few thousand tell.
 RawScan thinned(const RawScan& scan) {
@@ -31,22 +37,22 @@ RawScan thinned(const RawScan& scan) {
   few.stamp = scan.stamp;
   const std::size_t step = scan.points.size() / kMostPoints + 1;
   for (std::size_t i = 0; i < scan.points.size(); i += step) {
-    few.points.push_back(scan.points[i]);
-    few.doppler.push_back(scan.doppler[i]);
+    if (!is_void(scan.points[i], scan.doppler[i])) {
+      few.points.push_back(scan.points[i]);
+      few.doppler.push_back(scan.doppler[i]);
+    }
   }
   return few;
 }
 
-double median_residual(const RawScan& raw, const Workers& workers) {
+double static_residual(const RawScan& raw, const Workers& workers) {
   const Scan scan = Scan::from_raw(raw);
-  ego_motion::ConsensusRegressionConfig config;
-  config.estimate_bias = false;
-  const ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, config, workers);
+  const ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, {}, workers);
   std::vector<double> residuals = ego_motion::compensated_doppler(scan, ego.velocity_sensor);
   for (double& residual : residuals) {
     residual = std::abs(residual);
   }
-  return quantile(std::move(residuals), 0.5);
+  return quantile(std::move(residuals), kStaticShare);
 }
 
 }  // namespace
@@ -89,7 +95,7 @@ ColumnScores score_columns(std::span<const RawScan> scans, const Workers& worker
       const RawScan few = prepared(thinned(scan), column, {});
       // Each order of columns has its own guess: what is taken for the Doppler may be millimetres.
       const UnitGuess units = guess_units(std::span(&few, 1));
-      residuals.push_back(median_residual(prepared(few, 3, units), workers));
+      residuals.push_back(static_residual(prepared(few, 3, units), workers));
     }
     scores.residual.at(static_cast<std::size_t>(column)) = quantile(std::move(residuals), 0.5);
   }

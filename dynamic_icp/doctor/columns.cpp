@@ -89,8 +89,10 @@ Finding columns(const Evidence& evidence) {
   const int up = up_axis(view);
   const std::optional<int> forward = forward_axis(view, up);
   const ColumnScores& scores = evidence.columns;
-  finding.evidence = {{"residual_as_stored_mps", scores.residual[3]},
-                      {"least_residual_mps", *std::min_element(scores.residual.begin(), scores.residual.end())},
+  finding.evidence = {{"residual_of_column_1_mps", scores.residual[0]},
+                      {"residual_of_column_2_mps", scores.residual[1]},
+                      {"residual_of_column_3_mps", scores.residual[2]},
+                      {"residual_of_column_4_mps", scores.residual[3]},
                       {"spread_x", view.spread.x()},
                       {"spread_y", view.spread.y()},
                       {"spread_z", view.spread.z()}};

@@ -21,7 +21,7 @@ Finding doppler_units(const Evidence& evidence) {
     finding.evidence.emplace_back("ratio", speed->ratio);
   }
   if (evidence.looks.empty() || as_stored == 0.0) {
-    finding.verdict = evidence.looks.empty() ? Verdict::kCannotTell : Verdict::kWrong;
+    finding.verdict = evidence.looks.empty() ? Verdict::kCannotTell : Verdict::kSuspicious;
     finding.sentence = evidence.looks.empty() ? "there are no scans" : "nearly all Doppler values are zero";
   } else if (speed && !speed->unit.empty()) {
     finding.verdict = Verdict::kWrong;
@@ -32,6 +32,9 @@ Finding doppler_units(const Evidence& evidence) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format("Doppler of {:.0f} cannot be m/s", as_stored);
     finding.fix = fmt::format("--doppler-scale {:g}", evidence.units.doppler);
+  } else if (!speed) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = fmt::format("m/s are assumed: 95 % of the points are slower than {:.1f}", as_stored);
   } else {
     finding.sentence = fmt::format("m/s: 95 % of the points are slower than {:.1f} m/s", as_stored);
   }

@@ -28,9 +28,6 @@ constexpr double kLeastReach_m = 4.5;
 constexpr double kMostReach_m = 6.0;
 
 constexpr double kWorstCost = 0.5;  // misfit of the best way
-// Another way, this far from the best one, must fit worse by this share of what fits.
-constexpr double kOtherWay_m = 0.3;
-constexpr double kClearMargin = 0.06;
 // The geometry must hold the way this well; its own covariance is a lower bound.
 constexpr double kTrustedDeviation_m = 0.02;
 
@@ -128,14 +125,8 @@ std::optional<Eigen::Isometry3d> match_scans(const Scan& earlier, const Scan& la
     return std::nullopt;
   }
   const registration::WayCandidate& best = registration::best_way(candidates);
-  if (best.cost > kWorstCost) {
+  if (best.cost > kWorstCost || !registration::is_clear(candidates)) {
     return std::nullopt;
-  }
-  for (const registration::WayCandidate& other : candidates) {
-    const double apart_m = (other.T_target_source.translation() - best.T_target_source.translation()).norm();
-    if (apart_m > kOtherWay_m && other.cost - best.cost < kClearMargin * (1.0 - best.cost)) {
-      return std::nullopt;
-    }
   }
   return refined(from, to, dt_s, best.T_target_source, workers);
 }

@@ -10,6 +10,7 @@ namespace {
 // Radar and repeated poses scatter by some per cent; nobody calibrates a clock by driving.
 constexpr double kUsual = 0.08;
 constexpr double kDeviations = 4.0;
+constexpr std::size_t kEnough = 5;
 constexpr double kUnitMatch = 0.05;
 constexpr double kUnitWrongBy = 0.3;
 constexpr double kMoving_mps = 1.0;
@@ -22,11 +23,21 @@ struct Unit {
 constexpr Unit kUnits[] = {{"km/h", 3.6},    {"mm/s", 1000.0},   {"cm/s", 100.0},
                            {"mph", 2.23694}, {"knots", 1.94384}, {"ft/s", 3.28084}};
 
+/// The one whose ratio is known better; metres that are guessed are no measure.
+const Comparison* best_reference(const Evidence& evidence) {
+  if (!evidence.truth.tells() || !evidence.matching.tells()) {
+    return evidence.truth.tells() ? &evidence.truth : evidence.reference();
+  }
+  const bool points_are_better =
+      evidence.units.points == 1.0 && evidence.matching.ratio_error < evidence.truth.ratio_error;
+  return points_are_better && evidence.matching.moving >= kEnough ? &evidence.matching : &evidence.truth;
+}
+
 }  // namespace
 
 std::optional<SpeedRatio> speed_ratio(const Evidence& evidence) {
   SpeedRatio result;
-  result.reference = evidence.truth.tells() ? &evidence.truth : evidence.reference();
+  result.reference = best_reference(evidence);
   // By the reference and the Doppler both, along or against each other: the size is what counts here.
   if (result.reference == nullptr || result.reference->doppler_speed_mps < kMoving_mps) {
     return std::nullopt;

@@ -18,8 +18,8 @@ struct SpeedRatio {
   double unit_factor = 1.0;    ///< as many of them are 1 m/s
 };
 
-/// Nothing where the Doppler gives no velocity along the reference's. With ground truth and points in metres that is
-/// the reference; else matching scans, whose metres are those of the points.
+/// Nothing where the Doppler gives no velocity along the reference's. The reference is ground truth or
+/// matching scans, whichever gives the ratio better; but the metres of the latter are those of the points.
 std::optional<SpeedRatio> speed_ratio(const Evidence& evidence);
 
 }  // namespace dynamic_icp::doctor

@@ -76,15 +76,16 @@ ego_motion::EgoVelocity velocity_of(const Eigen::Isometry3d& T_source_target, do
                           R_map_target.transpose() * position_covariance_map * R_map_target / (dt_s * dt_s));
 }
 
-Eigen::Isometry3d first_way(const Scan& source, const registration::Target& target, double dt_s,
-                            const Workers& workers) {
+FirstWay first_way(const Scan& source, const registration::Target& target, double dt_s, const Workers& workers) {
   const std::array<Eigen::Vector3d, 3> axes = {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY(),
                                                Eigen::Vector3d::UnitZ()};
   const double reach_m = std::clamp(kFastest_mps * dt_s, kLeastReach_m, kMostReach_m);
-  return registration::best_way(registration::search_ways(source, target, axes, reach_m, workers)).T_target_source;
+  const std::vector<registration::WayCandidate> ways =
+      registration::search_ways(source, target, axes, reach_m, workers);
+  return {registration::best_way(ways).T_target_source, registration::is_clear(ways)};
 }
 
-Eigen::Isometry3d first_way(const Scan& source, const Scan& target, double dt_s, const Workers& workers) {
+FirstWay first_way(const Scan& source, const Scan& target, double dt_s, const Workers& workers) {
   const Scan points = preprocess::voxel_grid(target, {kTargetVoxel_m}, workers);
   const spatial::KdTree tree(points.points(), workers);
   const preprocess::Normals normals = preprocess::estimate_normals(points.points(), tree, {}, workers);

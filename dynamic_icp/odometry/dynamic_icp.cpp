@@ -140,7 +140,7 @@ registration::Alignment DynamicIcp::align_without_doppler(const Scan& source, co
   config.doppler_weight = 0.0;
   Eigen::Isometry3d T_start = predicted_motion(stamp);
   if (!last_->twist) {
-    T_start = first_way(source, target, seconds_between(last_->scan.stamp(), stamp), workers_);
+    T_start = first_way(source, target, seconds_between(last_->scan.stamp(), stamp), workers_).T_target_source;
     for (const double gate_m : kWideGates_m) {
       config.max_correspondence_distance_m = gate_m;
       T_start = registration::align(source, target, T_start, config, workers_).T_target_source;

@@ -239,8 +239,7 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
     lose(now, prior, frame);
     return;
   }
-  const ego_motion::EgoVelocity moved = velocity_of(motion_to(found), now.stamp_s - state_->stamp_s,
-                                                    found.T_map_sensor.linear(), found.covariance.block<3, 3>(3, 3));
+  const ego_motion::EgoVelocity moved = now.is_relative ? now.filtered : found_velocity(now, found);
   const TurnState expected = predict(state_->turn, now.stamp_s - state_->stamp_s, config_.turn);
   const TurnState turn = turn_state(found, expected, now.duration_s, config_.turn);
   describe(prior, found, turn.covariance.topLeftCorner<3, 3>(), registration::typical_distance(now.still), frame);
@@ -257,7 +256,7 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
   state_->T_map_sensor = found.T_map_sensor;
   state_->turn = turn;
   state_->sweep = found.sweep;
-  state_->filtered = now.is_relative ? now.filtered : moved;
+  state_->filtered = moved;
   // The map is the mean of its last scans: a position drifts away from it only as long as it remembers.
   const double memory = config_.mapping.memory_scans;
   state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);

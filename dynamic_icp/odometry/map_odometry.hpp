@@ -90,6 +90,8 @@ class MapOdometry final : public Odometry {
   void expect_even_motion(const Moment& now, registration::MotionPrior& prior) const;
   [[nodiscard]] registration::MapAlignment align_with_found_velocity(const Moment& now, registration::MotionPrior prior,
                                                                      const registration::MapAlignConfig& config) const;
+  [[nodiscard]] ego_motion::EgoVelocity found_velocity(const Moment& now,
+                                                       const registration::MapAlignment& found) const;
   [[nodiscard]] Eigen::Isometry3d motion_to(const registration::MapAlignment& found) const;
   [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
   std::vector<Eigen::Vector3d> add_to_map(const Moment& now);

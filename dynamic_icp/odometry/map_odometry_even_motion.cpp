@@ -1,8 +1,11 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <Eigen/Eigenvalues>
+
 #include "dynamic_icp/odometry/compensated_motion.hpp"
 #include "dynamic_icp/odometry/frame_steps.hpp"
 #include "dynamic_icp/odometry/map_odometry.hpp"
+#include "dynamic_icp/odometry/motion_uncertainty.hpp"
 
 // What the map odometry does where no Doppler tells how the sensor moves: it is compensated, or the scan is unusable.
 namespace dynamic_icp::odometry {
@@ -15,8 +18,11 @@ constexpr double kFirstWay_m = 0.2;
 /// Of the second scan in a map, by the points alone: well enough for the alignment to find the rest.
 ego_motion::EgoVelocity MapOdometry::first_velocity(const Moment& now) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
-  const Eigen::Isometry3d T_now_first = first_way(state_->first.still, now.still, dt_s, workers_);
-  return velocity_of(T_now_first.inverse(), dt_s, Eigen::Matrix3d::Identity(),
+  const FirstWay way = first_way(state_->first.still, now.still, dt_s, workers_);
+  if (!way.is_clear) {
+    return now.ego;  // as unknown as it was
+  }
+  return velocity_of(way.T_target_source.inverse(), dt_s, Eigen::Matrix3d::Identity(),
                      kFirstWay_m * kFirstWay_m * Eigen::Matrix3d::Identity());
 }
 
@@ -57,6 +63,23 @@ void MapOdometry::extrapolate(double stamp_s, FrameStatus status, Frame& frame) 
   covariance.diagonal().head<3>().setConstant(turned_rad * turned_rad);
   covariance.diagonal().tail<3>().setConstant(moved_m * moved_m);
   frame.alignment.covariance = covariance;
+}
+
+/// Of the motion that an alignment found. Along directions that the points hardly hold (a tunnel) scan after scan would
+/// seem to add to what is known, but errs alike each time: there nothing is learned.
+ego_motion::EgoVelocity MapOdometry::found_velocity(const Moment& now, const registration::MapAlignment& found) const {
+  const double dt_s = now.stamp_s - state_->stamp_s;
+  const Eigen::Matrix3d& R_map_sensor = found.T_map_sensor.linear();
+  const Eigen::Matrix3d expected = dt_s * dt_s * R_map_sensor * now.ego.covariance * R_map_sensor.transpose();
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> held(position_information(found.geometry_information));
+  Eigen::Matrix3d covariance = found.covariance.block<3, 3>(3, 3);
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d direction = held.eigenvectors().col(k);
+    if (held.eigenvalues()[k] * config_.unknown_deviation_m * config_.unknown_deviation_m < 1.0) {
+      covariance += direction.dot(expected * direction) * direction * direction.transpose();
+    }
+  }
+  return velocity_of(motion_to(found), dt_s, R_map_sensor, covariance);
 }
 
 /// T_last_now.

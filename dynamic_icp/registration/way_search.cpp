@@ -15,6 +15,10 @@ constexpr std::size_t kJudgedPoints = 4000;
 constexpr double kStartStep_m = 0.8;
 constexpr double kReach_m = 1.0;
 constexpr double kWidth_m = 0.2;
+// Another way, this far from the best one, must fit worse by this share of what fits.
+constexpr double kOtherWay_m = 0.3;
+constexpr double kClearMargin = 0.06;
+
 constexpr int kIterations = 15;
 constexpr double kTolerance = 1e-4;
 
@@ -78,6 +82,14 @@ std::vector<WayCandidate> search_ways(const Scan& source, const Target& target, 
 const WayCandidate& best_way(const std::vector<WayCandidate>& candidates) {
   return *std::min_element(candidates.begin(), candidates.end(),
                            [](const WayCandidate& a, const WayCandidate& b) { return a.cost < b.cost; });
+}
+
+bool is_clear(const std::vector<WayCandidate>& candidates) {
+  const WayCandidate& best = best_way(candidates);
+  return std::none_of(candidates.begin(), candidates.end(), [&](const WayCandidate& other) {
+    const double apart_m = (other.T_target_source.translation() - best.T_target_source.translation()).norm();
+    return apart_m > kOtherWay_m && other.cost - best.cost < kClearMargin * (1.0 - best.cost);
+  });
 }
 
 }  // namespace dynamic_icp::registration

@@ -30,6 +30,9 @@ std::vector<WayCandidate> search_ways(const Scan& source, const Target& target, 
 /// The one that fits best; there must be one.
 const WayCandidate& best_way(const std::vector<WayCandidate>& candidates);
 
+/// Whether no other way fits nearly as well: false in smooth tunnels and between equal posts.
+bool is_clear(const std::vector<WayCandidate>& candidates);
+
 /// At most so many rows, evenly over the scan.
 Scan evenly_thinned(const Scan& scan, std::size_t most);
 
