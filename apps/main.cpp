@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/base/keep_memory.hpp"
 #include "dynamic_icp/base/version.hpp"
 
 #include "apps/command_line.hpp"
@@ -41,6 +42,7 @@ int report(const char* message, int status) {
 
 int main(int argc, char** argv) {
   using namespace dynamic_icp;
+  keep_freed_memory();
   apps::remember_command_line(argc, argv);
   CLI::App app{"Registration and odometry for FMCW LiDAR in scenes full of moving things", "dynamic-icp"};
   app.set_version_flag("--version", std::string(version()));

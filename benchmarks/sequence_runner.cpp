@@ -14,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/base/keep_memory.hpp"
 #include "dynamic_icp/base/version.hpp"
 #include "dynamic_icp/benchmark/machine.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
@@ -178,6 +179,7 @@ void add_options(CLI::App& app, Options& options) {
 
 int main(int argc, char** argv) {
   using namespace dynamic_icp;
+  keep_freed_memory();  // as the program does
   speed::Options options;
   CLI::App app{"Times the odometry over whole recordings", "dynamic-icp-speed"};
   speed::add_options(app, options);
