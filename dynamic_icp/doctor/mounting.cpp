@@ -11,8 +11,8 @@ namespace dynamic_icp::doctor {
 namespace {
 
 constexpr double kMoving_mps = 1.5;
-constexpr double kOffTruth_deg = 4.0;
-constexpr double kOffAhead_deg = 6.0;
+constexpr double kOffTruth_deg = 8.0;  // at walking pace in a jam a few degrees are noise
+constexpr double kOffAhead_deg = 8.0;
 constexpr double kOffAheadInTurns_deg = 15.0;  // the sensor swings out: it is not where the wheels are
 constexpr double kStraight_rps = 0.06;
 constexpr double kDegree = std::numbers::pi / 180.0;

@@ -50,6 +50,10 @@ std::optional<SpeedRatio> speed_ratio(const Evidence& evidence) {
   result.ratio = guessed / evidence.units.doppler;
   const double allowed = std::max(kUsual, kDeviations * reference.ratio_error);
   result.is_one = std::abs(std::log(result.ratio)) < std::log1p(allowed);
+  // A few odd motions out of many, at walking pace in a jam, prove nothing.
+  if (!result.is_one && 2 * reference.moving <= evidence.probes.size()) {
+    return std::nullopt;
+  }
   for (const Unit& unit : kUnits) {
     const double off = std::abs(std::log(result.ratio / unit.per_mps));
     if (!result.is_one && off < std::max(kUnitMatch, std::min(kUnitWrongBy, allowed))) {
