@@ -200,7 +200,7 @@ void print_json(const InfoOptions& options, const datasets::Dataset& dataset, co
 int info(const InfoOptions& options) {
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const PointsSeen seen = look_at_points(*dataset);
-  const doctor::Diagnosis diagnosis = doctor::diagnose(*dataset, {}, Workers());
+  const doctor::Diagnosis diagnosis = doctor::diagnose(*dataset, {.applied = options.settings.correction}, Workers());
   if (options.json) {
     print_json(options, *dataset, seen, diagnosis);
     return 0;

@@ -18,6 +18,14 @@ namespace {
 constexpr int kDataOrMachineFailed = 1;
 constexpr int kWrongUsage = 2;
 
+/// The status, but what was printed must have arrived: a file that it was sent to may be full.
+int with_output_written(int status) {
+  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw dynamic_icp::DataError("standard output: not all could be written");
+  }
+  return status;
+}
+
 /// A first word that is no command deserves better than "a subcommand is required".
 void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
   if (argc < 2 || argv[1][0] == '-') {
@@ -48,15 +56,16 @@ int main(int argc, char** argv) {
   app.set_version_flag("--version", std::string(version()));
   app.require_subcommand(1);
   std::function<int()> selected;
-  for (const auto add : {apps::add_run_command, apps::add_register_command, apps::add_evaluate_command,
-                         apps::add_benchmark_command, apps::add_simulate_command, apps::add_report_command,
-                         apps::add_plot_command, apps::add_convert_command, apps::add_info_command, apps::add_config_command}) {
+  for (const auto add :
+       {apps::add_run_command, apps::add_register_command, apps::add_evaluate_command, apps::add_benchmark_command,
+        apps::add_simulate_command, apps::add_report_command, apps::add_plot_command, apps::add_convert_command,
+        apps::add_info_command, apps::add_config_command}) {
     add(app, selected);
   }
   try {
     refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
-    return selected();
+    return with_output_written(selected());
   } catch (const CLI::Success& help_or_version) {
     return app.exit(help_or_version);
   } catch (const CLI::ParseError& error) {

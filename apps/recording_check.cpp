@@ -24,6 +24,7 @@ std::vector<std::string> check_recording(const datasets::Dataset& dataset, const
   config.begin = begin;
   config.end = std::min(end, begin + kScans);
   config.probes = kProbes;
+  config.applied = settings.correction;
   config.always_match_scans = false;
   const doctor::Diagnosis diagnosis = doctor::diagnose(dataset, config, Workers(threads));
   std::vector<std::string> warnings;
@@ -32,11 +33,12 @@ std::vector<std::string> check_recording(const datasets::Dataset& dataset, const
     const bool is_kind = finding.question == doctor::Question::kDopplerKind;
     const bool is_said = (is_sign && settings.doppler_sign_is_said) || (is_kind && settings.correction.doppler_kind);
     if (finding.verdict == doctor::Verdict::kWrong && (is_sign || is_kind) && !is_said) {
-      throw DataError(fmt::format("{}: the Doppler is {}. Run with {}; or say that it is not so with {}",
-                                  dataset.scan_file(begin).string(), finding.sentence, finding.fix,
-                                  is_sign                                            ? "--doppler-sign away"
-                                  : dataset.doppler_kind() == DopplerKind::kRelative ? "--doppler-kind relative"
-                                                                                     : "--doppler-kind compensated"));
+      throw DataError(fmt::format(
+          "{}: the Doppler is {}. Run with {}; or say that it is not so with {}", dataset.scan_file(begin).string(),
+          finding.sentence, finding.fix,
+          is_sign ? (settings.correction.doppler_is_towards ? "--doppler-sign towards" : "--doppler-sign away")
+          : dataset.doppler_kind() == DopplerKind::kRelative ? "--doppler-kind relative"
+                                                             : "--doppler-kind compensated"));
     }
     if (finding.verdict == doctor::Verdict::kWrong || finding.verdict == doctor::Verdict::kSuspicious) {
       warnings.push_back(fmt::format("{}: {}{}", doctor::to_string(finding.question), finding.sentence,

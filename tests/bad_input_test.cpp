@@ -262,6 +262,14 @@ TEST_F(BadInput, AKilledRunLeavesNoResultAndTheNextOneCleansUp) {
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 1) << "only the result";
 }
 
+TEST_F(BadInput, WhatCannotBePrintedIsAFailure) {
+  for (const std::string& arguments : {"info " + street().string() + " --json", std::string("simulate --list")}) {
+    const Outcome outcome = run_shell("'" DYNAMIC_ICP_PROGRAM "' " + arguments + " > /dev/full");
+    EXPECT_EQ(outcome.status, 1) << arguments;
+    EXPECT_NE(outcome.text.find("standard output"), std::string::npos) << outcome.text;
+  }
+}
+
 TEST_F(BadInput, WrongUseIsStatusTwoAndNamesTheRemedy) {
   const std::string in = street().string();
   const std::string out = " --output " + (folder_ / "out").string();

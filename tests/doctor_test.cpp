@@ -47,7 +47,7 @@ TEST_F(Doctor, InfoSaysItAsJson) {
   const json turned = json::parse(run_program("info --json --doppler-sign towards " + street().string()).text);
   EXPECT_EQ(turned["diagnosis"][0]["question"], "doppler_sign");
   EXPECT_EQ(turned["diagnosis"][0]["verdict"], "wrong");
-  EXPECT_EQ(turned["diagnosis"][0]["fix"], "--doppler-sign towards");
+  EXPECT_EQ(turned["diagnosis"][0]["fix"], "--doppler-sign away");
 }
 
 TEST_F(Doctor, RunRefusesATurnedSignUntilItIsSaid) {

@@ -59,6 +59,49 @@ std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& input, co
   return folder.empty() ? nullptr : layout.open(folder, options);
 }
 
+/// Whether a path is the other one or lies in it.
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  const fs::path below =
+      fs::absolute(path).lexically_normal().lexically_relative(fs::absolute(folder).lexically_normal());
+  return !below.empty() && *below.begin() != "..";
+}
+
+/// What the layout finds. One that finds several folders throws, which counts for the first layout only: within a
+/// recording of another layout they mean nothing.
+fs::path find_or_nothing(const Layout& layout, const fs::path& input, bool is_first) {
+  try {
+    return layout.find(input);
+  } catch (const DataError&) {
+    if (is_first) {
+      throw;
+    }
+    return {};
+  }
+}
+
+/// Throws DataError when the first layout to find something found it below the input, and others found something beside
+/// it: which one is meant is not for us to choose. What lies in a recording is part of it.
+void refuse_several_layouts(const fs::path& input) {
+  fs::path first;
+  std::string_view format;
+  for (const Layout& layout : kLayouts) {
+    const fs::path found = find_or_nothing(layout, input, first.empty());
+    if (found.empty()) {
+      continue;
+    }
+    if (first.empty()) {
+      if (lies_in(input, found)) {
+        return;
+      }
+      first = found;
+      format = layout.name;
+    } else if (!lies_in(found, first) && !lies_in(first, found)) {
+      throw DataError(fmt::format("{}: holds several recordings, name one of them:\n  {} ({})\n  {} ({})",
+                                  input.string(), first.string(), format, found.string(), layout.name));
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<std::string> known_formats() {
@@ -75,6 +118,9 @@ std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& 
   }
   const std::string& format = options.format;
   bool known = format == "auto";
+  if (known) {
+    refuse_several_layouts(input);
+  }
   for (const Layout& layout : kLayouts) {
     known = known || format == layout.name;
     if (format == "auto" || format == layout.name) {

@@ -41,6 +41,31 @@ TEST_F(OpenDataset, AnUnknownLayoutSaysWhatWasLookedFor) {
   EXPECT_THROW(open_dataset(folder_, {.format = "dicp"}), DataError);
 }
 
+TEST_F(OpenDataset, RecordingsOfSeveralLayoutsSideBySideAreRefused) {
+  const auto write = [&](const fs::path& path, std::size_t bytes) {
+    fs::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path, std::ios::binary) << std::string(bytes, '\0');
+  };
+  write("a/point_clouds/00001.bin", 16);
+  EXPECT_EQ(open_dataset(folder_)->format(), "dicp");
+  write(".b.partial-1/LiDAR/Aeva/1735689600000000000.bin", 29);
+  EXPECT_EQ(open_dataset(folder_)->format(), "dicp") << "what is not finished does not count";
+  write("a/run/map.ply", 1);
+  EXPECT_EQ(open_dataset(folder_)->format(), "dicp") << "nor does what lies in the recording";
+  write("b/LiDAR/Aeva/1735689600000000000.bin", 29);
+  try {
+    open_dataset(folder_);
+    FAIL() << "which one?";
+  } catch (const DataError& error) {
+    const std::string message = error.what();
+    EXPECT_NE(message.find("several recordings"), std::string::npos) << message;
+    EXPECT_NE(message.find((folder_ / "a").string() + " (dicp)"), std::string::npos) << message;
+    EXPECT_NE(message.find((folder_ / "b").string()), std::string::npos) << message;
+  }
+  EXPECT_EQ(open_dataset(folder_ / "a")->format(), "dicp");
+  EXPECT_EQ(open_dataset(folder_, {.format = "hercules"})->format(), "hercules");
+}
+
 TEST_F(OpenDataset, ArchivesAndTheLikeAreNamed) {
   const auto fault = [&](const fs::path& input) -> std::string {
     try {

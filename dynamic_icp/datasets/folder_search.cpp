@@ -35,10 +35,11 @@ std::vector<fs::path> entries_of(const fs::path& folder, const Test& test) {
   return entries;
 }
 
-/// Links to folders are not: they may lead round in circles.
+/// Links to folders are not: they may lead round in circles. Nor are hidden folders, such as that of a recording which
+/// is being written, or was when its program was ended.
 bool is_own_folder(const fs::directory_entry& entry) {
   std::error_code ignored;
-  return !entry.is_symlink(ignored) && entry.is_directory(ignored);
+  return entry.path().filename().string().front() != '.' && !entry.is_symlink(ignored) && entry.is_directory(ignored);
 }
 
 void search(const fs::path& folder, const std::function<bool(const fs::path&)>& wanted, int levels,

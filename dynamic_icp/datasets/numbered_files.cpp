@@ -57,7 +57,7 @@ std::vector<fs::path> numbered_files(const fs::path& folder, std::string_view en
   for (std::size_t i = 0; i < numbered.size(); ++i) {
     if (i > 0 && numbered[i].first == numbered[i - 1].first) {
       throw DataError(fmt::format("{}: carries the same number as {}", numbered[i].second.string(),
-                                  numbered[i - 1].second.filename().string()));
+                                  files.back().filename().string()));
     }
     files.push_back(std::move(numbered[i].second));
   }

@@ -74,10 +74,13 @@ std::string stored_order(const Evidence& evidence, int up, std::optional<int> fo
   }
   const std::array<int, 4> order = with_doppler_last(evidence.columns.doppler);
   std::array<std::string_view, 4> stored;
+  const auto stored_column = [&](std::size_t k) {
+    return static_cast<std::size_t>(evidence.applied.columns.at(static_cast<std::size_t>(order[k])));
+  };
   for (std::size_t k = 0; k < 3; ++k) {
-    stored.at(static_cast<std::size_t>(order[k])) = names[k];
+    stored.at(stored_column(k)) = names[k];
   }
-  stored.at(static_cast<std::size_t>(order[3])) = "doppler";
+  stored.at(stored_column(3)) = "doppler";
   return fmt::format("{}", fmt::join(stored, ","));
 }
 

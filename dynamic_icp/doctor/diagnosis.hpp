@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "dynamic_icp/base/parallel.hpp"
+#include "dynamic_icp/datasets/correction.hpp"
 #include "dynamic_icp/datasets/dataset.hpp"
 
 namespace dynamic_icp::doctor {
@@ -64,8 +65,9 @@ struct Diagnosis {
 struct DoctorConfig {
   std::size_t begin = 0;  ///< of the scans [begin, end) that count; end is cut to the length
   std::size_t end = static_cast<std::size_t>(-1);
-  std::size_t probes = 10;         ///< stretches of the recording looked at, evenly spread
-  bool always_match_scans = true;  ///< off: only where there is no ground truth, or it disagrees with the Doppler
+  std::size_t probes = 10;            ///< stretches of the recording looked at, evenly spread
+  datasets::Correction applied = {};  ///< what was done to the numbers already: options that mend add to it
+  bool always_match_scans = true;     ///< off: only where there is no ground truth, or it disagrees with the Doppler
 };
 
 /// Looks at some stretches of about 0.8 s, compares the velocity that the Doppler gives with the motion by ground truth

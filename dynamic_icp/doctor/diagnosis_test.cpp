@@ -133,6 +133,29 @@ TEST(Diagnosis, WhatIsMendedIsHealthy) {
   EXPECT_EQ(diagnosis.of(Question::kDopplerSign).verdict, Verdict::kOk);
 }
 
+TEST(Diagnosis, AFixTakesInWhatWasMendedWrong) {
+  const auto fix = [](Question question, const datasets::Correction& correction) {
+    auto recording = std::make_unique<Recording>();
+    recording->ready();
+    DoctorConfig config;
+    config.probes = 4;
+    config.applied = correction;
+    return diagnose(*datasets::corrected(std::move(recording), correction), config, Workers(1)).of(question).fix;
+  };
+  datasets::Correction correction;
+  correction.doppler_is_towards = true;
+  EXPECT_EQ(fix(Question::kDopplerSign, correction), "--doppler-sign away");
+  correction = {};
+  correction.doppler_scale = 3.6;
+  EXPECT_EQ(fix(Question::kDopplerUnits, correction), "--doppler-scale 1");
+  correction = {};
+  correction.point_scale = 1000.0;
+  EXPECT_EQ(fix(Question::kPointUnits, correction), "--point-scale 1");
+  correction = {};
+  correction.columns = {3, 0, 1, 2};
+  EXPECT_EQ(fix(Question::kColumns, correction), "--columns x,y,z,doppler");
+}
+
 TEST(Diagnosis, CompensatedDopplerIsFoundWithAndWithoutGroundTruth) {
   for (const bool has_truth : {true, false}) {
     Recording recording;

@@ -57,7 +57,7 @@ Finding doppler_sign(const Evidence& evidence) {
     finding.sentence =
         fmt::format("positive TOWARDS the sensor: the Doppler moves it by {:.1f} m/s against the way it moves {}",
                     reference->doppler_speed_mps, source);
-    finding.fix = "--doppler-sign towards";
+    finding.fix = evidence.applied.doppler_is_towards ? "--doppler-sign away" : "--doppler-sign towards";
   } else {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = fmt::format(

@@ -231,6 +231,7 @@ std::optional<double> Evidence::doppler_speed_mps() const {
 Evidence gather(const datasets::Dataset& dataset, const DoctorConfig& config, const Workers& workers) {
   Evidence evidence;
   evidence.dataset = &dataset;
+  evidence.applied = config.applied;
   evidence.end = std::min(config.end, dataset.size());
   evidence.begin = std::min(config.begin, evidence.end);
   const std::size_t scans = evidence.end - evidence.begin;

@@ -50,6 +50,7 @@ struct Evidence {
   std::size_t begin = 0;
   std::size_t end = 0;
   double period_s = 0.0;  ///< median; 0 of one scan
+  datasets::Correction applied;
 
   /// Factors that bring numbers into the order of metres and m/s before they are looked at; 1 where they are already.
   UnitGuess units;

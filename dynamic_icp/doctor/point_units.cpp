@@ -49,7 +49,7 @@ Finding point_units(const Evidence& evidence) {
   if (factor != 1.0) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format("95 % of the points are nearer than {:.4g}: these are not metres", as_stored);
-    finding.fix = fmt::format("--point-scale {:g}", factor);
+    finding.fix = fmt::format("--point-scale {:g}", evidence.applied.point_scale * factor);
   } else {
     finding.sentence = fmt::format("m: 95 % of the points are nearer than {:.1f} m", as_stored);
   }

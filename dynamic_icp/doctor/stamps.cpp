@@ -10,6 +10,16 @@ namespace dynamic_icp::doctor {
 namespace {
 
 constexpr double kGapPeriods = 1.5;
+constexpr double kLongestPeriod_s = 10.0;
+
+/// Of milli-, micro- and nanoseconds the largest that brings a period below the longest, s.
+double likely_unit(double period_s) {
+  double unit = 1e-3;
+  while (unit > 1e-9 && period_s * unit > kLongestPeriod_s) {
+    unit *= 1e-3;
+  }
+  return unit;
+}
 
 }  // namespace
 
@@ -45,6 +55,12 @@ Finding stamps(const Evidence& evidence) {
     finding.verdict = Verdict::kSuspicious;
     finding.sentence = fmt::format("{} gaps of more than {} periods, the first before scan {}, the longest {:.3f} s",
                                    gaps, kGapPeriods, first_gap, longest);
+  } else if (evidence.period_s > kLongestPeriod_s) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence =
+        fmt::format("a scan every {:g} s: no sensor is so slow; the stamps may count milli-, micro- or nanoseconds",
+                    evidence.period_s);
+    finding.fix = fmt::format("--time-scale {:g}", evidence.applied.time_scale * likely_unit(evidence.period_s));
   } else {
     finding.sentence = fmt::format("increasing, every {:.4f} s, without gaps", evidence.period_s);
   }
