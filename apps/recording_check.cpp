@@ -18,8 +18,8 @@ constexpr std::size_t kProbes = 4;
 
 }  // namespace
 
-std::vector<std::string> check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
-                                         std::size_t begin, std::size_t end, int threads) {
+RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
+                               std::size_t begin, std::size_t end, int threads) {
   doctor::DoctorConfig config;
   config.begin = begin;
   config.end = std::min(end, begin + kScans);
@@ -27,7 +27,10 @@ std::vector<std::string> check_recording(const datasets::Dataset& dataset, const
   config.applied = settings.correction;
   config.always_match_scans = false;
   const doctor::Diagnosis diagnosis = doctor::diagnose(dataset, config, Workers(threads));
-  std::vector<std::string> warnings;
+  RecordingCheck check;
+  check.period_s = diagnosis.period_s;
+  check.doppler = fmt::format("{}; {}", diagnosis.of(doctor::Question::kDopplerKind).sentence,
+                              diagnosis.of(doctor::Question::kDopplerSign).sentence);
   for (const doctor::Finding& finding : diagnosis.findings) {
     const bool is_sign = finding.question == doctor::Question::kDopplerSign;
     const bool is_kind = finding.question == doctor::Question::kDopplerKind;
@@ -41,11 +44,11 @@ std::vector<std::string> check_recording(const datasets::Dataset& dataset, const
                                                              : "--doppler-kind compensated"));
     }
     if (finding.verdict == doctor::Verdict::kWrong || finding.verdict == doctor::Verdict::kSuspicious) {
-      warnings.push_back(fmt::format("{}: {}{}", doctor::to_string(finding.question), finding.sentence,
-                                     finding.fix.empty() ? "" : "; mend it with " + finding.fix));
+      check.warnings.push_back(fmt::format("{}: {}{}", doctor::to_string(finding.question), finding.sentence,
+                                           finding.fix.empty() ? "" : "; mend it with " + finding.fix));
     }
   }
-  return warnings;
+  return check;
 }
 
 }  // namespace dynamic_icp::apps

@@ -149,6 +149,7 @@ struct Warnings {
 /// What a run found and made beside the files of every run.
 struct Findings {
   Warnings warnings;
+  RecordingCheck recording;
   std::vector<std::string> assumptions;
   SweepRecord sweep;
   std::optional<results::MapWriter> map;
@@ -177,6 +178,7 @@ std::string run_json(const RunOptions& options, const datasets::Dataset& dataset
     json["ground_truth"] = fs::absolute(ground_truth).string();
   }
   json["sweep"] = sweep_json(findings.sweep);
+  json["doppler"] = findings.recording.doppler;
   json["map"] = map_json(findings.map, options);
   json["assumptions"] = findings.assumptions;
   json["warnings"] = findings.warnings.texts;
@@ -204,6 +206,10 @@ std::string sweep_text(const SweepRecord& sweep) {
 void print_summary(const results::RunSummary& summary, const Findings& findings, const RunOptions& options) {
   const evaluation::RunAccuracy& accuracy = summary.accuracy;
   fmt::print("scans        {}\n", summary.frames);
+  if (findings.recording.period_s > 0.0) {
+    fmt::print("rate         {:.2f} Hz\n", 1.0 / findings.recording.period_s);
+  }
+  fmt::print("Doppler      {}\n", findings.recording.doppler);
   fmt::print("sweep        {}\n", sweep_text(findings.sweep));
   fmt::print("converged    {}   iterations {}\n", percent(summary.convergence_rate), cell(summary.mean_iterations, 1));
   fmt::print("time         {} ms a scan (median {}, p95 {})\n", cell(summary.ms_mean, 1), cell(summary.ms_median, 1),
@@ -250,10 +256,10 @@ void process_scans(const datasets::Dataset& dataset, const ScanSelection& select
 
 int run(const RunOptions& options) {
   const odometry::Config config = make_config(options.method);
-  Findings findings{{{}, options.quiet}, {}, {}, make_map(options)};
+  Findings findings{{{}, options.quiet}, {}, {}, {}, make_map(options)};
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const ScanSelection selection = select_scans(*dataset, options.start, options.max_frames);
-  const std::vector<std::string> doubts =
+  findings.recording =
       check_recording(*dataset, options.settings, selection.begin, selection.end, options.method.threads);
   const bool own_truth = options.ground_truth.empty();
   const fs::path truth_file = own_truth ? dataset->ground_truth_file() : fs::path(options.ground_truth);
@@ -272,7 +278,7 @@ int run(const RunOptions& options) {
   for (const std::string& assumption : findings.assumptions) {
     findings.warnings.add(assumption);
   }
-  for (const std::string& doubt : doubts) {
+  for (const std::string& doubt : findings.recording.warnings) {
     findings.warnings.add(doubt);
   }
   results::RunWriter writer(output.path(), options.save_labels);

@@ -94,6 +94,10 @@ TEST_F(Doctor, ARecordedRadarIsWhatItIs) {
                                "time_scale", "stamps", "unusable_points"}) {
     EXPECT_EQ(healthy[question], "ok") << question;
   }
+  const Outcome ran = run_program("run " + recording.string() + " --output " + (folder_ / "out").string());
+  for (const char* said : {"12.00 Hz", "relative: ", "positive away from the sensor: "}) {
+    EXPECT_NE(ran.text.find(said), std::string::npos) << said << "\n" << ran.text;
+  }
   EXPECT_EQ(findings("--doppler-sign towards ")["doppler_sign"], "wrong");
   EXPECT_EQ(findings("--time-scale 1.2 ")["time_scale"], "wrong") << "as if it came at 10 Hz";
   EXPECT_EQ(findings("--point-scale 1000 ")["point_units"], "wrong");

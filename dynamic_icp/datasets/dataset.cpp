@@ -27,6 +27,7 @@ struct Layout {
   fs::path (*find)(const fs::path& input);  ///< the folder to open; empty when the input is not of this layout
   std::unique_ptr<Dataset> (*open)(const fs::path& folder, const OpenOptions& options);
   fs::path (*find_named)(const fs::path& input) = nullptr;  ///< instead of `find` when the user names the layout
+  bool has_choices = false;                                 ///< it looks at fields and sensors of the options itself
 };
 
 // The first that finds something is taken.
@@ -37,11 +38,12 @@ constexpr Layout kLayouts[] = {
     {"helipr", "LiDAR/Aeva/*.bin otherwise", find_helipr, open_helipr, find_aeva_folder},
     {"boreas", "aeva/*.bin with applanix/ or calib/; frames/*.bin with timestamps.txt and aeva_poses.txt", find_boreas,
      open_boreas, find_boreas_scans},
-    {"aevascenes", "sequence.json beside pointcloud_compensated/ or pointcloud_raw/", find_aevascenes, open_aevascenes},
+    {"aevascenes", "sequence.json beside pointcloud_compensated/ or pointcloud_raw/", find_aevascenes, open_aevascenes,
+     nullptr, true},
     // What any data set may hold comes last.
-    {"npz", "*.npz, or <name>.npy with <name>_dop.npy", find_npz, open_npz},
-    {"pcd", "*.pcd", find_pcd, open_pcd},
-    {"ply", "*.ply", find_ply, open_ply},
+    {"npz", "*.npz, or <name>.npy with <name>_dop.npy", find_npz, open_npz, nullptr, true},
+    {"pcd", "*.pcd", find_pcd, open_pcd, nullptr, true},
+    {"ply", "*.ply", find_ply, open_ply, nullptr, true},
     {"bin", "a folder of *.bin whose records are told by their content", find_bin_folder, open_bin_folder},
 };
 
@@ -56,6 +58,11 @@ std::string looked_for() {
 std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& input, const OpenOptions& options) {
   const bool is_named = options.format == layout.name && layout.find_named != nullptr;
   const fs::path folder = is_named ? layout.find_named(input) : layout.find(input);
+  if (!folder.empty() && !layout.has_choices && !(options.fields.empty() && options.sensors.empty())) {
+    throw UsageError(
+        fmt::format("{} has neither columns with names nor several sensors to choose from; '{}' was asked for",
+                    layout.name, options.fields.empty() ? options.sensors.front() : options.fields.begin()->first));
+  }
   return folder.empty() ? nullptr : layout.open(folder, options);
 }
 

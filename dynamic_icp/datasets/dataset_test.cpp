@@ -66,6 +66,13 @@ TEST_F(OpenDataset, RecordingsOfSeveralLayoutsSideBySideAreRefused) {
   EXPECT_EQ(open_dataset(folder_, {.format = "hercules"})->format(), "hercules");
 }
 
+TEST_F(OpenDataset, ChoicesThatALayoutDoesNotHaveAreRefused) {
+  fs::create_directories(folder_ / "point_clouds");
+  std::ofstream(folder_ / "point_clouds" / "1.bin", std::ios::binary) << std::string(16, '\0');
+  EXPECT_THROW(open_dataset(folder_, {.fields = {{"doppler", "v"}}}), UsageError);
+  EXPECT_THROW(open_dataset(folder_, {.sensors = {"front"}}), UsageError);
+}
+
 TEST_F(OpenDataset, ArchivesAndTheLikeAreNamed) {
   const auto fault = [&](const fs::path& input) -> std::string {
     try {

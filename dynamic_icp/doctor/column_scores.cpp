@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::size_t kMostPoints = 30000;
 constexpr double kFarthest_m = 1000.0;
+constexpr double kFarthestInCentimetres = 3e4;  // beyond, they are millimetres
 constexpr double kNearest_m = 0.5;
 constexpr double kFastest_mps = 150.0;
 constexpr double kFastestInCentimetres = 3000.0;
@@ -77,7 +78,7 @@ UnitGuess guess_units(std::span<const RawScan> scans) {
   const double farthest = quantile(std::move(far), 0.5);
   const double fastest = quantile(std::move(fast), 0.5);
   if (farthest > kFarthest_m) {
-    units.points = 0.001;
+    units.points = farthest > kFarthestInCentimetres ? 0.001 : 0.01;
   } else if (farthest > 0.0 && farthest < kNearest_m) {
     units.points = 1000.0;
   }

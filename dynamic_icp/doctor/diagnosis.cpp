@@ -64,6 +64,7 @@ Diagnosis diagnose(const datasets::Dataset& dataset, const DoctorConfig& config,
   const Evidence evidence = gather(dataset, config, workers);
   Diagnosis diagnosis;
   diagnosis.scans_looked_at = evidence.looks.size();
+  diagnosis.period_s = evidence.period_s;
   for (const auto ask : {doppler_sign, doppler_kind, doppler_bias, doppler_units, point_units, columns, mounting,
                          point_times, time_scale, stamps, unusable_points}) {
     diagnosis.findings.push_back(ask(evidence));

@@ -57,6 +57,7 @@ struct Finding {
 struct Diagnosis {
   std::vector<Finding> findings;
   std::size_t scans_looked_at = 0;
+  double period_s = 0.0;  ///< from scan to scan, median; 0 of one scan
 
   [[nodiscard]] const Finding& of(Question question) const;
 };

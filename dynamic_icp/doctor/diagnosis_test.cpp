@@ -26,6 +26,7 @@ class Recording final : public datasets::Dataset {
   synthetic::Path path = synthetic::lively(9.0);
   synthetic::Sensor sensor;
   bool has_truth = true;
+  double truth_scale = 1.0;
   double stamp_factor = 1.0;
   DopplerKind kind = DopplerKind::kRelative;
   std::function<void(RawScan&, const Vector3d& velocity)> spoil = [](RawScan&, const Vector3d&) {};
@@ -34,6 +35,7 @@ class Recording final : public datasets::Dataset {
   Recording& ready() {
     for (std::size_t i = 0; has_truth && i < kScans; ++i) {
       truth_.push_back({stamp(i), path(static_cast<double>(i) * kPeriod_s)});
+      truth_.back().T_world_sensor.translation() *= truth_scale;
     }
     return *this;
   }
@@ -229,6 +231,30 @@ TEST(Diagnosis, KilometresPerHourAndMillimetresAreFound) {
   const Diagnosis diagnosis = diagnosis_of(points);
   EXPECT_EQ(diagnosis.of(Question::kPointUnits).fix, "--point-scale 0.001");
   EXPECT_EQ(diagnosis.of(Question::kDopplerSign).verdict, Verdict::kOk) << "the rest is looked at in metres";
+}
+
+TEST(Diagnosis, CentimetresAndFeetAreToldByTheWay) {
+  for (const auto& [per_metre, scale] : {std::pair(100.0, 0.01), std::pair(3.28084, 0.3048)}) {
+    Recording points;
+    points.spoil = [per_metre = per_metre](RawScan& raw, const Vector3d&) {
+      for (Vector3d& point : raw.points) {
+        point *= per_metre;
+      }
+    };
+    const Finding units = diagnosis_of(points).of(Question::kPointUnits);
+    EXPECT_EQ(units.verdict, Verdict::kWrong) << per_metre;
+    ASSERT_TRUE(units.fix.starts_with("--point-scale ")) << units.fix;
+    EXPECT_NEAR(std::stod(units.fix.substr(14)), scale, 0.05 * scale) << per_metre;
+  }
+}
+
+TEST(Diagnosis, AWrongGroundTruthIsNotBlamedOnTheClock) {
+  Recording recording;
+  recording.truth_scale = 2.0;
+  const Finding clock = diagnosis_of(recording).of(Question::kTimeScale);
+  EXPECT_EQ(clock.verdict, Verdict::kSuspicious) << clock.sentence;
+  EXPECT_EQ(clock.fix, "");
+  EXPECT_NE(clock.sentence.find("ground truth"), std::string::npos) << clock.sentence;
 }
 
 TEST(Diagnosis, ColumnsInAnotherOrderAreFound) {

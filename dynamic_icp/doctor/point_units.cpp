@@ -10,6 +10,8 @@ namespace dynamic_icp::doctor {
 namespace {
 
 constexpr double kNearPower = 0.15;
+constexpr double kAgree = 0.08;     // of a ratio of speeds, from one
+constexpr double kDisagree = 0.25;  // of its logarithm, from zero
 
 /// How much farther the sensor moves by the points than by what knows metres: truth, else the Doppler.
 std::optional<double> scale_by_motion(const Evidence& evidence) {
@@ -21,6 +23,18 @@ std::optional<double> scale_by_motion(const Evidence& evidence) {
     return matching.reference_speed_mps / evidence.truth.reference_speed_mps;
   }
   return matching.doppler_speed_mps > 1.0 ? std::optional(1.0 / std::abs(matching.ratio)) : std::nullopt;
+}
+
+/// How much farther the sensor moves by the points than by ground truth and Doppler, which agree; nothing where they do
+/// not, or where the points agree as well.
+std::optional<double> farther_than_both(const Evidence& evidence) {
+  const Comparison& truth = evidence.truth;
+  const Comparison& matching = evidence.matching;
+  if (!truth.tells() || !matching.tells() || std::abs(truth.ratio - 1.0) > kAgree || matching.ratio <= 0.0 ||
+      std::abs(std::log(matching.ratio)) < kDisagree) {
+    return std::nullopt;
+  }
+  return 1.0 / matching.ratio;
 }
 
 }  // namespace
@@ -46,7 +60,12 @@ Finding point_units(const Evidence& evidence) {
       factor /= std::pow(10.0, power);
     }
   }
-  if (factor != 1.0) {
+  if (const std::optional<double> farther = farther_than_both(evidence); farther && factor == 1.0) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = fmt::format(
+        "the points move {:.2f} times as far as ground truth and Doppler both say: these are not metres", *farther);
+    finding.fix = fmt::format("--point-scale {:.4g}", evidence.applied.point_scale / *farther);
+  } else if (factor != 1.0) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format("95 % of the points are nearer than {:.4g}: these are not metres", as_stored);
     finding.fix = fmt::format("--point-scale {:g}", evidence.applied.point_scale * factor);

@@ -1,5 +1,8 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <cmath>
+#include <optional>
+
 #include <fmt/format.h>
 
 #include "dynamic_icp/doctor/comparison_text.hpp"
@@ -7,6 +10,24 @@
 #include "dynamic_icp/doctor/speed_ratio.hpp"
 
 namespace dynamic_icp::doctor {
+
+namespace {
+
+constexpr double kAgree = 0.08;     // of a ratio of speeds, from one
+constexpr double kDisagree = 0.25;  // of its logarithm, from zero
+
+/// How much farther the ground truth moves than points and Doppler, which agree; nothing where it does not.
+std::optional<double> truth_alone_differs(const Evidence& evidence) {
+  const Comparison& truth = evidence.truth;
+  const Comparison& matching = evidence.matching;
+  if (!truth.tells() || !matching.tells() || evidence.units.points != 1.0 || evidence.units.doppler != 1.0 ||
+      std::abs(matching.ratio - 1.0) > kAgree || truth.ratio <= 0.0 || std::abs(std::log(truth.ratio)) < kDisagree) {
+    return std::nullopt;
+  }
+  return 1.0 / truth.ratio;
+}
+
+}  // namespace
 
 Finding time_scale(const Evidence& evidence) {
   Finding finding{Question::kTimeScale, Verdict::kOk, ""};
@@ -21,7 +42,13 @@ Finding time_scale(const Evidence& evidence) {
   finding.evidence = comparison_numbers(*speed->reference);
   const std::string source = reference_name(evidence, *speed->reference);
   const double ratio = speed->ratio / speed->unit_factor;
-  if (speed->is_one || !speed->unit.empty()) {
+  if (const std::optional<double> farther = truth_alone_differs(evidence)) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence = fmt::format(
+        "points and Doppler agree, but the ground truth moves {:.2f} times as far: it is of another drive, unit or "
+        "time",
+        *farther);
+  } else if (speed->is_one || !speed->unit.empty()) {
     finding.sentence = fmt::format("the Doppler gives {:.3f} times the speed {}", ratio, source);
   } else {
     finding.verdict = Verdict::kWrong;
