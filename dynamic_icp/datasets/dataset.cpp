@@ -55,15 +55,13 @@ std::string looked_for() {
   return text;
 }
 
-std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& input, const OpenOptions& options) {
-  const bool is_named = options.format == layout.name && layout.find_named != nullptr;
-  const fs::path folder = is_named ? layout.find_named(input) : layout.find(input);
-  if (!folder.empty() && !layout.has_choices && !(options.fields.empty() && options.sensors.empty())) {
+std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& folder, const OpenOptions& options) {
+  if (!layout.has_choices && !(options.fields.empty() && options.sensors.empty())) {
     throw UsageError(
         fmt::format("{} has neither columns with names nor several sensors to choose from; '{}' was asked for",
                     layout.name, options.fields.empty() ? options.sensors.front() : options.fields.begin()->first));
   }
-  return folder.empty() ? nullptr : layout.open(folder, options);
+  return layout.open(folder, options);
 }
 
 /// Whether a path is the other one or lies in it.
@@ -86,27 +84,44 @@ fs::path find_or_nothing(const Layout& layout, const fs::path& input, bool is_fi
   }
 }
 
-/// Throws DataError when the first layout to find something found it below the input, and others found something beside
-/// it: which one is meant is not for us to choose. What lies in a recording is part of it.
-void refuse_several_layouts(const fs::path& input) {
-  fs::path first;
-  std::string_view format;
+/// A layout and the folder to open.
+struct Match {
+  const Layout* layout = nullptr;  ///< null: none
+  fs::path folder;
+};
+
+/// The first layout that finds something. Throws DataError when that lies below the input and another layout finds
+/// something beside it: which one is meant is not for us to choose. What lies in a recording is part of it.
+Match match_any(const fs::path& input) {
+  Match match;
   for (const Layout& layout : kLayouts) {
-    const fs::path found = find_or_nothing(layout, input, first.empty());
+    fs::path found = find_or_nothing(layout, input, match.layout == nullptr);
     if (found.empty()) {
       continue;
     }
-    if (first.empty()) {
-      if (lies_in(input, found)) {
-        return;
+    if (match.layout == nullptr) {
+      match = {&layout, std::move(found)};
+      if (lies_in(input, match.folder)) {
+        return match;
       }
-      first = found;
-      format = layout.name;
-    } else if (!lies_in(found, first) && !lies_in(first, found)) {
+    } else if (!lies_in(found, match.folder) && !lies_in(match.folder, found)) {
       throw DataError(fmt::format("{}: holds several recordings, name one of them:\n  {} ({})\n  {} ({})",
-                                  input.string(), first.string(), format, found.string(), layout.name));
+                                  input.string(), match.folder.string(), match.layout->name, found.string(),
+                                  layout.name));
     }
   }
+  return match;
+}
+
+/// What the layout of that name finds. Throws UsageError when there is no such layout.
+Match match_named(const fs::path& input, const std::string& format) {
+  for (const Layout& layout : kLayouts) {
+    if (layout.name == format) {
+      fs::path found = (layout.find_named != nullptr ? layout.find_named : layout.find)(input);
+      return found.empty() ? Match{} : Match{&layout, std::move(found)};
+    }
+  }
+  throw UsageError(fmt::format("unknown format '{}'; known are: auto{}", format, looked_for()));
 }
 
 }  // namespace
@@ -123,21 +138,9 @@ std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& 
   if (!fs::exists(input)) {
     throw DataError(fmt::format("{}: no such file or folder", input.string()));
   }
-  const std::string& format = options.format;
-  bool known = format == "auto";
-  if (known) {
-    refuse_several_layouts(input);
-  }
-  for (const Layout& layout : kLayouts) {
-    known = known || format == layout.name;
-    if (format == "auto" || format == layout.name) {
-      if (std::unique_ptr<Dataset> dataset = open_as(layout, input, options)) {
-        return dataset;
-      }
-    }
-  }
-  if (!known) {
-    throw UsageError(fmt::format("unknown format '{}'; known are: auto{}", format, looked_for()));
+  const Match match = options.format == "auto" ? match_any(input) : match_named(input, options.format);
+  if (match.layout != nullptr) {
+    return open_as(*match.layout, match.folder, options);
   }
   if (const std::string obstacle = known_obstacle(input); !obstacle.empty()) {
     throw DataError(obstacle);

@@ -17,15 +17,9 @@ namespace fs = std::filesystem;
 /// The last run of digits in a name, without leading zeros; empty when there is none. Kept as text: time stamps in
 /// nanoseconds with a prefix may be longer than any integer type.
 std::string number_in(const std::string& stem) {
-  const std::size_t last = stem.find_last_of("0123456789");
-  if (last == std::string::npos) {
-    return "";
-  }
-  const std::size_t before = stem.find_last_not_of("0123456789", last);
-  const std::size_t first = before == std::string::npos ? 0 : before + 1;
-  const std::string digits = stem.substr(first, last - first + 1);
+  const std::string_view digits = last_digits(stem);
   const std::size_t nonzero = digits.find_first_not_of('0');
-  return nonzero == std::string::npos ? "0" : digits.substr(nonzero);
+  return std::string(nonzero == std::string_view::npos ? digits.substr(0, 1) : digits.substr(nonzero));
 }
 
 bool smaller_number(const std::string& a, const std::string& b) {
@@ -33,6 +27,17 @@ bool smaller_number(const std::string& a, const std::string& b) {
 }
 
 }  // namespace
+
+std::string_view last_digits(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789";
+  const std::size_t last = text.find_last_of(kDigits);
+  if (last == std::string_view::npos) {
+    return {};
+  }
+  const std::size_t before = text.find_last_not_of(kDigits, last);
+  const std::size_t first = before == std::string_view::npos ? 0 : before + 1;
+  return text.substr(first, last - first + 1);
+}
 
 std::vector<fs::path> numbered_files(const fs::path& folder, std::string_view ending) {
   std::error_code fault;

@@ -13,13 +13,13 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/numbered_files.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kDigits = "0123456789";
 constexpr std::size_t kLongestIndex = 9;  // digits
 constexpr std::size_t kSecondsDigits = 10;
 constexpr std::size_t kDecimals = 9;
@@ -33,17 +33,6 @@ struct NamedTime {
   std::string whole;     ///< the digits before the point of "seconds.fraction", else the last run of digits
   std::string fraction;  ///< those after it; empty: none
 };
-
-/// The last run of digits in `text`; empty when there is none.
-std::string_view last_digits(std::string_view text) {
-  const std::size_t last = text.find_last_of(kDigits);
-  if (last == std::string_view::npos) {
-    return {};
-  }
-  const std::size_t before = text.find_last_not_of(kDigits, last);
-  const std::size_t first = before == std::string_view::npos ? 0 : before + 1;
-  return text.substr(first, last - first + 1);
-}
 
 NamedTime time_in(const fs::path& file) {
   const std::string stem = file.stem().string();

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <optional>
 #include <vector>
@@ -40,6 +41,10 @@ struct Comparison {
   double ratio_error = 0.0;    ///< standard error of that median
   double turned_deg = 0.0;     ///< angle from the reference's direction to the Doppler's, of the mean directions
   double turn_rate_rps = 0.0;  ///< median of the absolute rate of turn
+
+  /// By the ratio: the Doppler moves the sensor as the reference does, or certainly not so.
+  [[nodiscard]] bool is_same() const { return std::abs(ratio - 1.0) <= 0.08; }
+  [[nodiscard]] bool is_other() const { return ratio > 0.0 && std::abs(std::log(ratio)) >= 0.25; }
 
   [[nodiscard]] bool tells() const { return moving >= 3 || (moving > 0 && moving == motions); }
 };

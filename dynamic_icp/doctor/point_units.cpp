@@ -10,8 +10,6 @@ namespace dynamic_icp::doctor {
 namespace {
 
 constexpr double kNearPower = 0.15;
-constexpr double kAgree = 0.08;     // of a ratio of speeds, from one
-constexpr double kDisagree = 0.25;  // of its logarithm, from zero
 
 /// How much farther the sensor moves by the points than by what knows metres: truth, else the Doppler.
 std::optional<double> scale_by_motion(const Evidence& evidence) {
@@ -30,8 +28,7 @@ std::optional<double> scale_by_motion(const Evidence& evidence) {
 std::optional<double> farther_than_both(const Evidence& evidence) {
   const Comparison& truth = evidence.truth;
   const Comparison& matching = evidence.matching;
-  if (!truth.tells() || !matching.tells() || std::abs(truth.ratio - 1.0) > kAgree || matching.ratio <= 0.0 ||
-      std::abs(std::log(matching.ratio)) < kDisagree) {
+  if (!truth.tells() || !matching.tells() || !truth.is_same() || !matching.is_other()) {
     return std::nullopt;
   }
   return 1.0 / matching.ratio;

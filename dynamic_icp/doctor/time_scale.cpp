@@ -1,6 +1,5 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include <cmath>
 #include <optional>
 
 #include <fmt/format.h>
@@ -13,15 +12,12 @@ namespace dynamic_icp::doctor {
 
 namespace {
 
-constexpr double kAgree = 0.08;     // of a ratio of speeds, from one
-constexpr double kDisagree = 0.25;  // of its logarithm, from zero
-
 /// How much farther the ground truth moves than points and Doppler, which agree; nothing where it does not.
 std::optional<double> truth_alone_differs(const Evidence& evidence) {
   const Comparison& truth = evidence.truth;
   const Comparison& matching = evidence.matching;
   if (!truth.tells() || !matching.tells() || evidence.units.points != 1.0 || evidence.units.doppler != 1.0 ||
-      std::abs(matching.ratio - 1.0) > kAgree || truth.ratio <= 0.0 || std::abs(std::log(truth.ratio)) < kDisagree) {
+      !matching.is_same() || !truth.is_other()) {
     return std::nullopt;
   }
   return 1.0 / truth.ratio;
