@@ -18,11 +18,12 @@ using simd::LaneMask;
 using simd::Lanes;
 
 constexpr std::size_t kBlock = 128;  // groups
-constexpr std::size_t kBatch = 32;   // points that are looked up together
+constexpr std::size_t kBatch = 64;   // points that are looked up together
 constexpr double kCell_m = 0.5;      // points in the same cell are neighbours in the groups
 
-// Points are looked up a little beyond the gate, so that those without a partner need no new search at every step.
-constexpr double kReachOverGate = 1.25;
+// Points are looked up beyond the gate, so that the nearest few are found where they are sparse, and that those without
+// a partner need no new search at every step.
+constexpr double kReachOverGate = 1.75;
 
 // Far more than the rounding of the distances compared, far less than any distance that matters.
 constexpr double kRounding_m = 1e-9;
@@ -120,7 +121,8 @@ CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& tar
       needs_normals_(needs_normals),
       workers_(workers),
       place_of_(source.size()),
-      groups_((source.size() + kLanes - 1) / kLanes) {
+      groups_((source.size() + kLanes - 1) / kLanes),
+      known_(source.size()) {
   const std::vector<std::uint32_t> order = spatial::space_order(source.points(), kCell_m);
   for (std::uint32_t place = 0; place < kLanes * groups_.size(); ++place) {
     SourceRows& group = groups_[place / kLanes];
@@ -156,12 +158,56 @@ void CorrespondenceSearch::locate(const Eigen::Isometry3d& T_target_source, std:
 }
 
 void CorrespondenceSearch::look_up(std::span<const std::uint32_t> places) {
+  std::vector<std::uint32_t> unknown;
+  unknown.reserve(places.size());
+  for (const std::uint32_t place : places) {
+    if (!choose_among_known(place)) {
+      unknown.push_back(place);
+    }
+  }
+  search(unknown);
+}
+
+/// False when a point that is not among the known ones might be nearer.
+bool CorrespondenceSearch::choose_among_known(std::uint32_t place) {
+  const Known& known = known_[place];
+  const Eigen::Vector3d point = get(groups_[place / kLanes].moved, place % kLanes);
+  const double others = known.others - std::sqrt(spatial::squared_distance(point, known.at)) - kRounding_m;
+  if (!(others > 0.0)) {
+    return false;
+  }
+  const double squared_others = others * others;
+  spatial::Neighbour first{SourceRows::kNone, squared_others};
+  double second = squared_others;
+  for (std::size_t k = 0; k < known.count; ++k) {
+    const std::uint32_t j = known.nearest[k];
+    const spatial::Neighbour candidate{j, spatial::squared_distance(target_.scan.points()[j], point)};
+    if (spatial::is_nearer(candidate, first)) {
+      second = first.squared_distance;
+      first = candidate;
+    } else {
+      second = std::min(second, candidate.squared_distance);
+    }
+  }
+  if (first.index != SourceRows::kNone) {
+    remember(place, point, &first, std::sqrt(second));
+    return true;
+  }
+  if (others > max_distance_m_) {
+    remember(place, point, nullptr, others);
+    return true;
+  }
+  return false;
+}
+
+void CorrespondenceSearch::search(std::span<const std::uint32_t> places) {
   if (places.empty()) {
     return;
   }
-  spatial::TwoNearestSearch search(target_.tree, kReachOverGate * max_distance_m_);
+  const double reach = kReachOverGate * max_distance_m_;
+  spatial::FewNearestSearch search(target_.tree, reach);
   std::array<Eigen::Vector3d, kBatch> points;
-  std::array<spatial::TwoNearest, kBatch> found;
+  std::array<spatial::FewNearest, kBatch> found;
   for (std::size_t first = 0; first < places.size(); first += kBatch) {
     const std::size_t size = std::min(kBatch, places.size() - first);
     for (std::size_t k = 0; k < size; ++k) {
@@ -169,20 +215,29 @@ void CorrespondenceSearch::look_up(std::span<const std::uint32_t> places) {
     }
     search.search(std::span(points).first(size), std::span(found).first(size));
     for (std::size_t k = 0; k < size; ++k) {
-      remember(places[first + k], points[k], found[k]);
+      const auto& [neighbours, count] = found[k];
+      Known& known = known_[places[first + k]];
+      known.at = points[k];
+      known.count = static_cast<std::uint32_t>(count);
+      for (std::size_t n = 0; n < count; ++n) {
+        known.nearest[n] = neighbours[n].index;
+      }
+      // Of a full list the last one says how far the rest is.
+      known.others = count == neighbours.size() ? std::sqrt(neighbours.back().squared_distance) : reach;
+      const double second = count > 1 ? std::sqrt(neighbours[1].squared_distance) : known.others;
+      remember(places[first + k], points[k], count > 0 ? neighbours.data() : nullptr, second);
     }
   }
 }
 
+/// `others`: how far all target points but the nearest are at least, m.
 void CorrespondenceSearch::remember(std::uint32_t place, const Eigen::Vector3d& point,
-                                    const spatial::TwoNearest& found) {
-  const double reach = kReachOverGate * max_distance_m_;
-  const std::uint32_t j = found.first.index;
-  const bool has_partner = j != SourceRows::kNone;
-  const double distance = has_partner ? std::sqrt(found.first.squared_distance) : reach;
-  const double others = found.second.index != SourceRows::kNone ? std::sqrt(found.second.squared_distance) : reach;
-  // Moved by m, the nearest one is at most distance + m away, all others at least others - m.
-  const double validity = (has_partner ? 0.5 * (others - distance) : others - max_distance_m_) - kRounding_m;
+                                    const spatial::Neighbour* nearest, double others) {
+  const bool has_partner = nearest != nullptr;
+  const std::uint32_t j = has_partner ? nearest->index : SourceRows::kNone;
+  // Moved by m, the nearest one is at most as far as now and m, all others at least others - m.
+  const double validity =
+      (has_partner ? 0.5 * (others - std::sqrt(nearest->squared_distance)) : others - max_distance_m_) - kRounding_m;
 
   SourceRows& group = groups_[place / kLanes];
   const std::size_t lane = place % kLanes;
@@ -197,7 +252,7 @@ void CorrespondenceSearch::remember(std::uint32_t place, const Eigen::Vector3d& 
   put(group.direction, lane, has_partner ? target_.scan.directions()[j] : zero);
   group.doppler[lane] = has_partner ? target_.scan.doppler()[j] : 0.0;
   group.partner[lane] = j;
-  group.squared_distance[lane] = has_partner ? found.first.squared_distance : 0.0;
+  group.squared_distance[lane] = has_partner ? nearest->squared_distance : 0.0;
 }
 
 Correspondences CorrespondenceSearch::find(const Eigen::Isometry3d& T_target_source) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,8 +13,8 @@
 #include "dynamic_icp/base/scan.hpp"
 #include "dynamic_icp/base/se3.hpp"
 #include "dynamic_icp/registration/source_rows.hpp"
+#include "dynamic_icp/spatial/few_nearest.hpp"
 #include "dynamic_icp/spatial/kd_tree.hpp"
-#include "dynamic_icp/spatial/two_nearest.hpp"
 
 namespace dynamic_icp::registration {
 
@@ -55,9 +56,10 @@ Correspondences judged(std::vector<Correspondence> pairs, std::size_t source_siz
 /// Pairs each source point, moved by T_target_source, with the nearest target point at most `max_distance_m` away.
 /// A source point whose nearest target point has no normal stays alone: it gets no second choice.
 ///
-/// The search is exact and remembers: for each point it knows where it was last looked up, how far its nearest target
-/// point was and how far all others were at least. While the point has not moved so far that another one could have
-/// come nearer, the answer is the same without a search. The result does not depend on the poses asked for before.
+/// The search is exact and remembers: for each point it knows where it was last looked up, which few target points were
+/// nearest and how far all others were at least. While the point has not moved so far that another one of the few could
+/// have come nearer, its partner is the same; while none of the others could, it is one of the few; only then the tree
+/// is searched again. The result does not depend on the poses asked for before.
 class CorrespondenceSearch {
  public:
   /// The scans must outlive the search.
@@ -76,8 +78,18 @@ class CorrespondenceSearch {
   [[nodiscard]] Correspondences pairs() const;
 
  private:
+  /// The nearest target points of a point when the tree was searched.
+  struct Known {
+    Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< m, target frame: where the point was
+    double others = 0.0;                           ///< m, all other target points were at least so far away from there
+    std::array<std::uint32_t, spatial::FewNearest::kMost> nearest{};
+    std::uint32_t count = 0;  ///< of those, the first ones
+  };
+
   void look_up(std::span<const std::uint32_t> places);
-  void remember(std::uint32_t place, const Eigen::Vector3d& point, const spatial::TwoNearest& found);
+  bool choose_among_known(std::uint32_t place);
+  void search(std::span<const std::uint32_t> places);
+  void remember(std::uint32_t place, const Eigen::Vector3d& point, const spatial::Neighbour* nearest, double others);
 
   const Scan& source_;
   Target target_;
@@ -86,6 +98,7 @@ class CorrespondenceSearch {
   const Workers& workers_;
   std::vector<std::uint32_t> place_of_;  ///< by row of the source: its place in the groups, four to a group
   std::vector<SourceRows> groups_;
+  std::vector<Known> known_;  ///< by place
 };
 
 }  // namespace dynamic_icp::registration

@@ -38,10 +38,10 @@ Correspondences find_once(const Scan& source, const Target& target, const Eigen:
   return CorrespondenceSearch(source, target, gate, true, workers).find(T);
 }
 
-TEST(Correspondences, RememberedAnswersAreThoseOfAFreshSearch) {
-  // A walk of small and large steps, on a grid full of equal distances and on random points.
+// A walk of small and large steps, on a grid full of equal distances and on random points within `size` metres.
+void expect_remembered_like_fresh(double size) {
   std::mt19937 random(5);
-  std::uniform_real_distribution<double> uniform(-3.0, 3.0);
+  std::uniform_real_distribution<double> uniform(-size, size);
   std::vector<Vector3d> target;
   for (int i = 0; i < 1000; ++i) {
     target.emplace_back(i % 10 * 0.25, i / 10 % 10 * 0.25, i / 100 * 0.25);
@@ -56,10 +56,11 @@ TEST(Correspondences, RememberedAnswersAreThoseOfAFreshSearch) {
   const Workers workers(2);
   CorrespondenceSearch search(source, parts.target(), 0.3, true, workers);
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  for (const double step : {0.0, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-2, 0.1, 1.0, 1e-3, 1e-5, 0.0}) {
+  for (const double step :
+       {0.0, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-2, 0.03, 0.03, 0.05, 0.1, 1.0, 0.2, 1e-3, 1e-5, 0.0}) {
     Vector6d xi;
     for (int k = 0; k < 6; ++k) {
-      xi[k] = step * uniform(random) / 3.0;
+      xi[k] = step * uniform(random) / size;
     }
     T = exp_se3(xi) * T;
     const Correspondences remembered = search.find(T);
@@ -73,6 +74,11 @@ TEST(Correspondences, RememberedAnswersAreThoseOfAFreshSearch) {
     }
     EXPECT_EQ(remembered.inlier_rmse, fresh.inlier_rmse);
   }
+}
+
+TEST(Correspondences, RememberedAnswersAreThoseOfAFreshSearch) {
+  expect_remembered_like_fresh(3.0);  // so sparse that the search finds fewer than it may keep
+  expect_remembered_like_fresh(1.0);  // so dense that it finds more
 }
 
 TEST(Correspondences, EqualBruteForce) {

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/spatial/two_nearest.hpp"
+#include "dynamic_icp/spatial/few_nearest.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,11 +9,11 @@
 
 namespace dynamic_icp::spatial {
 
-TwoNearestSearch::TwoNearestSearch(const KdTree& tree, double max_distance_m)
+FewNearestSearch::FewNearestSearch(const KdTree& tree, double max_distance_m)
     : tree_(tree), max_distance_m_(max_distance_m), squared_gate_(squared_gate(max_distance_m)) {}
 
-void TwoNearestSearch::search(std::span<const Eigen::Vector3d> queries, std::span<TwoNearest> found) {
-  std::fill(found.begin(), found.end(), TwoNearest{});
+void FewNearestSearch::search(std::span<const Eigen::Vector3d> queries, std::span<FewNearest> found) {
+  std::fill(found.begin(), found.end(), FewNearest{});
   constexpr double kInfinity = std::numeric_limits<double>::infinity();
   KdTree::Box box{Eigen::Array3d::Constant(kInfinity), Eigen::Array3d::Constant(-kInfinity)};
   bool empty = true;
@@ -55,42 +55,31 @@ DYNAMIC_ICP_INLINE unsigned rows_within(const std::array<double, KdTree::kLeafSi
   return static_cast<unsigned>((bits[0] | bits[1]) | (bits[2] | bits[3]));
 }
 
-DYNAMIC_ICP_INLINE void TwoNearestSearch::search_near(const Eigen::Vector3d& query, TwoNearest& found) const {
+DYNAMIC_ICP_INLINE void FewNearestSearch::search_near(const Eigen::Vector3d& query, FewNearest& found) const {
   NearbyLeaves::Leaves near;
-  const std::size_t count = leaves_.near(query.x(), query.y(), query.z(), squared_gate_, near);
-  Neighbour first{TwoNearest::kNone, squared_gate_};
-  Neighbour second = first;
-  for (std::size_t j = 0; j < count; ++j) {
+  const std::size_t leaves = leaves_.near(query.x(), query.y(), query.z(), squared_gate_, near);
+  std::array<Neighbour, FewNearest::kMost + 1> nearest;  // one more, to be pushed out
+  std::size_t count = 0;
+  double limit = squared_gate_;  // of what may still come in
+  for (std::size_t j = 0; j < leaves; ++j) {
     std::array<double, KdTree::kLeafSize> squared;
     distances_to_leaf(tree_.leaf(near[j]), query.x(), query.y(), query.z(), squared.data());
-    const unsigned near_rows = rows_within(squared, second.squared_distance);
-    for (unsigned rest = near_rows; rest != 0; rest &= rest - 1) {
+    for (unsigned rest = rows_within(squared, limit); rest != 0; rest &= rest - 1) {
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
-      const Neighbour candidate{tree_.order()[near[j] * KdTree::kLeafSize + i], squared[i]};
-      if (is_nearer(candidate, first)) {
-        second = first;
-        first = candidate;
-      } else if (is_nearer(candidate, second)) {
-        second = candidate;
-      }
+      insert_ordered(nearest.data(), nearest.data() + count,
+                     {tree_.order()[near[j] * KdTree::kLeafSize + i], squared[i]});
+      count += count < FewNearest::kMost ? 1 : 0;
     }
+    limit = count == FewNearest::kMost ? nearest[count - 1].squared_distance : limit;
   }
-  if (first.index != TwoNearest::kNone) {
-    found.first = first;
-  }
-  if (second.index != TwoNearest::kNone) {
-    found.second = second;
-  }
+  std::copy_n(nearest.begin(), count, found.neighbours.begin());
+  found.count = count;
 }
 
-void TwoNearestSearch::search_alone(const Eigen::Vector3d& query, TwoNearest& found) {
-  tree_.nearest_k(query, 2, max_distance_m_, alone_);
-  if (!alone_.empty()) {
-    found.first = alone_[0];
-  }
-  if (alone_.size() > 1) {
-    found.second = alone_[1];
-  }
+void FewNearestSearch::search_alone(const Eigen::Vector3d& query, FewNearest& found) {
+  tree_.nearest_k(query, FewNearest::kMost, max_distance_m_, alone_);
+  std::copy(alone_.begin(), alone_.end(), found.neighbours.begin());
+  found.count = alone_.size();
 }
 
 }  // namespace dynamic_icp::spatial
