@@ -42,7 +42,8 @@ void append(Json& list, const Eigen::Vector3d& vector, int decimals) {
 
 void append(Json& list, const Eigen::Isometry3d& pose) {
   append(list, pose.translation(), kMetre);
-  for (const double value : Eigen::Quaterniond(pose.linear()).coeffs()) {
+  const Eigen::Vector4d xyzw = Eigen::Quaterniond(pose.linear()).coeffs();
+  for (const double value : xyzw) {
     list.push_back(rounded(value, kQuaternion));
   }
 }

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
-#include <numeric>
 
 #include <fmt/format.h>
 
@@ -24,7 +23,7 @@ using figures::RunFiles;
 
 constexpr double kMapShare = 0.1;            // of the budget
 constexpr double kWholeShare = 0.25;         // of the budget, for scans that nobody asked for
-constexpr double kFirstBytesPerPoint = 9.0;  // until the first scans tell
+constexpr double kBytesPerPoint = 10.0;  // of a thinned scan, until one tells
 constexpr double kMapBytesPerPoint = 8.0;
 
 /// The scans of a run as the page shows them, each read once when they are asked for in their order.
@@ -124,8 +123,18 @@ struct Spending {
     bytes += static_cast<double>(scan.blob.size());
     points += static_cast<double>(scan.points);
   }
-  [[nodiscard]] double bytes_per_point() const { return points > 0.0 ? bytes / points : kFirstBytesPerPoint; }
+  [[nodiscard]] std::optional<double> bytes_per_point() const {
+    return points > 0.0 ? std::optional(bytes / points) : std::nullopt;
+  }
 };
+
+/// What a point takes in a scan of so many: the more there are, the smaller their differences.
+double bytes_per_point_at(std::size_t count, const RunFiles& run, ScanReader& reader) {
+  const std::size_t middle = run.frames.size() / 2;
+  Spending spent;
+  spent.add(keep(run, middle, reader.read(middle), std::max<std::size_t>(count, 1)));
+  return spent.bytes_per_point().value_or(kBytesPerPoint);
+}
 
 void check_frames(const RunFiles& run, const std::vector<std::size_t>& frames) {
   for (const std::size_t frame : frames) {
@@ -143,7 +152,7 @@ std::vector<std::size_t> frames_kept_whole(const RunFiles& run, const std::optio
   if (choice.choose_whole) {
     double room = kWholeShare * budget_bytes;
     for (const std::size_t frame : telling_frames(run, truth)) {
-      room -= kFirstBytesPerPoint * run.frames[frame].points;
+      room -= kBytesPerPoint * run.frames[frame].points;
       if (room >= 0.0) {
         whole.push_back(frame);
       }
@@ -261,10 +270,12 @@ RunScans keep_scans(const RunFiles& run, const std::optional<figures::RunTruth>&
   for (const auto& [frame, scan] : kept) {
     whole.push_back(frame);
   }
-  const auto points_for = [&](double bytes) {
-    return static_cast<std::size_t>(std::max(0.0, bytes) / on_thinned.bytes_per_point());
-  };
   const double for_all = budget_bytes - map_bytes_given;
+  const double bytes_per_point =
+      bytes_per_point_at(even_share(points_of_scans, static_cast<std::size_t>(for_all / kBytesPerPoint)), run, reader);
+  const auto points_for = [&](double bytes) {
+    return static_cast<std::size_t>(std::max(0.0, bytes) / on_thinned.bytes_per_point().value_or(bytes_per_point));
+  };
   const KeptFrames plan = kept_frames(points_of_scans, whole, points_for(for_all - on_whole.bytes));
   std::vector<std::size_t> points_left;  // of the scans still to come
   for (const std::size_t frame : plan.frames) {

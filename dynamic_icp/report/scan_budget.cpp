@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
-#include <numeric>
 
 namespace dynamic_icp::report {
 namespace {
@@ -29,7 +27,7 @@ std::size_t even_share(std::span<const std::size_t> points, std::size_t total) {
   std::size_t left = total;
   for (std::size_t k = 0; k < ascending.size(); ++k) {
     const std::size_t share = left / (ascending.size() - k);
-    if (ascending[k] >= share) {
+    if (ascending[k] > share) {
       return share;
     }
     left -= ascending[k];
