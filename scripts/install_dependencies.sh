@@ -11,8 +11,9 @@ for purpose in "$@"; do
   case $purpose in
     tests)
       packages+=(libgtest-dev)
-      # An independent implementation to compare with, and random tests; not in every release.
-      optional+=(python3-open3d librapidcheck-dev) ;;
+      # An independent implementation to compare with, random tests, and a browser for the viewer of reports; not in
+      # every release.
+      optional+=(python3-open3d librapidcheck-dev chromium) ;;
     benchmarks)
       packages+=(libbenchmark-dev)
       optional+=(libnanoflann-dev) ;;

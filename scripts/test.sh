@@ -7,6 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh tests
+scripts/install_viewer.sh tests
 
 configure() {  # preset
   echo "== Configuring and building ($1)"

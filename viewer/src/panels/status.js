@@ -1,0 +1,46 @@
+// Over the view: which frame this is, how fast it goes, and what is wrong with it.
+import { element } from '../dom.js';
+import { counted, shortNumber } from '../format.js';
+import { frameCount, speedOf } from '../runs.js';
+import { runAt } from '../session.js';
+
+function scanNote(run, shown) {
+  if (shown.trouble) return shown.trouble;
+  if (run.scans === null) return 'No scans in this page: trajectory and objects only.';
+  if (shown.place === null) return 'No scan of this frame in this page.';
+  const parts = [];
+  if (shown.scanFrame !== shown.frame) parts.push(`points of frame ${shown.scanFrame} (not every scan is in this page)`);
+  if (!run.scans.whole[shown.place]) {
+    parts.push(`${run.scans.points[shown.place].toLocaleString('en')} of ${run.scans.of[shown.place].toLocaleString('en')} points`);
+  }
+  return parts.join(' · ');
+}
+
+export function createStatus(report, store) {
+  const line = element('div', { class: 'status-line' });
+  const trouble = element('div', { class: 'status-trouble' });
+  const note = element('div', { class: 'status-note' });
+  store.watch(['frame', 'run', 'shown'], (state) => {
+    const run = runAt(report, state);
+    const { frame } = state;
+    const { frames } = run;
+    const status = frames.status[frame] ?? '';
+    const facts = [
+      ['frame', `${frame} / ${frameCount(run) - 1}`],
+      frames.index[frame] === frame ? null : ['scan', String(frames.index[frame])],
+      ['time', `${frames.seconds[frame]?.toFixed(2)} s`],
+      ['speed', `${shortNumber(speedOf(run, frame))} m/s`],
+      ['moving', counted(frames.objects[frame]?.length ?? 0, 'object')],
+    ].filter(Boolean);
+    line.replaceChildren(...facts.map(([name, value]) =>
+      element('span', {}, element('small', { text: name }), element('b', { text: value }))),
+    element('span', { class: `badge ${['ok', 'degenerate', 'lost', 'first'].includes(status) ? status : 'other'}`, text: status }));
+    const directions = frames.lost_directions[frame] ?? [];
+    const reasons = [frames.reason[frame], directions.length ? `unknown: ${directions.join(', ')}` : ''].filter(Boolean);
+    trouble.textContent = reasons.join(' · ');
+    trouble.hidden = reasons.length === 0;
+    note.textContent = state.shown ? scanNote(run, state.shown) : '';
+    note.hidden = note.textContent === '';
+  });
+  return element('div', { class: 'status' }, line, trouble, note);
+}
