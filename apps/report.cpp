@@ -36,8 +36,8 @@ report::ViewerBundle required_viewer() {
   const std::optional<report::ViewerBundle> viewer = report::viewer_bundle();
   if (!viewer) {
     throw DataError(
-        "this program was built without the viewer that draws the page: install node and npm, run 'npm ci' in the "
-        "folder viewer of the sources, then configure and build again");
+        "this program was built without the viewer that draws the page: run scripts/install_viewer.sh in the folder of the "
+        "sources (it needs node and npm, and runs 'npm ci' in viewer), then configure and build again");
   }
   return *viewer;
 }
