@@ -339,7 +339,8 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
                       results::MapWriter::kMinVoxelSize_m, results::MapWriter::kMaxVoxelSize_m, options->map_voxel_m))
       ->type_name("M")
       ->needs(save_map);
-  command->add_flag("--report", options->report, "Write report.html into the results, and the labels that it shows (--save-labels)");
+  command->add_flag("--report", options->report,
+                    "Write report.html into the results, and the labels that it shows (--save-labels)");
   command->add_flag("--force", options->force, "Replace an earlier run in DIR");
   command->add_flag("--quiet", options->quiet, "Print errors only");
   add_method_options(*command, options->method);

@@ -234,9 +234,8 @@ std::optional<ObjectRow::Box> box(const Row& row) {
   }
   const Row box = row.object("box");
   const Eigen::Vector4d xyzw = box.numbers<4>("orientation_xyzw");
-  return ObjectRow::Box{.centre = box.vector("center"),
-                        .size = box.vector("size"),
-                        .yaw_rad = 2.0 * std::atan2(xyzw.z(), xyzw.w())};
+  return ObjectRow::Box{
+      .centre = box.vector("center"), .size = box.vector("size"), .yaw_rad = 2.0 * std::atan2(xyzw.z(), xyzw.w())};
 }
 
 ObjectRow object_row(const Row& row) {

@@ -114,20 +114,19 @@ std::vector<RunSeries> run_series(const RunFiles& run, const std::optional<RunTr
         error_series({"translation_error", "Translation error per scan", "RTE", "m"}, truth->translation_error));
     all.push_back(error_series({"rotation_error", "Rotation error per scan", "RRE", "degrees"}, truth->rotation_error));
   }
-  all.push_back(
-      make_series({"iterations", "Iterations", "number", ""}, registration(run, &FrameRow::iterations)));
+  all.push_back(make_series({"iterations", "Iterations", "number", ""}, registration(run, &FrameRow::iterations)));
   all.back().panel.whole_numbers = true;
   all.push_back(make_series({"inlier_rmse", "Distance of matched points", "inlier RMSE", "m"},
                             registration(run, &FrameRow::inlier_rmse)));
-  all.push_back(make_series({"fitness", "Fitness", "share of points matched", ""},
-                            registration(run, &FrameRow::fitness)));
+  all.push_back(
+      make_series({"fitness", "Fitness", "share of points matched", ""}, registration(run, &FrameRow::fitness)));
   all.push_back(make_series({"degeneracy", "How well the least known direction is held", "information ratio", ""},
                             registration(run, &FrameRow::information_ratio)));
   all.back().panel.logarithmic = true;
-  all.push_back(make_series({"dynamic_share", "Moving points", "share of points used", "%"},
-                            {share(run, "flagged", &FrameRow::dynamic_candidates),
-                             share(run, "in a cluster", &FrameRow::dynamic_clustered),
-                             share(run, "on an object", &FrameRow::dynamic_refined)}));
+  all.push_back(make_series(
+      {"dynamic_share", "Moving points", "share of points used", "%"},
+      {share(run, "flagged", &FrameRow::dynamic_candidates), share(run, "in a cluster", &FrameRow::dynamic_clustered),
+       share(run, "on an object", &FrameRow::dynamic_refined)}));
   all.push_back(objects(run));
   all.push_back(milliseconds(run));
   std::erase_if(all, [](const RunSeries& series) { return !has_values(series); });

@@ -17,8 +17,8 @@ Json rounded(double value, int decimals);
 /// The same with so many significant digits.
 Json significant(double value, int digits);
 
-/// The value as it may stand inside of an HTML element: `<`, `>` and `&`, which in JSON only occur in texts, as escapes.
-/// Bytes that are no UTF-8 become U+FFFD.
+/// The value as it may stand inside of an HTML element: `<`, `>` and `&`, which in JSON only occur in texts, as
+/// escapes. Bytes that are no UTF-8 become U+FFFD.
 std::string embeddable(const Json& value);
 
 }  // namespace dynamic_icp::report

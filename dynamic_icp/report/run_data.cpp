@@ -95,7 +95,7 @@ Json frames_data(const RunFiles& run, const std::vector<std::size_t>& kept) {
     append(poses, run.trajectory[k].T_world_sensor);
     append(velocity, frame.ego_velocity, kSpeed);
     status.push_back(frame.reason == "first" ? frame.reason : frame.status);
-    reason.push_back(frame.reason);
+    reason.push_back(frame.reason == "converged" || frame.reason == "first" ? "" : frame.reason);
     lost.push_back(directions(frame));
     Json list = Json::array();
     for (const ObjectRow& row : run.objects[k]) {
@@ -103,7 +103,7 @@ Json frames_data(const RunFiles& run, const std::vector<std::size_t>& kept) {
     }
     objects.push_back(list);
   }
-  return {{"index", index},   {"seconds", seconds}, {"poses", poses},         {"ego_velocity", velocity},
+  return {{"index", index},   {"seconds", seconds}, {"poses", poses},          {"ego_velocity", velocity},
           {"status", status}, {"reason", reason},   {"lost_directions", lost}, {"objects", objects}};
 }
 

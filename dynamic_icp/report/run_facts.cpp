@@ -112,9 +112,8 @@ std::string direction_text(const Vector6d& direction) {
       return is_shift ? fmt::format("position {}", kAlong[k]) : kAbout[k];
     }
   }
-  const std::string components =
-      fmt::format("({}, {}, {})", drawing::compact_number(axis.x()), drawing::compact_number(axis.y()),
-                  drawing::compact_number(axis.z()));
+  const std::string components = fmt::format("({}, {}, {})", drawing::compact_number(axis.x()),
+                                             drawing::compact_number(axis.y()), drawing::compact_number(axis.z()));
   return (is_shift ? "position along " : "turn about ") + components;
 }
 

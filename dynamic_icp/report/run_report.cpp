@@ -67,8 +67,9 @@ PageContent run_report(const std::filesystem::path& folder, const ScanChoice& ch
   Json data = run_data(run, truth, name_of(run));
   data["scans"] = scans_data(0, kept, content);
   data["map"] = map_data(0, kept.map, content);
-  content.report = {{"schema", 1},     {"kind", "run"}, {"title", name_of(run)}, {"generator", generator()},
-                    {"notes", notes}, {"runs", Json::array({std::move(data)})}};
+  content.report = {{"schema", 1},           {"kind", "run"},
+                    {"title", name_of(run)}, {"generator", generator()},
+                    {"notes", notes},        {"runs", Json::array({std::move(data)})}};
   return content;
 }
 

@@ -21,8 +21,8 @@ namespace {
 
 using figures::RunFiles;
 
-constexpr double kMapShare = 0.1;            // of the budget
-constexpr double kWholeShare = 0.25;         // of the budget, for scans that nobody asked for
+constexpr double kMapShare = 0.1;        // of the budget
+constexpr double kWholeShare = 0.25;     // of the budget, for scans that nobody asked for
 constexpr double kBytesPerPoint = 10.0;  // of a thinned scan, until one tells
 constexpr double kMapBytesPerPoint = 8.0;
 
@@ -43,8 +43,8 @@ class ScanReader {
     now_ = prepared(frame);
     if (frame > 0) {
       const Surface surface = surface_of(before_.scan.points, workers_);
-      const Eigen::Isometry3d T_before_now = run_.trajectory[frame - 1].T_world_sensor.inverse() *
-                                             run_.trajectory[frame].T_world_sensor;
+      const Eigen::Isometry3d T_before_now =
+          run_.trajectory[frame - 1].T_world_sensor.inverse() * run_.trajectory[frame].T_world_sensor;
       now_.scan.residual = surface_residual(surface, now_.scan.points, T_before_now, workers_);
     }
     return now_.scan;
@@ -100,8 +100,9 @@ std::optional<KeptMap> finish(StaticMap& map, std::size_t budget_bytes) {
 
 double seconds_to_next(const RunFiles& run, std::size_t frame) {
   const std::size_t n = run.frames.size();
-  return n < 2 ? 0.0 : frame + 1 < n ? run.seconds(frame + 1) - run.seconds(frame)
-                                     : run.seconds(frame) - run.seconds(frame - 1);
+  return n < 2           ? 0.0
+         : frame + 1 < n ? run.seconds(frame + 1) - run.seconds(frame)
+                         : run.seconds(frame) - run.seconds(frame - 1);
 }
 
 KeptScan keep(const RunFiles& run, std::size_t frame, const ShownScan& scan, std::size_t count) {
@@ -139,8 +140,8 @@ double bytes_per_point_at(std::size_t count, const RunFiles& run, ScanReader& re
 void check_frames(const RunFiles& run, const std::vector<std::size_t>& frames) {
   for (const std::size_t frame : frames) {
     if (frame >= run.frames.size()) {
-      throw UsageError(fmt::format("--frames names {}, expected 0 to {}", frame,
-                                   std::max<std::size_t>(run.frames.size(), 1) - 1));
+      throw UsageError(
+          fmt::format("--frames names {}, expected 0 to {}", frame, std::max<std::size_t>(run.frames.size(), 1) - 1));
     }
   }
 }
@@ -191,19 +192,20 @@ std::vector<std::string> notes_of(const RunFiles& run, const RunScans& kept, con
   }
   constexpr std::size_t kNamed = 20;
   if (whole.size() < kept.scans.size()) {
-    notes.push_back(fmt::format("Scans are thinned to keep the page small: {:.0f} % of the points are shown, spread over "
-                                "space{}. What was measured and computed is not touched by this.",
-                                100.0 * points / of,
-                                whole.empty()             ? ""
-                                : whole.size() <= kNamed ? fmt::format("; scan{} {} {} whole",
-                                                                       whole.size() == 1 ? "" : "s", listed(whole),
-                                                                       whole.size() == 1 ? "is" : "are")
-                                                          : fmt::format("; {} scans are whole", whole.size())));
+    notes.push_back(
+        fmt::format("Scans are thinned to keep the page small: {:.0f} % of the points are shown, spread over "
+                    "space{}. What was measured and computed is not touched by this.",
+                    100.0 * points / of,
+                    whole.empty()            ? ""
+                    : whole.size() <= kNamed ? fmt::format("; scan{} {} {} whole", whole.size() == 1 ? "" : "s",
+                                                           listed(whole), whole.size() == 1 ? "is" : "are")
+                                             : fmt::format("; {} scans are whole", whole.size())));
   }
   if (kept.scans.size() < run.frames.size()) {
-    notes.push_back(fmt::format("{} of {} scans are kept; the others show the nearest one before them. Path, objects and "
-                                "plots hold every scan.",
-                                kept.scans.size(), run.frames.size()));
+    notes.push_back(
+        fmt::format("{} of {} scans are kept; the others show the nearest one before them. Path, objects and "
+                    "plots hold every scan.",
+                    kept.scans.size(), run.frames.size()));
   }
   if (bytes > static_cast<double>(choice.budget_bytes)) {
     notes.push_back(fmt::format("The scans asked for take {}, more than the {} they were given.", megabytes(bytes),

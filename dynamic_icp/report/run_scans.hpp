@@ -16,19 +16,19 @@ namespace dynamic_icp::report {
 
 /// How much of a recording goes into a page.
 struct ScanChoice {
-  std::size_t budget_bytes = 40'000'000;    ///< for scans and map, as they stand in the page
-  std::vector<std::size_t> whole;           ///< frames whose scans are kept whole whatever they take, ascending
-  bool choose_whole = true;                 ///< besides, keep a few telling ones whole where the budget has room
+  std::size_t budget_bytes = 40'000'000;  ///< for scans and map, as they stand in the page
+  std::vector<std::size_t> whole;         ///< frames whose scans are kept whole whatever they take, ascending
+  bool choose_whole = true;               ///< besides, keep a few telling ones whole where the budget has room
 };
 
 /// A scan of the page.
 struct KeptScan {
   std::size_t frame = 0;
-  double dt_s = 0.0;        ///< to the next scan; of the last one to the one before
-  std::size_t points = 0;   ///< in the page
-  std::size_t of = 0;       ///< in the recording
-  bool whole = false;       ///< all that can be shown: finite, and not farther than kFarthestShown_m
-  std::string blob;         ///< see scan_blob.hpp
+  double dt_s = 0.0;       ///< to the next scan; of the last one to the one before
+  std::size_t points = 0;  ///< in the page
+  std::size_t of = 0;      ///< in the recording
+  bool whole = false;      ///< all that can be shown: finite, and not farther than kFarthestShown_m
+  std::string blob;        ///< see scan_blob.hpp
 };
 
 struct KeptMap {

@@ -135,6 +135,18 @@ std::vector<std::uint8_t> guessed_labels(const RunFiles& run, std::size_t frame,
   return labels;
 }
 
+/// Undoes what the objects themselves moved between the stamp and the time of each of their points: where the boxes
+/// are.
+void put_objects_at_stamp(const RunFiles& run, std::size_t frame, const std::vector<double>& times, ShownScan& shown) {
+  const std::vector<figures::ObjectRow>& objects = run.objects[frame];
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const std::size_t object = shown.labels[i] - std::size_t{kFirstObject};
+    if (shown.labels[i] >= kFirstObject && objects[object].velocity.allFinite()) {
+      shown.points[i] -= times[i] * objects[object].velocity;
+    }
+  }
+}
+
 }  // namespace
 
 ShownScan select(const ShownScan& scan, std::span<const std::uint32_t> rows) {
@@ -168,6 +180,9 @@ ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, 
   shown.labels = saved ? saved_labels(run, frame, scan, *saved, shown.compensated)
                        : guessed_labels(run, frame, scan, shown.compensated);
   shown.points = scan.points();
+  if (undo && scan.has_times()) {
+    put_objects_at_stamp(run, frame, scan.times(), shown);
+  }
   shown.doppler = scan.doppler();
   shown.residual.assign(scan.size(), std::numeric_limits<double>::quiet_NaN());
   return shown;

@@ -25,7 +25,8 @@ inline constexpr double kFarthestShown_m = 1000.0;
 
 /// A scan as the page shows it: columns of equal length.
 struct ShownScan {
-  std::vector<Eigen::Vector3d> points;  ///< m, sensor frame at the stamp; the sweep undone where the run undid it
+  std::vector<Eigen::Vector3d> points;  ///< m, sensor frame at the stamp; the sweep undone where the run undid it,
+                                        ///< for points on objects their motion during the sweep as well
   std::vector<double> doppler;          ///< m/s as measured, positive away
   std::vector<double> compensated;      ///< m/s, what is left without the own motion; NaN: unknown
   std::vector<std::uint8_t> labels;
