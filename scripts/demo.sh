@@ -21,4 +21,4 @@ fi
 
 echo "== Running Dynamic-ICP on it"
 build/dynamic-icp run "$drive" --output "$run" --save-labels --report --force
-echo "report       $PWD/$run/report.html"
+[[ ! -e $run/report.html ]] || echo "report       $PWD/$run/report.html"

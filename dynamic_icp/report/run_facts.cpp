@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <set>
 
 #include <fmt/format.h>
 
@@ -42,7 +43,42 @@ std::string scans_that_went_wrong(const std::string& reason, const std::vector<s
                      indices.size() > kNamed ? ", ..." : "");
 }
 
+/// What of a run may tell it apart from the others.
+std::string fact(const RunFiles& run, const char* key) {
+  const std::string value = text_of(run.run, key);
+  return std::string_view(key) == "ablation" && value == "none" ? "in full" : value;
+}
+
 }  // namespace
+
+std::string folder_name(const std::filesystem::path& folder) {
+  return std::filesystem::absolute(folder / "").lexically_normal().parent_path().filename().string();
+}
+
+std::vector<std::string> telling_names(const std::vector<RunFiles>& runs) {
+  std::vector<std::string> names(runs.size());
+  for (const char* key : {"method", "preset", "ablation"}) {
+    const bool differs = std::any_of(runs.begin(), runs.end(),
+                                     [&](const RunFiles& run) { return fact(run, key) != fact(runs.front(), key); });
+    for (std::size_t k = 0; differs && k < runs.size(); ++k) {
+      const std::string value = fact(runs[k], key);
+      names[k] += value.empty() ? "" : (names[k].empty() ? "" : ", ") + value;
+    }
+  }
+  std::set<std::pair<std::string, std::string>> different;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    different.emplace(name_of(runs[k]), names[k]);
+  }
+  if (different.size() < runs.size() || std::find(names.begin(), names.end(), "") != names.end()) {
+    for (std::size_t k = 0; k < runs.size(); ++k) {
+      names[k] = folder_name(runs[k].folder);
+    }
+    if (std::set<std::string>(names.begin(), names.end()).size() < runs.size()) {
+      std::transform(runs.begin(), runs.end(), names.begin(), [](const RunFiles& run) { return run.folder.string(); });
+    }
+  }
+  return names;
+}
 
 std::string name_of(const RunFiles& run) {
   const std::string input = text_of(run.run, "input.path");

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <filesystem>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,6 +15,12 @@ using Facts = std::vector<std::pair<std::string, std::string>>;
 
 /// What the run is called: by its recording, since the folder may still be under construction under another name.
 std::string name_of(const figures::RunFiles& run);
+
+/// The last part of a path, also of one that ends in a slash.
+std::string folder_name(const std::filesystem::path& folder);
+
+/// What tells the runs apart: method, preset and ablation as far as they differ; else their folders.
+std::vector<std::string> telling_names(const std::vector<figures::RunFiles>& runs);
 
 /// Method, preset, ablation and version, as far as the run states them.
 Facts facts_of(const figures::RunFiles& run);

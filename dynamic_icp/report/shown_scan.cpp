@@ -96,6 +96,9 @@ std::uint8_t object_label(std::size_t place) {
              : kDynamic;
 }
 
+/// Whether the method of the run tells moving points from static ones at all.
+bool tells_motion(const RunFiles& run) { return figures::text_of(run.run, "method") == "dynamic-icp"; }
+
 bool moves(double compensated) { return std::abs(compensated) > kMoving_mps; }
 
 /// Of a run that wrote them. What moves without an object is "not used" there: the Doppler tells it apart.
@@ -105,21 +108,25 @@ std::vector<std::uint8_t> saved_labels(const RunFiles& run, std::size_t frame, c
   for (std::size_t k = 0; k < run.objects[frame].size(); ++k) {
     label_of_object.emplace(run.objects[frame][k].id, object_label(k));
   }
+  const bool tells = tells_motion(run);
   std::vector<std::uint8_t> labels(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const std::int32_t label = saved[scan.records()[i]];
     const auto object = label > 0 ? label_of_object.find(label) : label_of_object.end();
-    labels[i] = object != label_of_object.end() ? object->second
-                : label >= 0                    ? (label == 0 ? kStatic : kDynamic)
-                : moves(compensated[i])         ? kDynamic
-                                                : kNotUsed;
+    labels[i] = object != label_of_object.end()  ? object->second
+                : label >= 0                     ? (label == 0 ? kStatic : kDynamic)
+                : tells && moves(compensated[i]) ? kDynamic
+                                                 : kNotUsed;
   }
   return labels;
 }
 
 std::vector<std::uint8_t> guessed_labels(const RunFiles& run, std::size_t frame, const Scan& scan,
                                          const std::vector<double>& compensated) {
-  std::vector<std::uint8_t> labels(scan.size());
+  std::vector<std::uint8_t> labels(scan.size(), kStatic);
+  if (!tells_motion(run)) {
+    return labels;
+  }
   std::transform(compensated.begin(), compensated.end(), labels.begin(),
                  [](double value) { return moves(value) ? kDynamic : kStatic; });
   const figures::ScanView view{.title = {},

@@ -40,7 +40,8 @@ ShownScan select(const ShownScan& scan, std::span<const std::uint32_t> rows);
 
 /// A scan as read by `figures::read_scan`, with what the run says of it. The residuals are still unknown. Labels come
 /// from labels/*.bin or, where the run did not write them, from the objects and the compensated Doppler: then every
-/// point counts as used. Throws DataError when the labels do not fit the scan.
+/// point counts as used; where the method does not tell moving points from static ones, as static. Throws DataError
+/// when the labels do not fit the scan.
 ShownScan show_scan(const figures::RunFiles& run, std::size_t frame, const RawScan& raw, const Workers& workers);
 
 }  // namespace dynamic_icp::report
