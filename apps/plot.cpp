@@ -16,6 +16,7 @@
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 #include "dynamic_icp/report/run_facts.hpp"
+#include "dynamic_icp/report/step_figure.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/svg_to_png.hpp"
@@ -29,6 +30,7 @@ struct PlotOptions {
   std::vector<std::string> folders;
   std::string output;
   std::optional<std::int64_t> frame;
+  std::optional<std::int64_t> pair;
   std::string theme = "light";
   std::string format = "svg";
   double scale = 2.0;
@@ -47,6 +49,19 @@ struct Pictures {
   std::vector<std::string> notes;
 };
 
+drawing::Svg steps_of_pair(const figures::RunFiles& run, std::int64_t source, const drawing::Theme& theme) {
+  if (source < 0) {
+    throw UsageError(fmt::format("--pair is {}, expected 0 or more", source));
+  }
+  std::vector<std::string> notes;
+  const std::unique_ptr<datasets::Dataset> recording = figures::open_recording(run, notes);
+  if (recording == nullptr) {
+    throw DataError(notes.back());
+  }
+  return report::step_figure(run, report::read_pair(run, *recording, static_cast<std::size_t>(source), Workers()),
+                             theme);
+}
+
 Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme) {
   if (options.frame && *options.frame < 0) {
     throw UsageError(fmt::format("--frame is {}, expected 0 or more", *options.frame));
@@ -55,7 +70,11 @@ Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme
   const std::optional<std::size_t> frame =
       options.frame ? std::optional(static_cast<std::size_t>(*options.frame)) : std::nullopt;
   const figures::RunContext context = figures::read_context(run, frame);
-  return {figures::draw_figures(run, context, theme), context.notes};
+  Pictures pictures{figures::draw_figures(run, context, theme), context.notes};
+  if (options.pair) {
+    pictures.figures.push_back({"steps", steps_of_pair(run, *options.pair, theme)});
+  }
+  return pictures;
 }
 
 /// Paths can be drawn over each other when they are of the same drive and begin with the same scan.
@@ -73,8 +92,8 @@ void check_comparable(const std::vector<figures::RunFiles>& runs) {
 }
 
 Pictures pictures_of_runs(const PlotOptions& options, const drawing::Theme& theme) {
-  if (options.frame) {
-    throw UsageError("--frame is for the pictures of one run");
+  if (options.frame || options.pair) {
+    throw UsageError("--frame and --pair are for the pictures of one run");
   }
   std::vector<figures::RunFiles> runs;
   for (const std::string& folder : options.folders) {
@@ -139,6 +158,11 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
       ->add_option("--frame", options->frame,
                    "Which scan to draw: line of frames.jsonl, counted from 0 (default: the one with most points on "
                    "moving objects)")
+      ->type_name("N");
+  command
+      ->add_option("--pair", options->pair,
+                   "Also draw the steps from this scan to its alignment with the next one, as --frame counts them: "
+                   "steps.svg (runs with --save-labels show the points as the method sorted them)")
       ->type_name("N");
   command->add_option("--theme", options->theme, "Background of the pictures: light or dark (default light)")
       ->type_name("NAME");
