@@ -19,6 +19,7 @@ import { createTimeline } from './panels/timeline.js';
 import { createToolbar } from './panels/toolbar.js';
 import { createPlayer } from './player.js';
 import { createFlatMap } from './plots/flat_map.js';
+import { frameCount } from './runs.js';
 import { createView } from './scene/view.js';
 import { firstFrame, fitState, runAt } from './session.js';
 import { keptKeys, readFragment, writeFragment } from './state.js';
@@ -29,7 +30,7 @@ import { followTheme } from './theme.js';
 function usualState(report) {
   const run = firstRun(report, 0);
   return {
-    group: 0, run, frame: report.kind === 'run' ? firstFrame(report.runs[run]) : 0,
+    group: 0, run, frame: report.kind === 'run' ? firstFrame(report.runs[run]) : frameCount(report.runs[run]) - 1,
     colour: 'compensated', limit: null, layers: usualLayers(),
     camera: report.kind === 'run' ? 'follow' : 'free', eye: null, size: 2.5, speed: 1,
     tab: report.kind === 'benchmark' ? 'tables' : 'plots', hidden: new Set(), theme: null,

@@ -1,7 +1,7 @@
 // Over the view: which frame this is, how fast it goes, and what is wrong with it.
 import { element } from '../dom.js';
 import { counted, shortNumber } from '../format.js';
-import { frameCount, speedOf } from '../runs.js';
+import { speedOf } from '../runs.js';
 import { runAt } from '../session.js';
 
 function scanNote(run, shown) {
@@ -26,7 +26,7 @@ export function createStatus(report, store) {
     const { frames } = run;
     const status = frames.status[frame] ?? '';
     const facts = [
-      ['frame', `${frame} / ${frameCount(run) - 1}`],
+      ['frame', String(frame)],
       frames.index[frame] === frame ? null : ['scan', String(frames.index[frame])],
       ['time', `${frames.seconds[frame]?.toFixed(2)} s`],
       ['speed', `${shortNumber(speedOf(run, frame))} m/s`],
