@@ -22,10 +22,11 @@ function logTicks(low, high, most) {
   const stride = Math.max(1, Math.ceil((last - first + 1) / most));
   const ticks = [];
   for (let k = first; k <= last; k += stride) ticks.push(10 ** k);
-  // Within one decade powers of ten do not tell where one is.
-  if (ticks.length >= 2) return ticks;
-  const between = [first - 1, first].flatMap((power) => [1, 2, 5].map((factor) => Number((factor * 10 ** power).toPrecision(1))));
+  // Within one or two decades powers of ten do not tell where one is.
+  if (ticks.length >= 3) return ticks;
+  const between = [first - 1, first, first + 1].flatMap((power) => [1, 2, 5].map((factor) => Number((factor * 10 ** power).toPrecision(1))));
   const inside = between.filter((tick) => tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9));
+  if (inside.length > most) return ticks;
   return inside.length >= 2 ? inside : linearTicks(low, high, most, false);
 }
 
