@@ -19,6 +19,13 @@ export async function findBrowser() {
   };
 }
 
+/** Ends a test file that cannot run: with the status CTest takes for skipped, with success under `node --test`. */
+export function skipIfMissing({ missing }) {
+  if (!missing) return;
+  console.log(`skipped: ${missing}`);
+  process.exit(process.env.NODE_TEST_CONTEXT ? 0 : 77);
+}
+
 /**
  * A page that fails on its own when it writes an error or asks for anything but itself.
  * @returns {Promise<{page: import('playwright-core').Page, troubles: string[]}>}

@@ -6,14 +6,11 @@ import { join } from 'node:path';
 import test, { after, before } from 'node:test';
 import { pathToFileURL } from 'node:url';
 import { bundle } from '../build.mjs';
-import { findBrowser, openPage } from './browser.mjs';
+import { findBrowser, openPage, skipIfMissing } from './browser.mjs';
 import { pageOf, sampleRun, samples } from './sample_page.mjs';
 
 const found = await findBrowser();
-if (found.missing) {
-  console.log(`skipped: ${found.missing}`);
-  process.exit(77);
-}
+skipIfMissing(found);
 
 const folder = mkdtempSync(join(tmpdir(), 'viewer-'));
 let browser;
@@ -49,6 +46,9 @@ async function onPage(address, act, options = {}) {
 const frameOf = (page) => page.$eval('.scene-holder', (holder) => Number(holder.dataset.frame));
 const shown = (page, frame) => page.waitForSelector(`.scene-holder[data-frame="${frame}"]`);
 
+// What lies over the view is no part of its picture.
+const SCENE_ONLY = '.status, .legend, .point-reading, .menu-body, .labels { visibility: hidden } .scene { outline: none !important }';
+
 /** Waits until nothing is drawn any more, then gives the picture of the view. */
 async function picture(page) {
   await page.evaluate(async () => {
@@ -59,26 +59,45 @@ async function picture(page) {
       await new Promise((done) => setTimeout(done, 120));
     }
   });
-  return page.locator('canvas.scene').screenshot();
+  return page.locator('canvas.scene').screenshot({ style: SCENE_ONLY });
 }
 
-/** Counts what the canvas itself holds: pixels by colour, drawn again in the same task as it is read. */
-async function colours(page) {
-  const image = await picture(page);
-  return page.evaluate(async (text) => {
-    const binary = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
-    const bitmap = await createImageBitmap(new Blob([binary], { type: 'image/png' }));
+/** The pixels of a picture, four bytes each. */
+async function pixels(page, image) {
+  const text = await page.evaluate(async (png) => {
+    const bytes = Uint8Array.from(atob(png), (c) => c.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
     const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
     const pen = canvas.getContext('2d');
     pen.drawImage(bitmap, 0, 0);
     const { data } = pen.getImageData(0, 0, bitmap.width, bitmap.height);
-    const counts = {};
-    for (let i = 0; i < data.length; i += 4) {
-      const key = `${data[i]},${data[i + 1]},${data[i + 2]}`;
-      counts[key] = (counts[key] ?? 0) + 1;
-    }
-    return counts;
+    let binary = '';
+    for (let at = 0; at < data.length; at += 8192) binary += String.fromCharCode(...data.subarray(at, at + 8192));
+    return btoa(binary);
   }, image.toString('base64'));
+  return Buffer.from(text, 'base64');
+}
+
+/** Whether two pictures are the same but for the rounding of a place that went through a link or around the sensor. */
+async function isSame(page, one, other) {
+  const [a, b] = [await pixels(page, one), await pixels(page, other)];
+  assert.equal(a.length, b.length);
+  let different = 0;
+  for (let i = 0; i < a.length; i += 4) {
+    different += Math.max(Math.abs(a[i] - b[i]), Math.abs(a[i + 1] - b[i + 1]), Math.abs(a[i + 2] - b[i + 2])) > 16;
+  }
+  return different < 0.002 * (a.length / 4);
+}
+
+/** How many pixels of the view have which colour. */
+async function colours(page) {
+  const data = await pixels(page, await picture(page));
+  const counts = {};
+  for (let i = 0; i < data.length; i += 4) {
+    const key = `${data[i]},${data[i + 1]},${data[i + 2]}`;
+    counts[key] = (counts[key] ?? 0) + 1;
+  }
+  return counts;
 }
 
 const run = () => write('run', samples.run());
@@ -164,6 +183,7 @@ test('every layer changes the picture, and back', async () => {
     }
     assert.match(await page.locator('.labels').innerText(), /6 · \d+ m\/s/);
     await page.keyboard.press('i');
+    await picture(page);
     assert.doesNotMatch(await page.locator('.labels').innerText(), /m\/s/);
   });
 });
@@ -187,15 +207,15 @@ test('cameras: follow goes along, free stays, top looks down; reset puts them ba
     }
     assert.equal(new Set(pictures.map((image) => image.toString('base64'))).size, 3);
     await page.keyboard.press('f');
-    assert.ok((await picture(page)).equals(pictures[0]));
+    assert.ok(await isSame(page, await picture(page), pictures[0]));
     const box = await page.locator('canvas.scene').boundingBox();
     await page.mouse.move(box.x + 300, box.y + 300);
     await page.mouse.down();
     await page.mouse.move(box.x + 420, box.y + 330, { steps: 4 });
     await page.mouse.up();
-    assert.ok(!(await picture(page)).equals(pictures[0]));
-    await page.click('text=Reset');
-    assert.ok((await picture(page)).equals(pictures[0]));
+    assert.ok(!(await isSame(page, await picture(page), pictures[0])));
+    await page.click('[aria-label^="Put the camera back"]');
+    assert.ok(await isSame(page, await picture(page), pictures[0]));
   });
 });
 
@@ -255,8 +275,7 @@ test('the address holds the state, and a reload brings it back', async () => {
     await shown(page, 9);
     assert.equal(await page.locator('[data-camera="free"]').getAttribute('aria-pressed'), 'true');
     assert.ok(await page.locator('#sheet-summary').isVisible());
-    const after_ = await picture(page);
-    assert.ok(before.equals(after_), 'the same picture as before');
+    assert.ok(await isSame(page, await picture(page), before));
   });
 });
 
@@ -301,7 +320,7 @@ test('hostile texts are shown as texts', async () => {
       const visible = await page.$eval('.sheet:not([hidden])', (sheet) => sheet.textContent);
       if ((await tab.textContent()) !== 'Distribution') assert.ok(visible.includes(HOSTILE), await tab.textContent());
     }
-    assert.equal(await page.title(), HOSTILE.replace(/\s+/g, ' ').trim());
+    assert.equal(await page.title(), HOSTILE.replace(/[ \n]+/g, ' ').trim());
     assert.ok((await page.textContent('h1')) === HOSTILE);
     assert.equal(await page.evaluate(() => window.broken), undefined);
     assert.equal(await page.$('img'), null);
@@ -423,6 +442,7 @@ test('everything can be reached by the keyboard, has a name, and shows its focus
       await page.keyboard.press('Tab');
       reached.add(await page.evaluate(() => {
         const one = document.activeElement;
+        if (one === document.body) return 'the end';
         return getComputedStyle(one).outlineStyle === 'none' ? `no outline: ${one.className}` : one.getAttribute('aria-label') ?? one.textContent;
       }));
     }

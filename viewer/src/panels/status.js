@@ -4,6 +4,9 @@ import { counted, shortNumber } from '../format.js';
 import { speedOf } from '../runs.js';
 import { runAt } from '../session.js';
 
+/** Unchanged texts cost no drawing. */
+const setText = (holder, text) => { if (holder.textContent !== text) holder.textContent = text; };
+
 function scanNote(run, shown) {
   if (shown.trouble) return shown.trouble;
   if (run.scans === null) return 'No scans in this page: trajectory and objects only.';
@@ -17,7 +20,9 @@ function scanNote(run, shown) {
 }
 
 export function createStatus(report, store) {
-  const line = element('div', { class: 'status-line' });
+  const badge = element('span');
+  const line = element('div', { class: 'status-line' }, badge);
+  const entries = [];
   const trouble = element('div', { class: 'status-trouble' });
   const note = element('div', { class: 'status-note' });
   store.watch(['frame', 'run', 'shown'], (state) => {
@@ -32,9 +37,14 @@ export function createStatus(report, store) {
       ['speed', `${shortNumber(speedOf(run, frame))} m/s`],
       ['moving', counted(frames.objects[frame]?.length ?? 0, 'object')],
     ].filter(Boolean);
-    line.replaceChildren(...facts.map(([name, value]) =>
-      element('span', {}, element('small', { text: name }), element('b', { text: value }))),
-    element('span', { class: `badge ${['ok', 'degenerate', 'lost', 'first'].includes(status) ? status : 'other'}`, text: status }));
+    facts.forEach(([name, value], k) => {
+      entries[k] ??= line.insertBefore(element('span', {}, element('small'), element('b')), badge);
+      setText(entries[k].firstChild, name);
+      setText(entries[k].lastChild, value);
+    });
+    while (entries.length > facts.length) entries.pop().remove();
+    badge.className = `badge ${['ok', 'degenerate', 'lost', 'first'].includes(status) ? status : 'other'}`;
+    setText(badge, status);
     const directions = frames.lost_directions[frame] ?? [];
     const reasons = [frames.reason[frame], directions.length ? `unknown: ${directions.join(', ')}` : ''].filter(Boolean);
     trouble.textContent = reasons.join(' · ');

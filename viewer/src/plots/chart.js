@@ -191,9 +191,10 @@ export function createChart(plot, pick) {
     /** @param {number|null} value x of the current frame */
     setNow(value) {
       now = value;
-      if (hovered === null) describeAt(now);
       placeCursors();
     },
+    /** Writes the values at the cursor. */
+    read() { if (hovered === null) describeAt(now); },
     dispose: () => watcher.disconnect(),
   };
 }

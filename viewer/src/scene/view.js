@@ -34,7 +34,7 @@ function openContext(canvas) {
   if (!probe) return null;
   const software = isSoftware(probe);
   probe.getExtension('WEBGL_lose_context')?.loseContext();
-  const gl = canvas.getContext('webgl2', { antialias: !software, powerPreference: 'high-performance' });
+  const gl = canvas.getContext('webgl2', { alpha: false, antialias: !software, powerPreference: 'high-performance' });
   return gl && { gl, software };
 }
 
@@ -141,7 +141,6 @@ export function createView(report, store) {
     const run = runAt(report, store.state);
     const velocity = run.frames.ego_velocity.slice(3 * current.frame, 3 * current.frame + 3);
     sensor.show(velocity.every((value) => value !== null) ? velocity : null, cssColour('--ink'));
-    rings.show(groundHeight, cssColour('--rings'));
   }
 
   function showScan(run, place, scan) {
@@ -155,6 +154,7 @@ export function createView(report, store) {
       if (current.groundOf !== run) {
         groundHeight = quantile(scan.positions.filter((_, i) => i % 3 === 2), 0.05, -1.8);
         points.setGroundHeight(groundHeight);
+        rings.show(groundHeight, cssColour('--rings'));
         current.groundOf = run;
       }
     }
@@ -278,6 +278,7 @@ export function createView(report, store) {
       renderer.setClearColor(new Color().setRGB(...cssColour('--scene', true)));
       predicted.setGround(ground);
       map.setGround(ground);
+      rings.show(groundHeight, cssColour('--rings'));
       drawObjectsIfAny();
       draw();
     });
