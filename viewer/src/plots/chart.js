@@ -73,7 +73,7 @@ export function createChart(plot, pick) {
     pen.fillStyle = resolved('--muted');
     pen.textAlign = 'right';
     pen.textBaseline = 'middle';
-    const levels = y.ticks(Math.max(2, Math.floor((height - EDGE.top - EDGE.bottom) / 20)));
+    const levels = y.ticks(Math.max(2, Math.floor((height - EDGE.top - EDGE.bottom) / 17)));
     for (const tick of levels) {
       const place = Math.round(y.place(tick)) + 0.5;
       pen.beginPath();

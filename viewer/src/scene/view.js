@@ -21,6 +21,9 @@ import { createRings, createSensor, createStaticMap } from './surroundings.js';
 const KEPT_SCANS = 48;
 const READ_AHEAD = 4;
 const MOST_PIXELS_PER_POINT = 2;
+// Where the processor draws: so many points while something moves, all of them once it rests (ms).
+const POINTS_IN_MOTION = 8000;
+const REST = 180;
 
 /** Whether lines are drawn by the processor: then every pixel counts. */
 function isSoftware(gl) {
@@ -89,6 +92,7 @@ export function createView(report, store) {
   scene.add(paths.estimates, paths.truths, map.object, ...atScan, ...atFrame);
 
   const rig = createCameraRig(canvas, () => {
+    showPoints(true);
     draw();
     keepEye();
   });
@@ -101,6 +105,8 @@ export function createView(report, store) {
   let tickets = 0;
   let waiting = false;
   let eyeTimer = 0;
+  let restTimer = 0;
+  let drawn = null; // the scan in the buffers, and whether it is all of it
 
   const keepEye = () => {
     clearTimeout(eyeTimer);
@@ -143,12 +149,28 @@ export function createView(report, store) {
     sensor.show(velocity.every((value) => value !== null) ? velocity : null, cssColour('--ink'));
   }
 
+  /** Puts the points of the current scan into the buffers: fewer while something moves and that would be slow. */
+  function showPoints(inMotion) {
+    const { scan, scanObjects } = current;
+    const most = context.software && inMotion && scan ? POINTS_IN_MOTION : Infinity;
+    const all = !scan || scan.count <= most;
+    if (drawn?.scan !== scan || drawn.all !== all) points.show(scan, scanObjects.map(({ id }) => id), most);
+    drawn = { scan, all };
+    clearTimeout(restTimer);
+    if (!all) {
+      restTimer = setTimeout(() => {
+        showPoints(false);
+        draw();
+      }, REST);
+    }
+  }
+
   function showScan(run, place, scan) {
     const frame = place === null ? null : run.scans.frames[place];
     const listed = frame === null ? [] : (run.frames.objects[frame] ?? []).map(objectOf);
-    points.show(scan, listed.map(({ id }) => id));
-    predicted.show(scan, listed, place === null ? 0 : run.scans.dt[place] ?? 0);
     current.scanObjects = listed;
+    showPoints(true);
+    predicted.show(scan, listed, place === null ? 0 : run.scans.dt[place] ?? 0);
     if (scan && scan.count > 0) {
       // One height for a whole run, so that colours and rings do not jump.
       if (current.groundOf !== run) {
