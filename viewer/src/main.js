@@ -19,7 +19,7 @@ import { createTimeline } from './panels/timeline.js';
 import { createToolbar } from './panels/toolbar.js';
 import { createPlayer } from './player.js';
 import { createFlatMap } from './plots/flat_map.js';
-import { frameCount } from './runs.js';
+import { lastFrame } from './runs.js';
 import { createView } from './scene/view.js';
 import { firstFrame, fitState, runAt } from './session.js';
 import { keptKeys, readFragment, writeFragment } from './state.js';
@@ -30,7 +30,7 @@ import { followTheme } from './theme.js';
 function usualState(report) {
   const run = firstRun(report, 0);
   return {
-    group: 0, run, frame: report.kind === 'run' ? firstFrame(report.runs[run]) : frameCount(report.runs[run]) - 1,
+    group: 0, run, frame: report.kind === 'run' ? firstFrame(report.runs[run]) : lastFrame(report.runs[run]),
     colour: 'compensated', limit: null, layers: usualLayers(),
     camera: report.kind === 'run' ? 'follow' : 'free', eye: null, size: 2.5, speed: 1,
     tab: report.kind === 'benchmark' ? 'tables' : 'plots', hidden: new Set(), theme: null,
@@ -65,12 +65,26 @@ function keepAddress(store, usual) {
   });
 }
 
+function show(page) {
+  document.getElementById('app').replaceChildren(page);
+  document.body.classList.add('with-viewer');
+}
+
+/** A benchmark of which nothing but its tables is left. */
+const pageWithoutRuns = (report) => element('div', {},
+  element('header', { class: 'top' }, element('h1', { text: report.title })),
+  report.tables?.length ? createTableSheet(report) : element('p', { class: 'text-sheet', text: 'This page holds no run.' }),
+  element('ul', { class: 'notes text-sheet' }, ...report.notes.map((text) => element('li', { text }))));
+
 function start() {
   const report = readReport();
-  if (report.runs.length === 0) throw new Error('This page holds no run.');
+  if (report.runs.length === 0) {
+    show(pageWithoutRuns(report));
+    return;
+  }
   const usual = usualState(report);
-  const fromLink = () => fitState(report, { ...usual, ...readFragment(location.hash) });
-  const store = createStore({ ...fromLink(), systemTheme: 'light', playing: false, shown: null, picked: null, limits: {} });
+  const fromLink = fitState(report, { ...usual, ...readFragment(location.hash) });
+  const store = createStore({ ...fromLink, systemTheme: 'light', playing: false, shown: null, picked: null, limits: {} });
   store.watch(['run'], (state) => store.set({ limits: usualLimits(runAt(report, state)) }));
   store.watch(['group', 'run'], (state) => store.set({ frame: fitState(report, state).frame }));
   followTheme(store);
@@ -91,12 +105,12 @@ function start() {
         stage, createTimeline(report, store, player)),
       createTabs(store, sheetsOf(report, store, player))),
     help);
-  document.getElementById('app').replaceChildren(page);
-  document.body.classList.add('with-viewer');
+  show(page);
   view.start();
   listenToKeys(bindings);
   keepAddress(store, usual);
-  window.addEventListener('hashchange', () => store.set(fromLink()));
+  // Only a reader changes the fragment in a way that is told: another link, which is opened as if it were new.
+  window.addEventListener('hashchange', () => location.reload());
 }
 
 try {

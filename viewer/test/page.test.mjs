@@ -385,6 +385,20 @@ test('a run without truth, scans, map and objects still has its page', async () 
   });
 });
 
+test('a run without frames and a benchmark without runs have their page', async () => {
+  await onPage(write('empty', samples.run({ frames: 0 })), async (page) => {
+    await page.keyboard.press('End');
+    await page.keyboard.press('n');
+    assert.equal(await frameOf(page), 0);
+  });
+  const { tables } = samples.benchmark();
+  const content = { kind: 'benchmark', title: 'tables', parts: [], groups: [{ name: 'street', runs: [] }], tables, notes: ['runs left out'] };
+  const { page, troubles } = await openPage(browser, write('tables', content));
+  assert.match(await page.textContent('#app'), /Accuracy.*★0\.007.*runs left out/s);
+  assert.deepEqual(troubles, []);
+  await page.context().close();
+});
+
 test('a single frame is a run', async () => {
   await onPage(write('single', samples.run({ frames: 1 })), async (page) => {
     await shown(page, 0);

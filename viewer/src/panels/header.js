@@ -24,6 +24,7 @@ export function createHeader(report, store, { showHelp, link }) {
     runList.set(state.run);
     facts.replaceChildren(...run.facts.map(([name, value]) =>
       element('span', {}, `${name} `, element('b', { text: value }))));
+    facts.title = run.facts.map((fact) => fact.join(' ')).join(', ');
     const count = run.warnings.length + report.notes.length;
     warnings.textContent = `⚠ ${count}`;
     warnings.hidden = count === 0;

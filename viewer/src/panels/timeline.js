@@ -1,6 +1,6 @@
 // The frames in a line: scrub, step, play, speed; frames that need attention are marked.
 import { chooser, element, icon, iconButton } from '../dom.js';
-import { frameCount, troubledRanges } from '../runs.js';
+import { lastFrame, troubledRanges } from '../runs.js';
 import { SPEEDS } from '../player.js';
 import { runAt } from '../session.js';
 
@@ -17,22 +17,22 @@ export function createTimeline(report, store, player) {
 
   store.watch(['run'], (state) => {
     const run = runAt(report, state);
-    const count = frameCount(run);
-    slider.max = String(Math.max(0, count - 1));
+    const last = lastFrame(run);
+    slider.max = String(last);
     const ranges = troubledRanges(run);
     trouble.hidden = ranges.length === 0;
     marks.replaceChildren(...ranges.map(({ from, to, status }) => {
       const mark = element('i', { class: status });
-      mark.style.left = `${(100 * from) / Math.max(1, count - 1)}%`;
-      mark.style.width = `${(100 * (to - from)) / Math.max(1, count - 1)}%`;
+      mark.style.left = `${(100 * from) / Math.max(1, last)}%`;
+      mark.style.width = `${(100 * (to - from)) / Math.max(1, last)}%`;
       return mark;
     }));
   });
   store.watch(['run', 'frame'], (state) => {
     const run = runAt(report, state);
     slider.value = String(state.frame);
-    slider.setAttribute('aria-valuetext', `frame ${state.frame} of ${frameCount(run) - 1}, ${run.frames.status[state.frame]}`);
-    place.textContent = `${state.frame} / ${frameCount(run) - 1}`;
+    slider.setAttribute('aria-valuetext', `frame ${state.frame} of ${lastFrame(run)}, ${run.frames.status[state.frame]}`);
+    place.textContent = `${state.frame} / ${lastFrame(run)}`;
   });
   store.watch(['playing'], (state) => {
     play.replaceChildren(icon(state.playing ? 'pause' : 'play'));

@@ -18,7 +18,8 @@ import { createPredictedPoints } from './predicted_points.js';
 import { createScanPoints } from './scan_points.js';
 import { createRings, createSensor, createStaticMap } from './surroundings.js';
 
-const KEPT_SCANS = 48;
+const KEPT_POINTS = 4e6; // decoded, 29 bytes each
+const KEPT_SCANS = [8, 64]; // but not fewer and not more
 const READ_AHEAD = 4;
 const MOST_PIXELS_PER_POINT = 2;
 // Where the processor draws: so many points while something moves, all of them once it rests (ms).
@@ -96,7 +97,8 @@ export function createView(report, store) {
     draw();
     keepEye();
   });
-  const cache = createScanCache(readScan, KEPT_SCANS);
+  const largest = report.runs.reduce((most, run) => (run.scans?.points ?? []).reduce((a, b) => Math.max(a, b), most), 1);
+  const cache = createScanCache(readScan, Math.min(KEPT_SCANS[1], Math.max(KEPT_SCANS[0], Math.floor(KEPT_POINTS / largest))));
   let origin = [0, 0, 0];
   let heading = 0;
   let ground = 'light';
@@ -294,7 +296,7 @@ export function createView(report, store) {
   canvas.addEventListener('webglcontextrestored', draw);
 
   const start = () => {
-    points.reserve(Math.max(0, ...report.runs.flatMap((run) => run.scans?.points ?? [])));
+    points.reserve(largest);
     store.watch(['theme', 'systemTheme'], () => {
       ground = groundOf(store.state);
       renderer.setClearColor(new Color().setRGB(...cssColour('--scene', true)));
