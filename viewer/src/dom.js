@@ -36,6 +36,36 @@ export function button(text, help, act, properties = {}) {
   return element('button', { type: 'button', text, title: help, 'aria-label': help, on: { click: act }, ...properties });
 }
 
+/** Pictures on buttons: paths in a square of 16. */
+const ICONS = {
+  first: 'M3 3h2v10H3z M13 3v10L6 8z',
+  back: 'M11 3v10L4 8z M12 3h1.6v10H12z',
+  forward: 'M5 3v10l7-5z M2.4 3H4v10H2.4z',
+  play: 'M4 2.5v11L13 8z',
+  pause: 'M4 3h3v10H4z M9 3h3v10H9z',
+  flag: 'M3 2h1.6v12H3z M5.4 2.6H13l-2 2.7 2 2.7H5.4z',
+  theme: 'M8 1.5a6.5 6.5 0 1 0 0 13z M8 1.5a6.5 6.5 0 0 1 0 13v-1.4a5.1 5.1 0 0 0 0-10.2z',
+};
+
+/** @param {keyof typeof ICONS} name */
+export function icon(name) {
+  const picture = document.createElementNS('http://www.w3.org/2000/svg', 'svg');
+  picture.setAttribute('viewBox', '0 0 16 16');
+  picture.setAttribute('class', 'icon');
+  picture.setAttribute('aria-hidden', 'true');
+  const path = document.createElementNS('http://www.w3.org/2000/svg', 'path');
+  path.setAttribute('d', ICONS[name]);
+  picture.append(path);
+  return picture;
+}
+
+/** A button with a picture. */
+export function iconButton(name, help, act, properties = {}) {
+  const made = button('', help, act, properties);
+  made.append(icon(name));
+  return made;
+}
+
 /**
  * A drop-down list. `set(value)` shows a value without calling `act`.
  * @param {{value: string, text: string}[]} choices

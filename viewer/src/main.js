@@ -19,6 +19,7 @@ import { createTimeline } from './panels/timeline.js';
 import { createToolbar } from './panels/toolbar.js';
 import { createPlayer } from './player.js';
 import { createFlatMap } from './plots/flat_map.js';
+import { lastFrame } from './runs.js';
 import { createView } from './scene/view.js';
 import { firstFrame, fitState, runAt } from './session.js';
 import { keptKeys, readFragment, writeFragment } from './state.js';
@@ -29,7 +30,7 @@ import { followTheme } from './theme.js';
 function usualState(report) {
   const run = firstRun(report, 0);
   return {
-    group: 0, run, frame: report.kind === 'run' ? firstFrame(report.runs[run]) : 0,
+    group: 0, run, frame: report.kind === 'run' ? firstFrame(report.runs[run]) : lastFrame(report.runs[run]),
     colour: 'compensated', limit: null, layers: usualLayers(),
     camera: report.kind === 'run' ? 'follow' : 'free', eye: null, size: 2.5, speed: 1,
     tab: report.kind === 'benchmark' ? 'tables' : 'plots', hidden: new Set(), theme: null,
@@ -38,9 +39,9 @@ function usualState(report) {
 
 function sheetsOf(report, store, player) {
   const plots = { id: 'plots', name: 'Plots', element: createPlotSheet(report, store, player) };
-  const distributions = { id: 'distributions', name: report.kind === 'run' ? 'Distribution' : 'Distributions', element: createDistributionSheet(report, store) };
+  const distributions = { id: 'distributions', name: 'Distribution', element: createDistributionSheet(report, store) };
   const summary = { id: 'summary', name: report.kind === 'run' ? 'Summary' : 'Run', element: createSummarySheet(report, store) };
-  const configuration = { id: 'configuration', name: 'Configuration', element: createConfigurationSheet(report, store) };
+  const configuration = { id: 'configuration', name: 'Settings', element: createConfigurationSheet(report, store) };
   const several = report.kind === 'run' ? [] : [{ id: 'numbers', name: 'Numbers', element: createComparisonSheet(report, store) }];
   const tables = report.tables?.length ? [{ id: 'tables', name: 'Tables', element: createTableSheet(report) }] : [];
   return [...tables, plots, distributions, ...several, summary, configuration];
@@ -64,12 +65,26 @@ function keepAddress(store, usual) {
   });
 }
 
+function show(page) {
+  document.getElementById('app').replaceChildren(page);
+  document.body.classList.add('with-viewer');
+}
+
+/** A benchmark of which nothing but its tables is left. */
+const pageWithoutRuns = (report) => element('div', {},
+  element('header', { class: 'top' }, element('h1', { text: report.title })),
+  report.tables?.length ? createTableSheet(report) : element('p', { class: 'text-sheet', text: 'This page holds no run.' }),
+  element('ul', { class: 'notes text-sheet' }, ...report.notes.map((text) => element('li', { text }))));
+
 function start() {
   const report = readReport();
-  if (report.runs.length === 0) throw new Error('This page holds no run.');
+  if (report.runs.length === 0) {
+    show(pageWithoutRuns(report));
+    return;
+  }
   const usual = usualState(report);
-  const fromLink = () => fitState(report, { ...usual, ...readFragment(location.hash) });
-  const store = createStore({ ...fromLink(), systemTheme: 'light', playing: false, shown: null, picked: null, limits: {} });
+  const fromLink = fitState(report, { ...usual, ...readFragment(location.hash) });
+  const store = createStore({ ...fromLink, systemTheme: 'light', playing: false, shown: null, picked: null, limits: {} });
   store.watch(['run'], (state) => store.set({ limits: usualLimits(runAt(report, state)) }));
   store.watch(['group', 'run'], (state) => store.set({ frame: fitState(report, state).frame }));
   followTheme(store);
@@ -90,12 +105,12 @@ function start() {
         stage, createTimeline(report, store, player)),
       createTabs(store, sheetsOf(report, store, player))),
     help);
-  document.getElementById('app').replaceChildren(page);
-  document.body.classList.add('with-viewer');
+  show(page);
   view.start();
   listenToKeys(bindings);
   keepAddress(store, usual);
-  window.addEventListener('hashchange', () => store.set(fromLink()));
+  // Only a reader changes the fragment in a way that is told: another link, which is opened as if it were new.
+  window.addEventListener('hashchange', () => location.reload());
 }
 
 try {

@@ -1,5 +1,5 @@
 // Playing: as fast as the recording was, or slower or faster.
-import { lastNotAbove, frameCount } from './runs.js';
+import { lastFrame, lastNotAbove } from './runs.js';
 import { runAt } from './session.js';
 
 export const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4, 8];
@@ -28,7 +28,7 @@ export function createPlayer(report, store) {
     requestAnimationFrame(tick);
   }
 
-  const last = () => frameCount(runAt(report, store.state)) - 1;
+  const last = () => lastFrame(runAt(report, store.state));
   return {
     toggle() {
       const { playing, frame } = store.state;

@@ -2,6 +2,9 @@
 
 export const frameCount = (run) => run.frames.index.length;
 
+/** 0 also where there is none. */
+export const lastFrame = (run) => Math.max(0, frameCount(run) - 1);
+
 /** Pose `frame` of a flat list as [x y z qx qy qz qw], or null where there is none. */
 export function poseOf(poses, frame) {
   const pose = poses.slice(7 * frame, 7 * frame + 7);

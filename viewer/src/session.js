@@ -1,10 +1,10 @@
 // What is looked at: the runs that are shown over each other, the one in front, and its frames.
 import { categoryColour } from './colour/maps.js';
-import { frameCount, keptScan } from './runs.js';
+import { frameCount, keptScan, lastFrame } from './runs.js';
 
 /** The groups of a page; a page of one run has one. */
 export const groupsOf = (report) =>
-  report.groups?.length ? report.groups : [{ name: report.title, runs: report.runs.map((_, k) => k) }];
+  report.groups?.some(({ runs }) => runs.length) ? report.groups.filter(({ runs }) => runs.length) : [{ name: report.title, runs: report.runs.map((_, k) => k) }];
 
 export const groupAt = (report, state) => groupsOf(report)[state.group] ?? groupsOf(report)[0];
 
@@ -37,8 +37,7 @@ export function fitState(report, state) {
   const runs = groups[group].runs;
   const withScans = runs.find((index) => report.runs[index].scans !== null);
   const run = runs.includes(state.run) ? state.run : withScans ?? runs[0] ?? 0;
-  const last = Math.max(0, frameCount(report.runs[run]) - 1);
-  return { ...state, group, run, frame: Math.min(state.frame, last) };
+  return { ...state, group, run, frame: Math.min(state.frame, lastFrame(report.runs[run])) };
 }
 
 /** A frame to begin with: the first whose scan has moving objects in it, some way into the drive. */

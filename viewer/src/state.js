@@ -22,7 +22,7 @@ const wholeNumbers = {
   read: (text) => new Set(text.split(',').filter((entry) => /^\d{1,6}$/.test(entry)).map(Number)),
 };
 const eye = {
-  write: (list) => list.map((value) => Number(value.toFixed(2))).join(','),
+  write: (list) => list.map((value) => Number(value.toFixed(3))).join(','),
   read: (text) => (isNumbers(numberList(text), 6) ? numberList(text) : undefined),
 };
 

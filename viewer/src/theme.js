@@ -1,12 +1,11 @@
 // Light and dark: as the system says, or as chosen here.
 
-const dark = matchMedia('(prefers-color-scheme: dark)');
-
 /** @returns {import('./colour/maps.js').Ground} */
 export const groundOf = (state) => state.theme ?? state.systemTheme;
 
 /** Keeps the document in step with the state and the state in step with the system. */
 export function followTheme(store) {
+  const dark = matchMedia('(prefers-color-scheme: dark)');
   const system = () => store.set({ systemTheme: dark.matches ? 'dark' : 'light' });
   dark.addEventListener('change', system);
   system();

@@ -1,5 +1,5 @@
 // What the points of a scan can be coloured by.
-import { lastNotAbove } from '../runs.js';
+import { lastNotAbove, speedOf } from '../runs.js';
 
 /**
  * `source` is the number the shader knows the value by. `limit`: the range is [-limit, limit] for two-sided maps and
@@ -39,10 +39,7 @@ const rounder = (limit, least) => Math.max(least, LIMITS[Math.min(LIMITS.length 
 
 /** Limits that suit a run: by its own speed and by those of its objects. */
 export function usualLimits(run) {
-  const speeds = [];
-  for (let k = 0; k + 2 < run.frames.ego_velocity.length; k += 3) {
-    speeds.push(Math.hypot(...run.frames.ego_velocity.slice(k, k + 3)));
-  }
+  const speeds = run.frames.index.map((_, frame) => speedOf(run, frame));
   const objects = run.frames.objects.flat().map(([, vx, vy, vz]) => Math.hypot(vx, vy, vz));
   return {
     compensated: rounder(quantile(objects, 0.9, 5), 2),

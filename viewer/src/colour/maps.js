@@ -3,7 +3,7 @@
 const stops = {
   // Two-sided: blue comes closer, orange to red goes away, grey stands.
   diverging: {
-    light: ['#08409c', '#3e80d2', '#b4b8bf', '#e46842', '#aa1414'],
+    light: ['#08409c', '#3e80d2', '#a3a9b2', '#e46842', '#aa1414'],
     dark: ['#69c8ff', '#4092dc', '#525965', '#de683e', '#ff9e5c'],
   },
   // One-sided, evenly brighter: from dark violet to yellow.

@@ -1,5 +1,5 @@
 // The line on top: what this is, which runs are looked at, the look of the page, a link to this state.
-import { button, chooser, element } from '../dom.js';
+import { button, chooser, element, iconButton } from '../dom.js';
 import { groupAt, groupsOf, runAt } from '../session.js';
 import { otherTheme } from '../theme.js';
 import { copyText } from './copy.js';
@@ -12,7 +12,7 @@ export function createHeader(report, store, { showHelp, link }) {
   const runList = chooser('Run in front', [], (value) => store.set({ run: Number(value), limit: null }));
   const facts = element('p', { class: 'facts' });
   const warnings = button('', 'Show the warnings', () => store.set({ tab: 'summary' }), { class: 'warning-count' });
-  const theme = button('◐', 'Light or dark (T)', () => store.set({ theme: otherTheme(store.state) }));
+  const theme = iconButton('theme', 'Light or dark (T)', () => store.set({ theme: otherTheme(store.state) }));
   const share = button('Copy link', 'Copy a link to exactly this view', () => copyText(link(), share));
   const help = button('?', 'Keys and hints (?)', showHelp);
 
@@ -24,6 +24,7 @@ export function createHeader(report, store, { showHelp, link }) {
     runList.set(state.run);
     facts.replaceChildren(...run.facts.map(([name, value]) =>
       element('span', {}, `${name} `, element('b', { text: value }))));
+    facts.title = run.facts.map((fact) => fact.join(' ')).join(', ');
     const count = run.warnings.length + report.notes.length;
     warnings.textContent = `⚠ ${count}`;
     warnings.hidden = count === 0;

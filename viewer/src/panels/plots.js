@@ -7,6 +7,8 @@ import { plotsOfRun, plotsOfRuns } from '../plots/time_plots.js';
 import { runAt, runsShown } from '../session.js';
 import { groundOf } from '../theme.js';
 
+const READ_EVERY = 120; // ms
+
 /** Keeps a list of charts in step with what `plotsOf` gives. */
 function chartSheet(store, keys, plotsOf, pick, empty) {
   const sheet = element('div', { class: 'charts' });
@@ -26,7 +28,15 @@ export function createPlotSheet(report, store, player) {
   const { sheet, each } = chartSheet(store, keys,
     () => (single ? plotsOfRun(runAt(report, store.state)) : plotsOfRuns(runsShown(report, store.state, groundOf(store.state)))),
     (x) => player.goTo(closest(xs(), x)), 'There is nothing to plot.');
-  store.watch([...keys, 'frame'], (state) => each((chart) => chart.setNow(xs()[state.frame] ?? null)));
+  let timer = 0;
+  store.watch([...keys, 'frame'], (state) => {
+    each((chart) => chart.setNow(xs()[state.frame] ?? null));
+    // Cursors go along at once; the numbers as often as people can read them.
+    timer ||= setTimeout(() => {
+      timer = 0;
+      each((chart) => chart.read());
+    }, READ_EVERY);
+  });
   return sheet;
 }
 

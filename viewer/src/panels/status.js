@@ -1,8 +1,11 @@
 // Over the view: which frame this is, how fast it goes, and what is wrong with it.
 import { element } from '../dom.js';
 import { counted, shortNumber } from '../format.js';
-import { frameCount, speedOf } from '../runs.js';
+import { speedOf } from '../runs.js';
 import { runAt } from '../session.js';
+
+/** Unchanged texts cost no drawing. */
+const setText = (holder, text) => { if (holder.textContent !== text) holder.textContent = text; };
 
 function scanNote(run, shown) {
   if (shown.trouble) return shown.trouble;
@@ -17,7 +20,9 @@ function scanNote(run, shown) {
 }
 
 export function createStatus(report, store) {
-  const line = element('div', { class: 'status-line' });
+  const badge = element('span');
+  const line = element('div', { class: 'status-line' }, badge);
+  const entries = [];
   const trouble = element('div', { class: 'status-trouble' });
   const note = element('div', { class: 'status-note' });
   store.watch(['frame', 'run', 'shown'], (state) => {
@@ -26,15 +31,20 @@ export function createStatus(report, store) {
     const { frames } = run;
     const status = frames.status[frame] ?? '';
     const facts = [
-      ['frame', `${frame} / ${frameCount(run) - 1}`],
+      ['frame', String(frame)],
       frames.index[frame] === frame ? null : ['scan', String(frames.index[frame])],
       ['time', `${frames.seconds[frame]?.toFixed(2)} s`],
       ['speed', `${shortNumber(speedOf(run, frame))} m/s`],
       ['moving', counted(frames.objects[frame]?.length ?? 0, 'object')],
     ].filter(Boolean);
-    line.replaceChildren(...facts.map(([name, value]) =>
-      element('span', {}, element('small', { text: name }), element('b', { text: value }))),
-    element('span', { class: `badge ${['ok', 'degenerate', 'lost', 'first'].includes(status) ? status : 'other'}`, text: status }));
+    facts.forEach(([name, value], k) => {
+      entries[k] ??= line.insertBefore(element('span', {}, element('small'), element('b')), badge);
+      setText(entries[k].firstChild, name);
+      setText(entries[k].lastChild, value);
+    });
+    while (entries.length > facts.length) entries.pop().remove();
+    badge.className = `badge ${['ok', 'degenerate', 'lost', 'first'].includes(status) ? status : 'other'}`;
+    setText(badge, status);
     const directions = frames.lost_directions[frame] ?? [];
     const reasons = [frames.reason[frame], directions.length ? `unknown: ${directions.join(', ')}` : ''].filter(Boolean);
     trouble.textContent = reasons.join(' · ');

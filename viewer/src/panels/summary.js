@@ -24,6 +24,7 @@ export function createSummarySheet(report, store) {
       report.kind === 'run' ? null : element('h2', { class: 'run-name', text: run.name }),
       run.warnings.length ? section('Warnings', list(run.warnings, 'warnings')) : null,
       section('Summary', summaryTable(run.summary)),
+      section('Run', pairTable([['recording', run.name], ...run.facts])),
       report.notes.length ? section('Notes', list(report.notes, 'notes')) : null,
       run.command ? command(run.command) : null,
       element('p', { class: 'muted', text: `Page made by ${report.generator}` }),

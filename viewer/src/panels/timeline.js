@@ -1,6 +1,6 @@
 // The frames in a line: scrub, step, play, speed; frames that need attention are marked.
-import { button, chooser, element } from '../dom.js';
-import { frameCount, troubledRanges } from '../runs.js';
+import { chooser, element, icon, iconButton } from '../dom.js';
+import { lastFrame, troubledRanges } from '../runs.js';
 import { SPEEDS } from '../player.js';
 import { runAt } from '../session.js';
 
@@ -9,40 +9,40 @@ export function createTimeline(report, store, player) {
     type: 'range', class: 'frames', min: 0, step: 1, 'aria-label': 'Frame', on: { input: () => player.goTo(Number(slider.value)) },
   });
   const marks = element('div', { class: 'frame-marks', 'aria-hidden': 'true' });
-  const play = button('▶', 'Play or pause (space)', () => player.toggle(), { class: 'play' });
+  const play = iconButton('play', 'Play or pause (space)', () => player.toggle(), { class: 'play' });
   const place = element('output', { class: 'frame-place' });
   const speed = chooser('Speed', SPEEDS.map((value) => ({ value: String(value), text: `${value}×` })),
     (value) => store.set({ speed: Number(value) }));
-  const trouble = button('⚑', 'Next degenerate or lost frame (N)', () => goToTrouble(report, store, player, 1));
+  const trouble = iconButton('flag', 'Next degenerate or lost frame (N)', () => goToTrouble(report, store, player, 1));
 
   store.watch(['run'], (state) => {
     const run = runAt(report, state);
-    const count = frameCount(run);
-    slider.max = String(Math.max(0, count - 1));
+    const last = lastFrame(run);
+    slider.max = String(last);
     const ranges = troubledRanges(run);
     trouble.hidden = ranges.length === 0;
     marks.replaceChildren(...ranges.map(({ from, to, status }) => {
       const mark = element('i', { class: status });
-      mark.style.left = `${(100 * from) / Math.max(1, count - 1)}%`;
-      mark.style.width = `${(100 * (to - from)) / Math.max(1, count - 1)}%`;
+      mark.style.left = `${(100 * from) / Math.max(1, last)}%`;
+      mark.style.width = `${(100 * (to - from)) / Math.max(1, last)}%`;
       return mark;
     }));
   });
   store.watch(['run', 'frame'], (state) => {
     const run = runAt(report, state);
     slider.value = String(state.frame);
-    slider.setAttribute('aria-valuetext', `frame ${state.frame} of ${frameCount(run) - 1}, ${run.frames.status[state.frame]}`);
-    place.textContent = `${state.frame} / ${frameCount(run) - 1}`;
+    slider.setAttribute('aria-valuetext', `frame ${state.frame} of ${lastFrame(run)}, ${run.frames.status[state.frame]}`);
+    place.textContent = `${state.frame} / ${lastFrame(run)}`;
   });
   store.watch(['playing'], (state) => {
-    play.textContent = state.playing ? '❚❚' : '▶';
+    play.replaceChildren(icon(state.playing ? 'pause' : 'play'));
     play.setAttribute('aria-pressed', String(state.playing));
   });
   store.watch(['speed'], (state) => speed.set(state.speed));
   return element('div', { class: 'timeline', role: 'group', 'aria-label': 'Timeline' },
-    button('⏮', 'First frame (Home)', () => player.goTo(0), { class: 'wide-only' }),
-    button('◀', 'One frame back (←)', () => player.step(-1)), play,
-    button('▶|', 'One frame on (→)', () => player.step(1)),
+    iconButton('first', 'First frame (Home)', () => player.goTo(0), { class: 'wide-only' }),
+    iconButton('back', 'One frame back (←)', () => player.step(-1)), play,
+    iconButton('forward', 'One frame on (→)', () => player.step(1)),
     element('div', { class: 'track' }, slider, marks), place, trouble, speed.element);
 }
 

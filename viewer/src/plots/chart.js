@@ -4,7 +4,7 @@ import { shortNumber } from '../format.js';
 import { closest } from '../runs.js';
 import { cssColour } from '../theme.js';
 import { tracePolyline } from './polyline.js';
-import { createScale, valueRange } from './scale.js';
+import { createScale, tickText, valueRange } from './scale.js';
 
 const EDGE = { left: 44, right: 8, top: 6, bottom: 18 };
 const FONT = '11px system-ui, "DejaVu Sans", sans-serif';
@@ -50,8 +50,8 @@ export function createChart(plot, pick) {
   const figure = element('figure', { class: 'chart', data: { plot: plot.id ?? '' } },
     element('figcaption', {},
       element('span', { class: 'chart-title', text: plot.title }),
-      element('span', { class: 'chart-unit', text: plot.unit }), at),
-    element('div', { class: 'readings' }, ...values.map((entry) => entry.element)), area);
+      element('span', { class: 'chart-unit', text: plot.unit }),
+      ...values.map((entry) => entry.element), at), area);
 
   let x = null;
   let y = null;
@@ -59,7 +59,7 @@ export function createChart(plot, pick) {
   let hovered = null;
 
   function describeAt(value) {
-    at.textContent = value === null ? '' : `${plot.xName.split(' (')[0]} ${shortNumber(value, 4)}`;
+    at.textContent = hovered === null ? '' : `${plot.xName.split(' (')[0]} ${shortNumber(value, 4)}`;
     for (const { series, value: place } of values) {
       const k = value === null || series.xs.length === 0 ? -1 : closest(series.xs, value);
       place.textContent = k < 0 ? '' : shortNumber(series.ys[k]);
@@ -73,13 +73,14 @@ export function createChart(plot, pick) {
     pen.fillStyle = resolved('--muted');
     pen.textAlign = 'right';
     pen.textBaseline = 'middle';
-    for (const tick of y.ticks(Math.max(2, Math.floor((height - EDGE.top - EDGE.bottom) / 26)))) {
+    const levels = y.ticks(Math.max(2, Math.floor((height - EDGE.top - EDGE.bottom) / 17)));
+    for (const tick of levels) {
       const place = Math.round(y.place(tick)) + 0.5;
       pen.beginPath();
       pen.moveTo(EDGE.left, place);
       pen.lineTo(width - EDGE.right, place);
       pen.stroke();
-      pen.fillText(shortNumber(tick), EDGE.left - 6, place);
+      pen.fillText(tickText(tick, levels), EDGE.left - 6, place);
     }
     pen.textBaseline = 'top';
     const name = plot.xName;
@@ -87,9 +88,10 @@ export function createChart(plot, pick) {
     pen.textAlign = 'right';
     pen.fillText(name, width - EDGE.right, height - EDGE.bottom + 5);
     pen.textAlign = 'center';
-    for (const tick of x.ticks(Math.max(2, Math.floor((width - EDGE.left - EDGE.right) / 64)))) {
+    const columns = x.ticks(Math.max(2, Math.floor((width - EDGE.left - EDGE.right) / 64)));
+    for (const tick of columns) {
       const place = x.place(tick);
-      const text = shortNumber(tick, 4);
+      const text = tickText(tick, columns);
       if (place + pen.measureText(text).width / 2 > width - EDGE.right - nameWidth - 8) continue;
       pen.fillText(text, place, height - EDGE.bottom + 5);
     }
@@ -189,9 +191,10 @@ export function createChart(plot, pick) {
     /** @param {number|null} value x of the current frame */
     setNow(value) {
       now = value;
-      if (hovered === null) describeAt(now);
       placeCursors();
     },
+    /** Writes the values at the cursor. */
+    read() { if (hovered === null) describeAt(now); },
     dispose: () => watcher.disconnect(),
   };
 }

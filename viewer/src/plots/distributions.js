@@ -6,17 +6,20 @@ const MOST_STEPS = 400;
 
 /**
  * @param {(number|null)[]} values
- * @returns {{xs: number[], ys: number[]}} values and the share (%) of all that do not exceed them
+ * @returns {{xs: number[], ys: number[]}} a staircase: values, and the share (%) of all below and up to them
  */
 export function cumulative(values) {
   const sorted = values.filter((value) => value !== null && Number.isFinite(value)).sort((a, b) => a - b);
   const steps = Math.min(sorted.length, MOST_STEPS);
   const xs = [];
   const ys = [];
+  let share = 0;
   for (let k = 1; k <= steps; ++k) {
     const count = Math.round((k * sorted.length) / steps);
-    xs.push(sorted[count - 1]);
-    ys.push((100 * count) / sorted.length);
+    xs.push(sorted[count - 1], sorted[count - 1]);
+    const next = (100 * count) / sorted.length;
+    ys.push(share, next);
+    share = next;
   }
   return { xs, ys };
 }

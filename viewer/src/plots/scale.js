@@ -1,4 +1,5 @@
 // Scales of plots: values to places, and the ticks in between.
+import { shortNumber } from '../format.js';
 
 /** Round steps (1, 2 or 5 times a power of ten) so that there are at most `most` of them. */
 export function roundStep(span, most) {
@@ -21,12 +22,20 @@ function logTicks(low, high, most) {
   const stride = Math.max(1, Math.ceil((last - first + 1) / most));
   const ticks = [];
   for (let k = first; k <= last; k += stride) ticks.push(10 ** k);
-  // Within one decade powers of ten do not tell where one is.
-  if (ticks.length < 2) {
-    const factors = [1, 2, 5].flatMap((factor) => [first - 1, first, last].map((power) => factor * 10 ** power));
-    return [...new Set(factors)].filter((tick) => tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9)).sort((a, b) => a - b);
-  }
-  return ticks;
+  // Within one or two decades powers of ten do not tell where one is.
+  if (ticks.length >= 3) return ticks;
+  const between = [first - 1, first, first + 1].flatMap((power) => [1, 2, 5].map((factor) => Number((factor * 10 ** power).toPrecision(1))));
+  const inside = between.filter((tick) => tick >= low * (1 - 1e-9) && tick <= high * (1 + 1e-9));
+  if (inside.length > most) return ticks;
+  return inside.length >= 2 ? inside : linearTicks(low, high, most, false);
+}
+
+/** A tick's text: as many decimals as the ticks need to differ. */
+export function tickText(tick, ticks) {
+  const step = ticks.length > 1 ? Math.min(...ticks.slice(1).map((value, k) => Math.abs(value - ticks[k]))) : Math.abs(tick);
+  const size = Math.max(...ticks.map(Math.abs));
+  const digits = step > 0 && size > 0 ? Math.ceil(Math.log10(size / step) + 1e-9) + 1 : 3;
+  return shortNumber(tick, Math.min(8, Math.max(3, digits)));
 }
 
 /**

@@ -1,7 +1,7 @@
 // The ways of the runs and of the ground truth: what is driven is strong, what is to come is pale.
 import { Group } from 'three';
 import { rgb } from '../colour/maps.js';
-import { frameCount, lastNotAbove, poseOf } from '../runs.js';
+import { frameCount, poseOf } from '../runs.js';
 import { createSegments } from './segments.js';
 
 /**
@@ -24,18 +24,11 @@ export function pathSegments(poses, count, origin) {
   return { ends, until };
 }
 
-function createPath(poses, count, origin, colour, { width, opacity, pale }) {
+function createPath(poses, count, origin, colour, look) {
   const { ends, until } = pathSegments(poses, count, origin);
-  const colours = until.flatMap(() => rgb(colour).map((value) => value / 255));
-  const whole = createSegments({ width, opacity: pale });
-  const driven = createSegments({ width, opacity });
-  whole.show(ends, colours);
-  driven.show(ends, colours);
-  return {
-    object: new Group().add(whole.object, driven.object),
-    drive: (frame) => driven.limit(lastNotAbove(until, frame) + 1),
-    dispose: () => { whole.dispose(); driven.dispose(); },
-  };
+  const lines = createSegments(look);
+  lines.show(ends, until.flatMap(() => rgb(colour).map((value) => value / 255)), until);
+  return { object: lines.object, drive: lines.setNow, dispose: lines.dispose };
 }
 
 export function createPaths() {

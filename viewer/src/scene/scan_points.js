@@ -109,11 +109,21 @@ export function createScanPoints() {
     add('category', 1, Uint8Array);
   }
 
-  function fill(name, values) {
+  /** Puts `count` of the values, evenly picked, into an attribute. */
+  function fill(name, values, count) {
     const attribute = geometry.getAttribute(name);
-    attribute.array.set(values);
+    const width = attribute.itemSize;
+    const all = values.length / width;
+    if (count === all) {
+      attribute.array.set(values);
+    } else {
+      for (let k = 0; k < count; ++k) {
+        const from = width * Math.floor((k * all) / count);
+        for (let c = 0; c < width; ++c) attribute.array[width * k + c] = values[from + c];
+      }
+    }
     attribute.clearUpdateRanges();
-    attribute.addUpdateRange(0, values.length);
+    attribute.addUpdateRange(0, width * count);
     attribute.needsUpdate = true;
   }
 
@@ -121,18 +131,21 @@ export function createScanPoints() {
   return {
     object: points,
     reserve,
-    /** @param {import('../bytes.js').Scan|null} scan @param {number[]} objectIds of the frame's list */
-    show(scan, objectIds) {
+    /**
+     * @param {import('../bytes.js').Scan|null} scan
+     * @param {number[]} objectIds of the frame's list
+     * @param {number} [most] draws not more than so many of the points
+     */
+    show(scan, objectIds, most = Infinity) {
       points.visible = scan !== null && scan.count > 0;
       if (!points.visible) return;
+      const count = Math.min(scan.count, most);
       reserve(scan.count);
       if (categoryBuffer.length < scan.count) categoryBuffer = new Uint8Array(capacity);
-      fill('position', scan.positions);
-      fill('doppler', scan.doppler);
-      fill('compensated', scan.compensated);
-      fill('residual', scan.residual);
-      fill('category', categoriesOf(scan.label, objectIds, categoryBuffer.subarray(0, scan.count)));
-      geometry.setDrawRange(0, scan.count);
+      fill('position', scan.positions, count);
+      for (const name of ['doppler', 'compensated', 'residual']) fill(name, scan[name], count);
+      fill('category', categoriesOf(scan.label, objectIds, categoryBuffer.subarray(0, scan.count)), count);
+      geometry.setDrawRange(0, count);
     },
     /** @param {{source: number, map: string}} colouring @param {[number, number]} range */
     colourBy(colouring, range, ground) {

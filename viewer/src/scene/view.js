@@ -18,9 +18,13 @@ import { createPredictedPoints } from './predicted_points.js';
 import { createScanPoints } from './scan_points.js';
 import { createRings, createSensor, createStaticMap } from './surroundings.js';
 
-const KEPT_SCANS = 48;
+const KEPT_POINTS = 4e6; // decoded, 29 bytes each
+const KEPT_SCANS = [8, 64]; // but not fewer and not more
 const READ_AHEAD = 4;
 const MOST_PIXELS_PER_POINT = 2;
+// Where the processor draws: so many points while something moves, all of them once it rests (ms).
+const POINTS_IN_MOTION = 8000;
+const REST = 180;
 
 /** Whether lines are drawn by the processor: then every pixel counts. */
 function isSoftware(gl) {
@@ -34,7 +38,7 @@ function openContext(canvas) {
   if (!probe) return null;
   const software = isSoftware(probe);
   probe.getExtension('WEBGL_lose_context')?.loseContext();
-  const gl = canvas.getContext('webgl2', { antialias: !software, powerPreference: 'high-performance' });
+  const gl = canvas.getContext('webgl2', { alpha: false, antialias: !software, powerPreference: 'high-performance' });
   return gl && { gl, software };
 }
 
@@ -89,10 +93,12 @@ export function createView(report, store) {
   scene.add(paths.estimates, paths.truths, map.object, ...atScan, ...atFrame);
 
   const rig = createCameraRig(canvas, () => {
+    showPoints(true);
     draw();
     keepEye();
   });
-  const cache = createScanCache(readScan, KEPT_SCANS);
+  const largest = report.runs.reduce((most, run) => (run.scans?.points ?? []).reduce((a, b) => Math.max(a, b), most), 1);
+  const cache = createScanCache(readScan, Math.min(KEPT_SCANS[1], Math.max(KEPT_SCANS[0], Math.floor(KEPT_POINTS / largest))));
   let origin = [0, 0, 0];
   let heading = 0;
   let ground = 'light';
@@ -101,6 +107,8 @@ export function createView(report, store) {
   let tickets = 0;
   let waiting = false;
   let eyeTimer = 0;
+  let restTimer = 0;
+  let drawn = null; // the scan in the buffers, and whether it is all of it
 
   const keepEye = () => {
     clearTimeout(eyeTimer);
@@ -141,20 +149,36 @@ export function createView(report, store) {
     const run = runAt(report, store.state);
     const velocity = run.frames.ego_velocity.slice(3 * current.frame, 3 * current.frame + 3);
     sensor.show(velocity.every((value) => value !== null) ? velocity : null, cssColour('--ink'));
-    rings.show(groundHeight, cssColour('--rings'));
+  }
+
+  /** Puts the points of the current scan into the buffers: fewer while something moves and that would be slow. */
+  function showPoints(inMotion) {
+    const { scan, scanObjects } = current;
+    const most = context.software && inMotion && scan ? POINTS_IN_MOTION : Infinity;
+    const all = !scan || scan.count <= most;
+    if (drawn?.scan !== scan || drawn.all !== all) points.show(scan, scanObjects.map(({ id }) => id), most);
+    drawn = { scan, all };
+    clearTimeout(restTimer);
+    if (!all) {
+      restTimer = setTimeout(() => {
+        showPoints(false);
+        draw();
+      }, REST);
+    }
   }
 
   function showScan(run, place, scan) {
     const frame = place === null ? null : run.scans.frames[place];
     const listed = frame === null ? [] : (run.frames.objects[frame] ?? []).map(objectOf);
-    points.show(scan, listed.map(({ id }) => id));
-    predicted.show(scan, listed, place === null ? 0 : run.scans.dt[place] ?? 0);
     current.scanObjects = listed;
+    showPoints(true);
+    predicted.show(scan, listed, place === null ? 0 : run.scans.dt[place] ?? 0);
     if (scan && scan.count > 0) {
       // One height for a whole run, so that colours and rings do not jump.
       if (current.groundOf !== run) {
         groundHeight = quantile(scan.positions.filter((_, i) => i % 3 === 2), 0.05, -1.8);
         points.setGroundHeight(groundHeight);
+        rings.show(groundHeight, cssColour('--rings'));
         current.groundOf = run;
       }
     }
@@ -272,12 +296,13 @@ export function createView(report, store) {
   canvas.addEventListener('webglcontextrestored', draw);
 
   const start = () => {
-    points.reserve(Math.max(0, ...report.runs.flatMap((run) => run.scans?.points ?? [])));
+    points.reserve(largest);
     store.watch(['theme', 'systemTheme'], () => {
       ground = groundOf(store.state);
       renderer.setClearColor(new Color().setRGB(...cssColour('--scene', true)));
       predicted.setGround(ground);
       map.setGround(ground);
+      rings.show(groundHeight, cssColour('--rings'));
       drawObjectsIfAny();
       draw();
     });
