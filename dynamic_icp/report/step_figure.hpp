@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <vector>
 
+#include "dynamic_icp/datasets/dataset.hpp"
 #include "dynamic_icp/drawing/svg.hpp"
 #include "dynamic_icp/drawing/theme.hpp"
 #include "dynamic_icp/evaluation/object_error.hpp"
