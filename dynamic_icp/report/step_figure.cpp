@@ -29,9 +29,8 @@ using figures::RunFiles;
 constexpr double kWidth = 1120.0;  // px
 constexpr double kMargin = 20.0;
 constexpr double kHead = 48.0;  // above each panel: title and legend
-constexpr double kUpperHeight = 300.0;
 constexpr double kLowerHeight = 330.0;
-constexpr std::size_t kMostDots = 9000;  // of a panel
+constexpr std::size_t kMostDots = 5000;  // of a panel
 constexpr double kArrowSeconds = 1.0;
 
 constexpr std::size_t kMovingColour = 1;  // in the order of the theme: also "raw" and "target"
@@ -64,10 +63,12 @@ Region scene_region(const std::vector<ObjectRow>& objects) {
   constexpr double kFarthest_m = 45.0;
   Region region{{-3.0, 25.0}, {-8.0, 8.0}};
   for (const ObjectRow& object : objects) {
-    const Eigen::Vector3d& c = object.centroid;
-    if (c.allFinite() && c.norm() < kFarthest_m) {
-      region.x = {std::min(region.x.minimum, c.x() - 4.0), std::max(region.x.maximum, c.x() + 4.0)};
-      region.y = {std::min(region.y.minimum, c.y() - 4.0), std::max(region.y.maximum, c.y() + 4.0)};
+    for (const Eigen::Vector3d& c :
+         {object.centroid, Eigen::Vector3d(object.centroid + kArrowSeconds * object.velocity)}) {
+      if (c.allFinite() && c.norm() < kFarthest_m) {
+        region.x = {std::min(region.x.minimum, c.x() - 3.0), std::max(region.x.maximum, c.x() + 3.0)};
+        region.y = {std::min(region.y.minimum, c.y() - 3.0), std::max(region.y.maximum, c.y() + 3.0)};
+      }
     }
   }
   return region;
@@ -76,9 +77,9 @@ Region scene_region(const std::vector<ObjectRow>& objects) {
 /// A picture that grows panel by panel.
 class Sheet {
  public:
-  explicit Sheet(const drawing::Theme& theme)
+  Sheet(const drawing::Theme& theme, double upper_height)
       : theme_(theme),
-        svg_(kWidth, 2.0 * kHead + kUpperHeight + kLowerHeight + kMargin,
+        svg_(kWidth, 2.0 * kHead + upper_height + kLowerHeight + kMargin,
              "The steps from a scan with Doppler to two aligned scans, from above") {
     svg_.rectangle({0.0, 0.0, svg_.width(), svg_.height()}, {.fill = theme.background}, 10.0);
   }
@@ -244,11 +245,12 @@ ScanPair read_pair(const RunFiles& run, const datasets::Dataset& recording, std:
 
 drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawing::Theme& theme) {
   const std::vector<ObjectRow>& objects = run.objects[pair.source];
-  Sheet sheet(theme);
   const double upper_width = (kWidth - 4.0 * kMargin) / 3.0;
   const Region scene = scene_region(objects);
+  const double upper_height = std::clamp(upper_width * scene.y.length() / scene.x.length(), 180.0, 340.0);
+  Sheet sheet(theme, upper_height);
   const auto upper = [&](int column) {
-    return panel({kMargin + column * (upper_width + kMargin), kHead, upper_width, kUpperHeight}, scene);
+    return panel({kMargin + column * (upper_width + kMargin), kHead, upper_width, upper_height}, scene);
   };
   draw_doppler(sheet, upper(0), run, pair, theme);
   draw_filter(sheet, upper(1), run, pair, theme);
@@ -264,32 +266,31 @@ drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawin
     middle = T_target_source * objects[focus].centroid;
   }
   const double lower_width = (kWidth - 3.0 * kMargin) / 2.0;
-  const double lower_top = 2.0 * kHead + kUpperHeight;
+  const double lower_top = 2.0 * kHead + upper_height;
   const auto lower = [&](int column, double half_m) {
     return panel({kMargin + column * (lower_width + kMargin), lower_top, lower_width, kLowerHeight},
                  {{middle.x() - half_m, middle.x() + half_m}, {middle.y() - 0.5 * half_m, middle.y() + 0.5 * half_m}});
   };
-  const auto is_object = [](const ShownScan& scan) {
-    return [&scan](std::size_t i) { return scan.labels[i] >= kFirstObject; };
-  };
+  const auto is_largest = [&](std::size_t i) { return pair.source_scan.labels[i] == kFirstObject + focus; };
   const std::vector<Eigen::Vector3d> all_predicted = predicted(pair.source_scan, objects, dt_s);
-  std::vector<Eigen::Vector3d> predicted_objects;
+  std::vector<Eigen::Vector3d> predicted_object;
   for (std::size_t i = 0; i < all_predicted.size(); ++i) {
-    if (is_object(pair.source_scan)(i)) {
-      predicted_objects.push_back(all_predicted[i]);
+    if (is_largest(i)) {
+      predicted_object.push_back(all_predicted[i]);
     }
   }
-  constexpr double kCloseUp_m = 5.0;
+  constexpr double kCloseUp_m = 3.5;
   sheet.begin(
       lower(0, kCloseUp_m), "4  Prediction of the largest object",
       {{"raw", theme.series[kMovingColour]}, {"predicted", theme.series[kGoodColour]}, {"next scan", theme.muted}});
-  sheet.points(points_where(pair.target_scan, is_object(pair.target_scan)), theme.muted, 3.4);
-  sheet.points(moved(points_where(pair.source_scan, is_object(pair.source_scan)), T_target_source),
-               theme.series[kMovingColour], 2.6);
-  sheet.points(moved(predicted_objects, T_target_source), theme.series[kGoodColour], 2.6);
+  sheet.points(
+      points_where(pair.target_scan, [&](std::size_t i) { return pair.target_scan.labels[i] >= kFirstObject; }),
+      theme.muted, 4.4);
+  sheet.points(moved(points_where(pair.source_scan, is_largest), T_target_source), theme.series[kMovingColour], 3.0);
+  sheet.points(moved(predicted_object, T_target_source), theme.series[kGoodColour], 3.0);
   sheet.end();
 
-  constexpr double kAround_m = 16.0;
+  constexpr double kAround_m = 14.0;
   sheet.begin(lower(1, kAround_m), "5  Aligned scans",
               {{"target", theme.series[kMovingColour]}, {"source, predicted and aligned", theme.series[kGoodColour]}});
   sheet.points(pair.target_scan.points, theme.series[kMovingColour], 3.0);
