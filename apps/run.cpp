@@ -258,7 +258,7 @@ void process_scans(const datasets::Dataset& dataset, const ScanSelection& select
 void try_to_report(const fs::path& folder, const RunOptions& options) {
   try {
     write_report(folder, folder / "report.html", options.method.threads);
-  } catch (const DataError& error) {
+  } catch (const std::exception& error) {
     fmt::print(stderr, "dynamic-icp: warning: no report.html: {}\n", error.what());
   }
 }

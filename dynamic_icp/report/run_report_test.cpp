@@ -207,6 +207,34 @@ TEST(RunReport, NamesWhatIsMissingOrCutOff) {
   }
 }
 
+TEST(RunReport, NumbersThatNobodyMeasuredAreNoReasonToFail) {
+  const std::pair<const char*, const char*> faults[] = {
+      {"frames.jsonl", R"("linear":[10,0,0])"},       {"frames.jsonl", R"("angular":[0,0,0])"},
+      {"frames.jsonl", R"("ego_velocity":[10,0,0])"}, {"objects.jsonl", R"("velocity":[15,0,0])"},
+      {"objects.jsonl", R"("extent":[4,2,1.5])"},     {"frames.jsonl", R"("points":3000)"},
+      {"frames.jsonl", R"("points_used":3000)"},      {"frames.jsonl", R"("index":1)"}};
+  for (const bool save_labels : {true, false}) {
+    for (const auto& [file, text] : faults) {
+      for (const char* number : {"1e300", "-1e300", "null", "-1"}) {
+        const figures::TestFolder folder;
+        WallDrive drive;
+        drive.sweep_s = 0.09;
+        drive.save_labels = save_labels;
+        drive.write(folder);
+        const std::string key = std::string(text).substr(0, std::string(text).find(':') + 1);
+        const bool is_vector = std::string(text).back() == ']';
+        const bool is_whole = key == "\"index\":";
+        replace(folder, std::string("run/") + file, text,
+                key + (is_vector  ? fmt::format("[{0},{0},{0}]", number)
+                       : is_whole ? "123456"
+                                  : number));
+        const ReadPage page = read_page(html_of(folder));
+        EXPECT_EQ(page.report["runs"][0]["frames"]["index"].size(), drive.frames) << text << number;
+      }
+    }
+  }
+}
+
 TEST(RunReport, TakesRunsOfAVersionThatSaidLess) {
   const figures::TestFolder folder;
   WallDrive().write(folder);

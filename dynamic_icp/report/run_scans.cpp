@@ -105,12 +105,18 @@ double seconds_to_next(const RunFiles& run, std::size_t frame) {
                          : run.seconds(frame) - run.seconds(frame - 1);
 }
 
+/// The number of points that a frame says it has; 0 for what is no number of points.
+std::size_t points_of(const figures::FrameRow& frame) {
+  constexpr double kMost = 1e9;
+  return frame.points >= 0.0 && frame.points < kMost ? static_cast<std::size_t>(frame.points) : 0;
+}
+
 KeptScan keep(const RunFiles& run, std::size_t frame, const ShownScan& scan, std::size_t count) {
   const std::vector<std::uint32_t> rows = rows_to_keep(scan, count);
   return {.frame = frame,
           .dt_s = seconds_to_next(run, frame),
           .points = rows.size(),
-          .of = static_cast<std::size_t>(run.frames[frame].points),
+          .of = points_of(run.frames[frame]),
           .whole = rows.size() == scan.size(),
           .blob = blob(scan_bytes(select(scan, rows)))};
 }
@@ -266,7 +272,7 @@ RunScans keep_scans(const RunFiles& run, const std::optional<figures::RunTruth>&
   }
   std::vector<std::size_t> points_of_scans;
   for (const figures::FrameRow& frame : run.frames) {
-    points_of_scans.push_back(static_cast<std::size_t>(frame.points));
+    points_of_scans.push_back(points_of(frame));
   }
   std::vector<std::size_t> whole;
   for (const auto& [frame, scan] : kept) {

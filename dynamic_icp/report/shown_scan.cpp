@@ -154,6 +154,17 @@ void put_objects_at_stamp(const RunFiles& run, std::size_t frame, const std::vec
   }
 }
 
+/// Motions that nobody made, in a damaged file, must not carry points to where they cannot be shown.
+ShownScan within_reach(const ShownScan& scan) {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t row = 0; row < scan.size(); ++row) {
+    if (scan.points[row].norm() <= kFarthestShown_m) {
+      rows.push_back(row);
+    }
+  }
+  return rows.size() == scan.size() ? scan : select(scan, rows);
+}
+
 }  // namespace
 
 ShownScan select(const ShownScan& scan, std::span<const std::uint32_t> rows) {
@@ -192,7 +203,7 @@ ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, 
   }
   shown.doppler = scan.doppler();
   shown.residual.assign(scan.size(), std::numeric_limits<double>::quiet_NaN());
-  return shown;
+  return within_reach(shown);
 }
 
 }  // namespace dynamic_icp::report
