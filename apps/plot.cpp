@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -14,8 +15,11 @@
 #include "dynamic_icp/figures/run_figures.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/report/run_facts.hpp"
+#include "dynamic_icp/report/step_figure.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/svg_to_png.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -23,10 +27,13 @@ namespace {
 namespace fs = std::filesystem;
 
 struct PlotOptions {
-  std::string run_folder;
+  std::vector<std::string> folders;
   std::string output;
   std::optional<std::int64_t> frame;
+  std::optional<std::int64_t> pair;
   std::string theme = "light";
+  std::string format = "svg";
+  double scale = 2.0;
 };
 
 drawing::Theme theme_of(const std::string& name) {
@@ -36,23 +43,100 @@ drawing::Theme theme_of(const std::string& name) {
   return drawing::theme(name == "light" ? drawing::Ground::kLight : drawing::Ground::kDark);
 }
 
-int plot(const PlotOptions& options) {
-  const drawing::Theme theme = theme_of(options.theme);
+/// What is drawn, and what was left out.
+struct Pictures {
+  std::vector<figures::Figure> figures;
+  std::vector<std::string> notes;
+};
+
+drawing::Svg steps_of_pair(const figures::RunFiles& run, std::int64_t source, const drawing::Theme& theme) {
+  if (source < 0) {
+    throw UsageError(fmt::format("--pair is {}, expected 0 or more", source));
+  }
+  std::vector<std::string> notes;
+  const std::unique_ptr<datasets::Dataset> recording = figures::open_recording(run, notes);
+  if (recording == nullptr) {
+    throw DataError(notes.back());
+  }
+  return report::step_figure(run, report::read_pair(run, *recording, static_cast<std::size_t>(source), Workers()),
+                             theme);
+}
+
+Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme) {
   if (options.frame && *options.frame < 0) {
     throw UsageError(fmt::format("--frame is {}, expected 0 or more", *options.frame));
   }
-  const figures::RunFiles run = figures::read_run(options.run_folder);
+  const figures::RunFiles run = figures::read_run(options.folders.front());
   const std::optional<std::size_t> frame =
       options.frame ? std::optional(static_cast<std::size_t>(*options.frame)) : std::nullopt;
   const figures::RunContext context = figures::read_context(run, frame);
-  const fs::path folder = options.output.empty() ? run.folder / "plots" : fs::path(options.output);
-  formats::make_folder(folder);
-  for (const figures::Figure& figure : figures::draw_figures(run, context, theme)) {
-    const fs::path file = folder / (figure.name + ".svg");
-    formats::write_whole_file(file, figure.svg.document());
-    fmt::print("{}\n", file.string());
+  Pictures pictures{figures::draw_figures(run, context, theme), context.notes};
+  if (options.pair) {
+    pictures.figures.push_back({"steps", steps_of_pair(run, *options.pair, theme)});
   }
-  for (const std::string& note : context.notes) {
+  return pictures;
+}
+
+/// Paths can be drawn over each other when they are of the same drive and begin with the same scan.
+void check_comparable(const std::vector<figures::RunFiles>& runs) {
+  for (const figures::RunFiles& run : runs) {
+    const std::string input = figures::text_of(runs.front().run, "input.path");
+    if (figures::text_of(run.run, "input.path") != input || run.frames.empty() || runs.front().frames.empty() ||
+        run.frames.front().index != runs.front().frames.front().index) {
+      throw UsageError(
+          fmt::format("{} and {} are no runs over the same recording from the same scan on: they cannot be "
+                      "drawn over each other",
+                      runs.front().folder.string(), run.folder.string()));
+    }
+  }
+}
+
+Pictures pictures_of_runs(const PlotOptions& options, const drawing::Theme& theme) {
+  if (options.frame || options.pair) {
+    throw UsageError("--frame and --pair are for the pictures of one run");
+  }
+  std::vector<figures::RunFiles> runs;
+  for (const std::string& folder : options.folders) {
+    runs.push_back(figures::read_run(folder));
+  }
+  check_comparable(runs);
+  const std::vector<std::string> names = report::telling_names(runs);
+  Pictures pictures;
+  std::vector<figures::ComparedRun> compared;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    std::vector<std::string> notes;
+    const std::unique_ptr<datasets::Dataset> recording = figures::open_recording(runs[k], notes);
+    std::optional<figures::RunTruth> truth = figures::read_truth(runs[k], recording.get(), notes);
+    compared.push_back({names[k], std::move(runs[k]), std::move(truth)});
+  }
+  pictures.figures = figures::draw_comparison(compared, theme);
+  return pictures;
+}
+
+int plot(const PlotOptions& options) {
+  const drawing::Theme theme = theme_of(options.theme);
+  const bool with_png = options.format != "svg";
+  if (with_png) {
+    require_png();
+  }
+  const Pictures pictures =
+      options.folders.size() == 1 ? pictures_of_run(options, theme) : pictures_of_runs(options, theme);
+  const fs::path folder =
+      options.output.empty() ? fs::path(options.folders.front()) / "plots" : fs::path(options.output);
+  formats::make_folder(folder);
+  const auto write = [&](const std::string& name, const std::string& content) {
+    formats::write_whole_file(folder / name, content);
+    fmt::print("{}\n", (folder / name).string());
+  };
+  for (const figures::Figure& figure : pictures.figures) {
+    if (options.format != "png") {
+      write(figure.name + ".svg", figure.svg.document());
+    }
+    if (with_png) {
+      write(figure.name + ".png", png_of_svg(figure.svg.document(), options.scale));
+    }
+  }
+  for (const std::string& note : pictures.notes) {
     fmt::print("note: {}\n", note);
   }
   return 0;
@@ -62,16 +146,35 @@ int plot(const PlotOptions& options) {
 
 void add_plot_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<PlotOptions>();
-  CLI::App* command = app.add_subcommand("plot", "Draw trajectory, errors, speed and a scan of a run as SVG");
-  command->add_option("DIR", options->run_folder, "Folder of a run")->required();
-  command->add_option("--output", options->output, "Folder for the pictures (default: DIR/plots)")->type_name("DIR2");
+  CLI::App* command = app.add_subcommand("plot", "Draw trajectory, errors, speed and a scan of a run, or several runs");
+  command
+      ->add_option("DIR", options->folders,
+                   "Folder of a run; of several over the same recording: trajectories, errors, iterations and times in "
+                   "common pictures")
+      ->required();
+  command->add_option("--output", options->output, "Folder for the pictures (default: plots in the first DIR)")
+      ->type_name("DIR2");
   command
       ->add_option("--frame", options->frame,
                    "Which scan to draw: line of frames.jsonl, counted from 0 (default: the one with most points on "
                    "moving objects)")
       ->type_name("N");
+  command
+      ->add_option("--pair", options->pair,
+                   "Also draw the steps from this scan to its alignment with the next one, as --frame counts them: "
+                   "steps.svg (runs with --save-labels show the points as the method sorted them)")
+      ->type_name("N");
   command->add_option("--theme", options->theme, "Background of the pictures: light or dark (default light)")
       ->type_name("NAME");
+  command->add_option("--format", options->format, "Files to write: svg, png or both (default svg)")
+      ->type_name("NAME")
+      ->check(CLI::IsMember({"svg", "png", "both"}));
+  command
+      ->add_option(
+          "--scale", options->scale,
+          fmt::format("Pixels of a PNG file for each px of the SVG one, 0.25 to 8 (default {})", options->scale))
+      ->type_name("F")
+      ->check(CLI::Range(0.25, 8.0));
   command->callback([options, &selected] { selected = [options] { return plot(*options); }; });
 }
 

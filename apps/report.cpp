@@ -1,50 +1,135 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "dynamic_icp/figures/report_page.hpp"
-#include "dynamic_icp/figures/run_context.hpp"
-#include "dynamic_icp/figures/run_folder.hpp"
+#include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/report/comparison_report.hpp"
+#include "dynamic_icp/report/run_report.hpp"
+#include "dynamic_icp/report/viewer_bundle.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/number_list.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kBytesPerMb = 1e6;
+
 struct ReportOptions {
-  std::string run_folder;
+  std::vector<std::string> folders;
   std::string output;
+  std::optional<double> budget_mb;
+  std::string frames;
+  int threads = 0;
 };
 
-int report(const ReportOptions& options) {
-  const fs::path html =
-      options.output.empty() ? fs::path(options.run_folder) / "report.html" : fs::path(options.output);
-  write_report(options.run_folder, html);
+report::ViewerBundle required_viewer() {
+  const std::optional<report::ViewerBundle> viewer = report::viewer_bundle();
+  if (!viewer) {
+    throw DataError(
+        "this program was built without the viewer that draws the page: run scripts/install_viewer.sh in the folder of "
+        "the "
+        "sources (it needs node and npm, and runs 'npm ci' in viewer), then configure and build again");
+  }
+  return *viewer;
+}
+
+report::ScanChoice scan_choice(const ReportOptions& options) {
+  report::ScanChoice choice;
+  if (options.budget_mb) {
+    choice.budget_bytes = static_cast<std::size_t>(*options.budget_mb * kBytesPerMb);
+  }
+  choice.choose_whole = options.frames.empty();
+  choice.whole = number_list("--frames", options.frames);
+  return choice;
+}
+
+bool is_comparison(const ReportOptions& options) { return options.folders.size() > 1; }
+
+fs::path destination(const ReportOptions& options) {
+  if (!options.output.empty()) {
+    return options.output;
+  }
+  const fs::path first = options.folders.front();
+  return is_comparison(options)
+             ? fs::absolute(first / "").lexically_normal().parent_path().parent_path() / "comparison.html"
+             : first / "report.html";
+}
+
+report::PageContent content_of(const ReportOptions& options) {
+  const std::vector<fs::path> folders(options.folders.begin(), options.folders.end());
+  const bool any_is_benchmark = std::any_of(folders.begin(), folders.end(), report::is_benchmark_folder);
+  if (!is_comparison(options) && !any_is_benchmark) {
+    return report::run_report(folders.front(), scan_choice(options), Workers(options.threads));
+  }
+  if (options.budget_mb || !options.frames.empty()) {
+    throw UsageError("--budget-mb and --frames are for the report of one run: others show no scans");
+  }
+  if (!is_comparison(options)) {
+    return report::benchmark_report(folders.front());
+  }
+  if (any_is_benchmark) {
+    throw UsageError("a benchmark folder has a report of its own, it cannot be one of several");
+  }
+  return report::comparison_report(folders);
+}
+
+int write_page(const ReportOptions& options) {
+  const report::ViewerBundle viewer = required_viewer();
+  const fs::path html = destination(options);
+  formats::write_whole_file(html, report::html_page(content_of(options), viewer));
   fmt::print("{}\n", fs::absolute(html).lexically_normal().string());
   return 0;
 }
 
 }  // namespace
 
-void write_report(const fs::path& run_folder, const fs::path& html) {
-  const figures::RunFiles run = figures::read_run(run_folder);
-  formats::write_whole_file(html, figures::report_page(run, figures::read_context(run)));
+void write_report(const fs::path& run_folder, const fs::path& html, int threads) {
+  const report::ViewerBundle viewer = required_viewer();
+  formats::write_whole_file(html, report::html_page(report::run_report(run_folder, {}, Workers(threads)), viewer));
 }
 
 void add_report_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<ReportOptions>();
-  CLI::App* command = app.add_subcommand("report", "Make one self-contained HTML page of a run");
-  command->add_option("DIR", options->run_folder, "Folder of a run")->required();
-  command->add_option("--output", options->output, "File to write (default: DIR/report.html)")->type_name("FILE");
-  command->callback([options, &selected] { selected = [options] { return report(*options); }; });
+  CLI::App* command =
+      app.add_subcommand("report", "Make one self-contained HTML page of a run, of several, or of a benchmark");
+  command
+      ->add_option("DIR", options->folders,
+                   "Folder of a run; several are compared; or the one of a benchmark, with its tables and all its runs")
+      ->required();
+  command
+      ->add_option("--output", options->output,
+                   "File to write (default: DIR/report.html; of several runs comparison.html beside the first one)")
+      ->type_name("FILE");
+  command
+      ->add_option(
+          "--budget-mb", options->budget_mb,
+          fmt::format("Size that scans and map may have in the page, 0.1 to 2000 MB (default {} MB); scans are "
+                      "thinned to it",
+                      static_cast<double>(report::ScanChoice().budget_bytes) / kBytesPerMb))
+      ->type_name("MB")
+      ->check(CLI::Range(0.1, 2000.0));
+  command
+      ->add_option(
+          "--frames", options->frames,
+          "Scans to keep whole whatever the budget, as lines of frames.jsonl counted from 0: 10,20-25 (default: "
+          "a few telling ones as the budget allows)")
+      ->type_name("LIST");
+  command->add_option("--threads", options->threads, "Most threads to use, 0: all processors (default 0)")
+      ->type_name("N")
+      ->check(CLI::NonNegativeNumber);
+  command->callback([options, &selected] { selected = [options] { return write_page(*options); }; });
 }
 
 }  // namespace dynamic_icp::apps

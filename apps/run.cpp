@@ -254,6 +254,15 @@ void process_scans(const datasets::Dataset& dataset, const ScanSelection& select
   }
 }
 
+/// A page that cannot be made is no reason to lose the run.
+void try_to_report(const fs::path& folder, const RunOptions& options) {
+  try {
+    write_report(folder, folder / "report.html", options.method.threads);
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "dynamic-icp: warning: no report.html: {}\n", error.what());
+  }
+}
+
 int run(const RunOptions& options) {
   const odometry::Config config = make_config(options.method);
   Findings findings{{{}, options.quiet}, {}, {}, {}, make_map(options)};
@@ -281,12 +290,12 @@ int run(const RunOptions& options) {
   for (const std::string& doubt : findings.recording.warnings) {
     findings.warnings.add(doubt);
   }
-  results::RunWriter writer(output.path(), options.save_labels);
+  results::RunWriter writer(output.path(), options.save_labels || options.report);
   process_scans(*dataset, selection, *odometry, writer, findings);
   const results::RunSummary summary = writer.finish(options.method.method, truth, findings.assumptions,
                                                     run_json(options, *dataset, config, truth_file, findings));
   if (options.report) {
-    write_report(output.path(), output.path() / "report.html");
+    try_to_report(output.path(), options);
   }
   if (findings.map) {
     findings.map->write(map_file);
@@ -330,7 +339,8 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
                       results::MapWriter::kMinVoxelSize_m, results::MapWriter::kMaxVoxelSize_m, options->map_voxel_m))
       ->type_name("M")
       ->needs(save_map);
-  command->add_flag("--report", options->report, "Write report.html into the results");
+  command->add_flag("--report", options->report,
+                    "Write report.html into the results, and the labels that it shows (--save-labels)");
   command->add_flag("--force", options->force, "Replace an earlier run in DIR");
   command->add_flag("--quiet", options->quiet, "Print errors only");
   add_method_options(*command, options->method);

@@ -5,6 +5,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh
+scripts/install_viewer.sh
 
 echo "== Building build/dynamic-icp"
 cmake --preset release -DDYNAMIC_ICP_BUILD_TESTS=OFF >build-log.txt 2>&1 || { cat build-log.txt; exit 1; }
@@ -20,4 +21,4 @@ fi
 
 echo "== Running Dynamic-ICP on it"
 build/dynamic-icp run "$drive" --output "$run" --save-labels --report --force
-echo "report       $PWD/$run/report.html"
+[[ ! -e $run/report.html ]] || echo "report       $PWD/$run/report.html"

@@ -1,18 +1,22 @@
 #!/usr/bin/env bash
 # Installs the packages the build needs, if any is missing. For Debian 12, Ubuntu 22.04 and newer; as root or with sudo.
-# usage: scripts/install_dependencies.sh [tests] [benchmarks [peers]] [fuzzing]
+# usage: scripts/install_dependencies.sh [tests] [pictures] [benchmarks [peers]] [fuzzing]
+#   pictures     for PNG files from dynamic-icp plot (60 MB)
 #   benchmarks   for scripts/benchmark_speed.sh; peers: also the libraries it compares with (1.2 GB)
 set -euo pipefail
 
 optional=()
 packages=(g++ cmake ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
-  libpng-dev libembree-dev libzip-dev)
+  libpng-dev libembree-dev libzip-dev zlib1g-dev)
 for purpose in "$@"; do
   case $purpose in
     tests)
       packages+=(libgtest-dev)
-      # An independent implementation to compare with, and random tests; not in every release.
-      optional+=(python3-open3d librapidcheck-dev) ;;
+      # An independent implementation to compare with, random tests, and a browser for the viewer of reports; not in
+      # every release.
+      optional+=(python3-open3d librapidcheck-dev chromium) ;;
+    pictures)
+      packages+=(librsvg2-dev pkg-config) ;;
     benchmarks)
       packages+=(libbenchmark-dev)
       optional+=(libnanoflann-dev) ;;
@@ -21,7 +25,7 @@ for purpose in "$@"; do
     fuzzing)
       packages+=(clang) ;;
     *)
-      echo "unknown purpose '$purpose'; known are: tests, benchmarks, peers, fuzzing" >&2
+      echo "unknown purpose '$purpose'; known are: tests, pictures, benchmarks, peers, fuzzing" >&2
       exit 2 ;;
   esac
 done

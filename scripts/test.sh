@@ -7,6 +7,7 @@ set -euo pipefail
 cd "$(dirname "$0")/.."
 
 scripts/install_dependencies.sh tests
+scripts/install_viewer.sh tests
 
 configure() {  # preset
   echo "== Configuring and building ($1)"
@@ -26,7 +27,7 @@ if [[ "${1:-}" == sanitizers ]]; then
   configure asan
   cmake --build --preset asan
   run_tests asan
-  threaded_rooms=(base preprocess ego_motion dynamics registration odometry simulation)
+  threaded_rooms=(base preprocess ego_motion dynamics registration odometry simulation report)
   configure tsan
   cmake --build --preset tsan --target $(printf 'dynamic_icp_%s_test ' "${threaded_rooms[@]}")
   run_tests tsan -R "^($(IFS='|'; echo "${threaded_rooms[*]}"))\\."

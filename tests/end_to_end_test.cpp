@@ -7,6 +7,7 @@
 #include <cstring>
 #include <set>
 #include <sstream>
+#include <tuple>
 #include <vector>
 
 #include <nlohmann/json.hpp>
@@ -373,14 +374,74 @@ TEST_F(EndToEnd, InfoTellsTheSignOfTheDoppler) {
   EXPECT_NE(outcome.text.find("10.00 Hz"), std::string::npos) << outcome.text;
 }
 
-TEST_F(EndToEnd, ReportAndPlotsAreMadeFromARun) {
-  run_and_summarise(street().string() + " --report --save-labels");
-  EXPECT_GT(read_file(folder_ / "out" / "report.html").size(), 10'000u);
+TEST_F(EndToEnd, ReportsShowRunsAloneAndTogether) {
+  const std::string out = (folder_ / "out").string();
+  const Outcome run = run_program("run " + street().string() + " --report --quiet --output " + out);
+  ASSERT_EQ(run.status, 0) << run.text;
+  EXPECT_TRUE(fs::exists(folder_ / "out" / "labels" / "00001.bin")) << "what the page shows is there for the next one";
+  const Outcome single = run_program("report --budget-mb 1 --frames 1-2 " + out);
+  const Outcome both = run_program("report " + out + " " + out);
+  if (!fs::exists(folder_ / "out" / "report.html")) {
+    EXPECT_NE(run.text.find("no report.html: this program was built without the viewer"), std::string::npos)
+        << run.text;
+    EXPECT_EQ(single.status, 1) << single.text;
+    EXPECT_NE(single.text.find("install_viewer.sh"), std::string::npos) << single.text;
+    EXPECT_EQ(both.status, 1) << both.text;
+    GTEST_SKIP() << "built without the viewer";
+  }
+  EXPECT_EQ(run.text, "");
+  EXPECT_EQ(single.status, 0) << single.text;
+  EXPECT_EQ(both.status, 0) << both.text;
+  const std::string page = read_file(folder_ / "out" / "report.html");
+  EXPECT_LT(page.size(), 4'000'000u) << "scans of 1 MB, the viewer, and the path";
+  EXPECT_NE(page.find("<script type=\"text/plain\" id=\"scan-0-0\">"), std::string::npos);
+  const std::string compared = read_file(folder_ / "comparison.html");
+  EXPECT_NE(compared.find("\"kind\":\"comparison\""), std::string::npos);
+}
+
+TEST_F(EndToEnd, ReportRefusesWhatItCannotShow) {
+  run_and_summarise(street().string() + " --save-labels");
+  const std::string out = (folder_ / "out").string();
+  if (run_program("report " + out).status != 0) {
+    GTEST_SKIP() << "built without the viewer";
+  }
+  const std::tuple<std::string, int, std::string> cases[] = {
+      {out + " --frames 1-", 2, "--frames is '1-'"},
+      {out + " --frames 3-1", 2, "--frames is '3-1'"},
+      {out + " --frames 1,,2", 2, "--frames is '1,,2'"},
+      {out + " --frames 100000", 2, "--frames names 100000"},
+      {out + " --budget-mb 0", 2, "--budget-mb"},
+      {out + " " + out + " --frames 1", 2, "are for the report of one run"},
+      {street().string(), 1, "run.json: no such file"},
+      {out + " " + street().string(), 1, "run.json: no such file"},
+      {"", 2, "DIR"}};
+  for (const auto& [arguments, status, text] : cases) {
+    const Outcome outcome = run_program("report " + arguments);
+    EXPECT_EQ(outcome.status, status) << arguments << outcome.text;
+    EXPECT_NE(outcome.text.find(text), std::string::npos) << arguments << ": " << outcome.text;
+  }
+}
+
+TEST_F(EndToEnd, PlotsAreMadeFromARun) {
+  run_and_summarise(street().string() + " --save-labels");
   const Outcome plots = run_program("plot " + (folder_ / "out").string());
   ASSERT_EQ(plots.status, 0) << plots.text;
   for (const char* name : {"trajectory.svg", "errors.svg", "speed.svg", "scan.svg"}) {
     EXPECT_TRUE(read_file(folder_ / "out" / "plots" / name).find("<svg") != std::string::npos) << name;
   }
+  const std::string out = (folder_ / "out").string();
+  const Outcome both = run_program("plot " + out + " " + out + " --output " + (folder_ / "both").string());
+  ASSERT_EQ(both.status, 0) << both.text;
+  EXPECT_TRUE(fs::exists(folder_ / "both" / "trajectory.svg") && fs::exists(folder_ / "both" / "errors.svg"));
+  const Outcome png = run_program("plot " + out + " --format png --scale 1 --output " + (folder_ / "png").string());
+  if (png.status == 0) {
+    EXPECT_EQ(read_file(folder_ / "png" / "trajectory.png").substr(1, 3), "PNG");
+    EXPECT_FALSE(fs::exists(folder_ / "png" / "trajectory.svg"));
+  } else {
+    EXPECT_EQ(png.status, 1);
+    EXPECT_NE(png.text.find("built without librsvg"), std::string::npos) << png.text;
+  }
+  EXPECT_EQ(run_program("plot " + out + " --format gif").status, 2);
 }
 
 TEST_F(EndToEnd, RecordedRadarScans) {

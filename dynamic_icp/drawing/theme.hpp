@@ -11,7 +11,7 @@
 namespace dynamic_icp::drawing {
 
 /// Every colour a picture uses, as CSS takes them. The drawing functions know no other colours, so one function draws
-/// for paper, for a dark background and for a page that follows its reader's preference.
+/// for paper and for a dark background.
 struct Theme {
   std::string background;  ///< behind the whole picture
   std::string panel;       ///< behind a drawing area
@@ -24,11 +24,5 @@ struct Theme {
 
 /// Colours for pictures that stand alone.
 Theme theme(Ground ground);
-
-/// Colours that are CSS variables ("var(--ink)"), for pictures inside of a page that defines them by `css_variables`.
-Theme page_theme();
-
-/// The definitions "--ink:#1b2430;..." of the variables of `page_theme`, with the colours for a background.
-std::string css_variables(Ground ground);
 
 }  // namespace dynamic_icp::drawing

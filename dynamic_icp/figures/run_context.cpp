@@ -33,19 +33,7 @@ datasets::InputSettings input_settings(const RunFiles& run) {
   return settings;
 }
 
-/// The recording of the run, or a note why there is none.
-std::unique_ptr<datasets::Dataset> open_recording(const RunFiles& run, std::vector<std::string>& notes) {
-  try {
-    return datasets::open_input(text_of(run.run, "input.path"), input_settings(run));
-  } catch (const std::runtime_error& error) {
-    notes.push_back(fmt::format("The scan is not shown: the recording cannot be opened. {}", error.what()));
-  } catch (const UsageError& error) {
-    notes.push_back(fmt::format("The scan is not shown: the recording cannot be opened. {}", error.what()));
-  }
-  return nullptr;
-}
-
-Trajectory read_truth(const std::string& path, const datasets::Dataset* recording) {
+Trajectory truth_trajectory(const std::string& path, const datasets::Dataset* recording) {
   if (recording != nullptr && recording->ground_truth_file() == path) {
     return recording->ground_truth();
   }
@@ -74,8 +62,9 @@ RunTruth compare(const RunFiles& run, const Trajectory& reference) {
   RunTruth truth;
   const Eigen::Isometry3d T_estimate_reference =
       matched.estimate.front().T_world_sensor * matched.reference.front().T_world_sensor.inverse();
-  for (const formats::StampedPose& pose : matched.reference) {
-    truth.positions.push_back(T_estimate_reference * pose.T_world_sensor.translation());
+  truth.poses.resize(run.frames.size());
+  for (std::size_t k = 0; k < matched.size(); ++k) {
+    truth.poses[matched.estimate_indices[k]] = T_estimate_reference * matched.reference[k].T_world_sensor;
   }
   truth.speed = true_speeds(matched, run.frames.size());
   truth.translation_error.assign(run.frames.size(), std::numeric_limits<double>::quiet_NaN());
@@ -85,6 +74,59 @@ RunTruth compare(const RunFiles& run, const Trajectory& reference) {
     truth.rotation_error[matched.estimate_indices[step.to]] = step.error.rotation_deg;
   }
   return truth;
+}
+
+ScanView view_scan(const RunFiles& run, const datasets::Dataset& recording, std::size_t frame) {
+  const RawScan raw = read_scan(run, recording, frame);
+  ScanView view;
+  view.title = fmt::format("Scan {}", run.frames[frame].index);
+  view.scan = Scan::from_raw(raw);
+  view.ego_velocity = run.frames[frame].ego_velocity;
+  view.objects = run.objects[frame];
+  view.labels = read_labels(run, frame, raw.points.size()).value_or(std::vector<std::int32_t>());
+  return view;
+}
+
+}  // namespace
+
+std::unique_ptr<datasets::Dataset> open_recording(const RunFiles& run, std::vector<std::string>& notes) {
+  constexpr const char* kNote = "No scans are shown: the recording cannot be opened. {}";
+  try {
+    return datasets::open_input(text_of(run.run, "input.path"), input_settings(run));
+  } catch (const std::runtime_error& error) {
+    notes.push_back(fmt::format(kNote, error.what()));
+  } catch (const UsageError& error) {
+    notes.push_back(fmt::format(kNote, error.what()));
+  }
+  return nullptr;
+}
+
+std::optional<RunTruth> read_truth(const RunFiles& run, const datasets::Dataset* recording,
+                                   std::vector<std::string>& notes) {
+  const std::string path = text_of(run.run, "ground_truth");
+  if (path.empty()) {
+    notes.emplace_back("No errors are shown: the run has no ground truth.");
+    return std::nullopt;
+  }
+  try {
+    return compare(run, truth_trajectory(path, recording));
+  } catch (const DataError& error) {
+    notes.push_back(fmt::format("No errors are shown: the ground truth cannot be used. {}", error.what()));
+    return std::nullopt;
+  }
+}
+
+RawScan read_scan(const RunFiles& run, const datasets::Dataset& recording, std::size_t frame) {
+  const FrameRow& row = run.frames[frame];
+  if (row.index >= recording.size()) {
+    throw DataError(fmt::format("The recording holds {} scans, the run saw number {}.", recording.size(), row.index));
+  }
+  RawScan raw = recording.scan(row.index);
+  if (static_cast<double>(raw.points.size()) != row.points) {
+    throw DataError(fmt::format("{}: {} points, the run saw {}: the recording has changed.",
+                                recording.scan_file(row.index).string(), raw.points.size(), row.points));
+  }
+  return raw;
 }
 
 std::size_t frame_with_most_object_points(const RunFiles& run) {
@@ -103,27 +145,6 @@ std::size_t frame_with_most_object_points(const RunFiles& run) {
   return best;
 }
 
-ScanView view_scan(const RunFiles& run, const datasets::Dataset& recording, std::size_t frame) {
-  const FrameRow& row = run.frames[frame];
-  if (row.index >= recording.size()) {
-    throw DataError(fmt::format("The recording holds {} scans, the run saw number {}.", recording.size(), row.index));
-  }
-  const RawScan raw = recording.scan(row.index);
-  if (static_cast<double>(raw.points.size()) != row.points) {
-    throw DataError(fmt::format("{}: {} points, the run saw {}: the recording has changed.",
-                                recording.scan_file(row.index).string(), raw.points.size(), row.points));
-  }
-  ScanView view;
-  view.title = fmt::format("Scan {}", row.index);
-  view.scan = Scan::from_raw(raw);
-  view.ego_velocity = row.ego_velocity;
-  view.objects = run.objects[frame];
-  view.labels = read_labels(run, frame, raw.points.size()).value_or(std::vector<std::int32_t>());
-  return view;
-}
-
-}  // namespace
-
 RunContext read_context(const RunFiles& run, std::optional<std::size_t> frame) {
   if (frame && *frame >= run.frames.size()) {
     throw UsageError(
@@ -135,16 +156,7 @@ RunContext read_context(const RunFiles& run, std::optional<std::size_t> frame) {
     return context;
   }
   const std::unique_ptr<datasets::Dataset> recording = open_recording(run, context.notes);
-  const std::string truth_path = text_of(run.run, "ground_truth");
-  if (truth_path.empty()) {
-    context.notes.emplace_back("No errors are shown: the run has no ground truth.");
-  } else {
-    try {
-      context.truth = compare(run, read_truth(truth_path, recording.get()));
-    } catch (const DataError& error) {
-      context.notes.push_back(fmt::format("No errors are shown: the ground truth cannot be used. {}", error.what()));
-    }
-  }
+  context.truth = read_truth(run, recording.get(), context.notes);
   if (recording != nullptr) {
     try {
       context.scan = view_scan(run, *recording, frame.value_or(frame_with_most_object_points(run)));

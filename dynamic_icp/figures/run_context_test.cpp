@@ -31,7 +31,8 @@ TEST(RunContext, ComparesWithTheTruthPerFrame) {
   }
   for (std::size_t k = 0; k < 5; ++k) {
     EXPECT_NEAR(context.truth->speed[k], 10.0, 1e-9);
-    EXPECT_NEAR((context.truth->positions[k] - Eigen::Vector3d(static_cast<double>(k), 0.0, 0.0)).norm(), 0.0, 1e-9)
+    EXPECT_NEAR((context.truth->poses[k]->translation() - Eigen::Vector3d(static_cast<double>(k), 0.0, 0.0)).norm(),
+                0.0, 1e-9)
         << "moved to start where the estimate starts";
   }
 }

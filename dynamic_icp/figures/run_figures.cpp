@@ -4,7 +4,11 @@
 
 #include <algorithm>
 #include <limits>
+#include <map>
+#include <optional>
+#include <string_view>
 
+#include "dynamic_icp/figures/run_series.hpp"
 #include "dynamic_icp/figures/scan_plot.hpp"
 #include "dynamic_icp/figures/series_plot.hpp"
 #include "dynamic_icp/figures/trajectory_plot.hpp"
@@ -12,108 +16,122 @@
 namespace dynamic_icp::figures {
 namespace {
 
-/// One value of each frame.
-template <class Value>
-std::vector<double> per_frame(const RunFiles& run, const Value& value) {
-  std::vector<double> values;
-  values.reserve(run.frames.size());
-  for (const FrameRow& frame : run.frames) {
-    values.push_back(value(frame));
+/// The figures over time, with the series that share each of them.
+constexpr struct {
+  const char* name;
+  std::string_view series[2];
+} kOverTime[] = {{"errors", {"translation_error", "rotation_error"}},
+                 {"speed", {"ego_speed"}},
+                 {"dynamics", {"dynamic_share", "objects"}},
+                 {"convergence", {"iterations", "inlier_rmse"}},
+                 {"timing", {"milliseconds"}}};
+
+std::vector<Eigen::Vector3d> positions_of(const RunFiles& run) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const formats::StampedPose& pose : run.trajectory) {
+    positions.push_back(pose.T_world_sensor.translation());
   }
-  return values;
+  return positions;
 }
 
-/// Percent of the points used; a gap where none was used.
-Series share(const RunFiles& run, const char* name, double FrameRow::*count) {
-  return {name, per_frame(run, [&](const FrameRow& frame) { return 100.0 * frame.*count / frame.points_used; })};
+std::vector<Eigen::Vector3d> positions_of(const RunTruth& truth) {
+  std::vector<Eigen::Vector3d> positions;
+  for (const std::optional<Eigen::Isometry3d>& pose : truth.poses) {
+    if (pose) {
+      positions.push_back(pose->translation());
+    }
+  }
+  return positions;
 }
 
 PathMap path_map(const RunFiles& run, const RunContext& context) {
-  PathMap map;
-  for (const formats::StampedPose& pose : run.trajectory) {
-    map.estimate.push_back(pose.T_world_sensor.translation());
-  }
-  if (context.truth) {
-    map.ground_truth = context.truth->positions;
-  }
-  return map;
+  return {.estimates = {{"estimate", positions_of(run)}},
+          .ground_truth = context.truth ? positions_of(*context.truth) : std::vector<Eigen::Vector3d>()};
 }
 
-std::vector<Panel> error_panels(const RunTruth& truth) {
-  return {{.title = "Translation error per scan",
-           .label = "RTE (m)",
-           .series = {{"from the scan before", truth.translation_error}},
-           .logarithmic = spans_decades(truth.translation_error)},
-          {.title = "Rotation error per scan",
-           .label = "RRE (degrees)",
-           .series = {{"from the scan before", truth.rotation_error}},
-           .logarithmic = spans_decades(truth.rotation_error)}};
-}
-
-std::vector<Panel> speed_panels(const RunFiles& run, const RunContext& context) {
-  Panel panel{.title = "Ego speed", .label = "speed (m/s)", .series = {}};
-  if (context.truth) {
-    panel.series.push_back({"ground truth", context.truth->speed, true});
-  }
-  panel.series.push_back(
-      {"estimate from Doppler", per_frame(run, [](const FrameRow& frame) { return frame.ego_velocity.norm(); })});
-  return {panel};
-}
-
-std::vector<Panel> dynamics_panels(const RunFiles& run) {
-  Series objects{"objects with a velocity", {}};
-  for (const std::vector<ObjectRow>& list : run.objects) {
-    objects.values.push_back(static_cast<double>(list.size()));
-  }
-  return {{.title = "Moving points",
-           .label = "share of points used (%)",
-           .series = {share(run, "flagged", &FrameRow::dynamic_candidates),
-                      share(run, "in a cluster", &FrameRow::dynamic_clustered),
-                      share(run, "on an object", &FrameRow::dynamic_refined)}},
-          {.title = "Moving objects", .label = "number", .series = {objects}, .whole_numbers = true}};
-}
-
-/// A value of the registration; a gap at the first scan, which has nothing to be registered to.
-Series registration(const RunFiles& run, double FrameRow::*value) {
-  return {"per scan", per_frame(run, [&](const FrameRow& frame) {
-            return frame.status == "first" ? std::numeric_limits<double>::quiet_NaN() : frame.*value;
-          })};
-}
-
-std::vector<Panel> convergence_panels(const RunFiles& run) {
-  return {{.title = "Iterations",
-           .label = "number",
-           .series = {registration(run, &FrameRow::iterations)},
-           .whole_numbers = true},
-          {.title = "Distance of matched points",
-           .label = "inlier RMSE (m)",
-           .series = {registration(run, &FrameRow::inlier_rmse)}}};
-}
-
-double stage_time(const FrameRow& frame, const std::string& stage) {
-  const auto found = std::find_if(frame.milliseconds.begin(), frame.milliseconds.end(),
-                                  [&](const auto& entry) { return entry.first == stage; });
-  return found == frame.milliseconds.end() ? 0.0 : found->second;
-}
-
-/// The total first, then the stages as they stand in the first frame.
-std::vector<Panel> timing_panels(const RunFiles& run) {
-  std::vector<std::string> stages = {"total"};
-  if (!run.frames.empty()) {
-    for (const auto& [stage, value] : run.frames.front().milliseconds) {
-      if (stage != "total") {
-        stages.push_back(stage);
-      }
+/// When each scan that any of the runs has was taken, s after the first of them; by its number in the recording.
+std::map<std::size_t, double> times_of(const std::vector<ComparedRun>& runs) {
+  std::map<std::size_t, Stamp> stamps;
+  for (const ComparedRun& run : runs) {
+    for (std::size_t k = 0; k < run.files.frames.size(); ++k) {
+      stamps.emplace(run.files.frames[k].index, run.files.trajectory[k].stamp);
     }
   }
-  Panel panel{.title = "Computing time", .label = "ms per scan", .series = {}};
-  for (const std::string& stage : stages) {
-    panel.series.push_back({stage, per_frame(run, [&](const FrameRow& frame) { return stage_time(frame, stage); })});
+  std::map<std::size_t, double> times;
+  for (const auto& [index, stamp] : stamps) {
+    times[index] = seconds_between(stamps.begin()->second, stamp);
   }
-  return {panel};
+  return times;
+}
+
+/// The values of a run in their places among those of all runs.
+std::vector<double> placed(const std::vector<double>& values, const RunFiles& run,
+                           const std::map<std::size_t, double>& times) {
+  std::map<std::size_t, double> of_scan;
+  for (std::size_t k = 0; k < values.size(); ++k) {
+    of_scan[run.frames[k].index] = values[k];
+  }
+  std::vector<double> all;
+  for (const auto& [index, time] : times) {
+    const auto found = of_scan.find(index);
+    all.push_back(found == of_scan.end() ? std::numeric_limits<double>::quiet_NaN() : found->second);
+  }
+  return all;
+}
+
+/// One line a run of the series called `id`: its first line that is no ground truth.
+std::optional<Panel> compared_panel(const std::vector<ComparedRun>& runs, const std::string& id,
+                                    const std::map<std::size_t, double>& times) {
+  std::optional<Panel> panel;
+  for (const ComparedRun& run : runs) {
+    for (const RunSeries& series : run_series(run.files, run.truth)) {
+      if (series.id != id) {
+        continue;
+      }
+      if (!panel) {
+        panel = series.panel;
+        panel->series.clear();
+      }
+      const auto line = std::find_if(series.panel.series.begin(), series.panel.series.end(),
+                                     [](const Series& candidate) { return !candidate.broad; });
+      panel->series.push_back({run.name, placed(line->values, run.files, times)});
+      panel->logarithmic = panel->logarithmic || series.panel.logarithmic;
+    }
+  }
+  return panel;
 }
 
 }  // namespace
+
+std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const drawing::Theme& theme) {
+  PathMap map{.title = "Trajectories from above"};
+  for (const ComparedRun& run : runs) {
+    map.estimates.push_back({run.name, positions_of(run.files)});
+    if (map.ground_truth.empty() && run.truth) {
+      map.ground_truth = positions_of(*run.truth);
+    }
+  }
+  std::vector<Figure> figures = {{"trajectory", trajectory_plot(map, theme)}};
+  const std::map<std::size_t, double> times = times_of(runs);
+  std::vector<double> seconds;
+  for (const auto& [index, time] : times) {
+    seconds.push_back(time);
+  }
+  for (const auto& [name, ids] : {std::pair("errors", std::vector{"translation_error", "rotation_error"}),
+                                  {"convergence", {"iterations"}},
+                                  {"timing", {"milliseconds"}}}) {
+    std::vector<Panel> panels;
+    for (const char* id : ids) {
+      if (std::optional<Panel> panel = compared_panel(runs, id, times)) {
+        panels.push_back(std::move(*panel));
+      }
+    }
+    if (!panels.empty()) {
+      figures.push_back({name, series_plot(seconds, panels, theme)});
+    }
+  }
+  return figures;
+}
 
 std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const drawing::Theme& theme) {
   std::vector<double> times;
@@ -121,20 +139,22 @@ std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context,
     times.push_back(run.seconds(k));
   }
   std::vector<Figure> figures;
-  const auto add_series = [&](const char* name, const std::vector<Panel>& panels) {
-    figures.push_back({name, series_plot(times, panels, theme)});
-  };
   if (context.scan) {
     figures.push_back({"scan", scan_plot(*context.scan, theme)});
   }
   figures.push_back({"trajectory", trajectory_plot(path_map(run, context), theme)});
-  if (context.truth) {
-    add_series("errors", error_panels(*context.truth));
+  const std::vector<RunSeries> all = run_series(run, context.truth);
+  for (const auto& [name, ids] : kOverTime) {
+    std::vector<Panel> panels;
+    for (const RunSeries& series : all) {
+      if (std::find(std::begin(ids), std::end(ids), series.id) != std::end(ids)) {
+        panels.push_back(series.panel);
+      }
+    }
+    if (!panels.empty()) {
+      figures.push_back({name, series_plot(times, panels, theme)});
+    }
   }
-  add_series("speed", speed_panels(run, context));
-  add_series("dynamics", dynamics_panels(run));
-  add_series("convergence", convergence_panels(run));
-  add_series("timing", timing_panels(run));
   return figures;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -20,5 +21,16 @@ struct Figure {
 /// The figures of a run in the order of that list, without those that have nothing to show: no "scan" when the
 /// recording is gone, no "errors" without ground truth.
 std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const drawing::Theme& theme);
+
+/// A run among others over the same recording.
+struct ComparedRun {
+  std::string name;
+  RunFiles files;
+  std::optional<RunTruth> truth;
+};
+
+/// "trajectory", "errors" (with ground truth), "convergence" and "timing" of several runs in common pictures. They must
+/// begin with the same scan: the first pose of each is the identity.
+std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const drawing::Theme& theme);
 
 }  // namespace dynamic_icp::figures

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/figures/run_folder.hpp"
 
+#include <cmath>
 #include <limits>
 
 #include <fmt/format.h>
@@ -70,10 +71,38 @@ class Row {
     if (value.is_null()) {
       return unknown_vector();
     }
-    if (!value.is_array() || value.size() != 3) {
-      fail(key, "three numbers");
+    return numbers<3>(key);
+  }
+
+  template <int kSize>
+  [[nodiscard]] Eigen::Matrix<double, kSize, 1> numbers(const char* key) const {
+    const Json& value = get(key);
+    if (!value.is_array() || value.size() != kSize) {
+      fail(key, fmt::format("a list of {} numbers", kSize));
     }
-    return {number(value[0], key), number(value[1], key), number(value[2], key)};
+    Eigen::Matrix<double, kSize, 1> numbers;
+    for (int k = 0; k < kSize; ++k) {
+      numbers[k] = number(value[static_cast<std::size_t>(k)], key);
+    }
+    return numbers;
+  }
+
+  [[nodiscard]] const Json& list(const char* key) const {
+    const Json& value = get(key);
+    if (!value.is_array()) {
+      fail(key, "a list");
+    }
+    return value;
+  }
+
+  [[nodiscard]] Row object(const char* key) const { return part(key, get(key)); }
+
+  /// A part of the value of a key, which must be an object.
+  [[nodiscard]] Row part(const char* key, const Json& value) const {
+    if (!value.is_object()) {
+      fail(key, "a JSON object");
+    }
+    return {value, fmt::format("{}, \"{}\"", place_, key)};
   }
 
   [[nodiscard]] double number(const Json& value, const char* key) const {
@@ -86,7 +115,7 @@ class Row {
     return value.get<double>();
   }
 
-  [[noreturn]] void fail(const char* key, const char* expected) const {
+  [[noreturn]] void fail(const char* key, std::string_view expected) const {
     throw DataError(fmt::format("{}: the value of \"{}\" is not {}", place_, key, expected));
   }
 
@@ -146,6 +175,29 @@ Eigen::Vector3d ego_velocity(const Row& row) {
   return estimated ? row.vector("ego_velocity") : unknown_vector();
 }
 
+/// What runs of earlier versions do not hold is unknown.
+double number_if_any(const Row& row, const char* key) {
+  return row.has(key) ? row.number(key) : std::numeric_limits<double>::quiet_NaN();
+}
+
+std::optional<TwistRow> twist(const Row& row) {
+  if (!row.has("twist") || row.get("twist").is_null()) {
+    return std::nullopt;
+  }
+  const Row twist = row.object("twist");
+  return TwistRow{.angular = twist.vector("angular"), .linear = twist.vector("linear")};
+}
+
+std::vector<Vector6d> unknown_directions(const Row& row) {
+  std::vector<Vector6d> directions;
+  if (row.has("degenerate")) {
+    for (const Json& entry : row.list("degenerate")) {
+      directions.push_back(row.part("degenerate", entry).numbers<6>("direction"));
+    }
+  }
+  return directions;
+}
+
 FrameRow frame_row(const Row& row) {
   FrameRow frame;
   frame.index = static_cast<std::size_t>(row.integer("index"));
@@ -157,9 +209,14 @@ FrameRow frame_row(const Row& row) {
   frame.dynamic_refined = row.number("dynamic_refined");
   frame.iterations = row.number("iterations");
   frame.converged = row.truth("converged");
-  frame.status = row.text(row.has("reason") ? "reason" : "status");
+  frame.status = row.text("status");
+  frame.reason = row.text(row.has("reason") ? "reason" : "status");
   frame.fitness = row.number("fitness");
   frame.inlier_rmse = row.number("inlier_rmse");
+  frame.information_ratio = number_if_any(row, "information_ratio");
+  frame.unknown_directions = unknown_directions(row);
+  frame.twist = twist(row);
+  frame.doppler_bias = row.has("doppler_bias") ? row.number("doppler_bias") : 0.0;
   const Json& stages = row.get("ms");
   if (!stages.is_object()) {
     row.fail("ms", "an object of milliseconds per stage");
@@ -170,21 +227,29 @@ FrameRow frame_row(const Row& row) {
   return frame;
 }
 
+/// The yaw of boxes that stand upright: their quaternion turns about z alone.
+std::optional<ObjectRow::Box> box(const Row& row) {
+  if (!row.has("box")) {
+    return std::nullopt;
+  }
+  const Row box = row.object("box");
+  const Eigen::Vector4d xyzw = box.numbers<4>("orientation_xyzw");
+  return ObjectRow::Box{
+      .centre = box.vector("center"), .size = box.vector("size"), .yaw_rad = 2.0 * std::atan2(xyzw.z(), xyzw.w())};
+}
+
 ObjectRow object_row(const Row& row) {
   return {.id = row.integer("id"),
           .velocity = row.vector("velocity"),
           .centroid = row.vector("centroid"),
           .extent = row.vector("extent"),
-          .points = row.number("points")};
+          .points = row.number("points"),
+          .box = box(row)};
 }
 
 std::vector<ObjectRow> object_rows(const Row& row, const std::string& file) {
-  const Json& list = row.get("objects");
-  if (!list.is_array()) {
-    row.fail("objects", "a list");
-  }
   std::vector<ObjectRow> objects;
-  for (const Json& object : list) {
+  for (const Json& object : row.list("objects")) {
     objects.push_back(object_row(Row(object, fmt::format("{}, scan {}, an object", file, row.integer("index")))));
   }
   return objects;

@@ -14,9 +14,16 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/base/se3.hpp"
 #include "dynamic_icp/formats/trajectory.hpp"
 
 namespace dynamic_icp::figures {
+
+/// How the sensor moves at the stamp of a scan, in its own axes.
+struct TwistRow {
+  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s
+  Eigen::Vector3d linear = Eigen::Vector3d::Zero();   ///< m/s over ground
+};
 
 /// One line of frames.jsonl. Numbers that are null in the file, and an ego velocity that could not be estimated, are
 /// NaN here.
@@ -30,9 +37,14 @@ struct FrameRow {
   double dynamic_refined = 0.0;
   double iterations = 0.0;
   bool converged = false;
-  std::string status;
+  std::string status;  ///< "ok", "degenerate" or "lost"
+  std::string reason;  ///< more exactly: "first", "converged", "time_gap", ...
   double fitness = 0.0;
   double inlier_rmse = 0.0;                                  ///< m
+  double information_ratio = 0.0;                            ///< of the least known direction to the best known one
+  std::vector<Vector6d> unknown_directions;                  ///< of the pose, [rotation; translation], unit length
+  std::optional<TwistRow> twist;                             ///< where the method states one
+  double doppler_bias = 0.0;                                 ///< m/s, constant error that was found
   std::vector<std::pair<std::string, double>> milliseconds;  ///< per stage and "total"
 };
 
@@ -43,6 +55,13 @@ struct ObjectRow {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< m, middle of the box
   Eigen::Vector3d extent = Eigen::Vector3d::Zero();    ///< m, edges of the box along the axes of the sensor
   double points = 0.0;
+  /// Box along the object instead of the sensor, where the method states one: turned by `yaw_rad` about the z axis.
+  struct Box {
+    Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< m
+    Eigen::Vector3d size = Eigen::Vector3d::Zero();    ///< m, length, width, height
+    double yaw_rad = 0.0;
+  };
+  std::optional<Box> box = std::nullopt;
 };
 
 /// A value of summary.json or run.json: null, a switch, a number or a text.

@@ -12,9 +12,14 @@
 
 namespace dynamic_icp::figures {
 
+struct NamedPath {
+  std::string name;
+  std::vector<Eigen::Vector3d> positions;  ///< m
+};
+
 /// The paths of a map, all in one world frame (m).
 struct PathMap {
-  std::vector<Eigen::Vector3d> estimate = {};
+  std::vector<NamedPath> estimates = {};
   std::vector<Eigen::Vector3d> ground_truth = {};  ///< empty: none
   std::string title = "Trajectory from above";
 };
@@ -24,8 +29,9 @@ struct MapSize {
   double largest_height = 520.0;  ///< px; a straight drive gets less
 };
 
-/// Top view (x to the right, y up) with equal scales: the estimate as a line on top of a broad line for the ground
-/// truth, a ring where the drive starts and a dot where it ends. Without positions the map is empty and says so.
+/// Top view (x to the right, y up) with equal scales: the estimates as lines on top of a broad line for the
+/// ground truth, a ring where the drive starts and a dot where each estimate ends. Without positions the map is empty
+/// and says so.
 drawing::Svg trajectory_plot(const PathMap& paths, const drawing::Theme& theme, const MapSize& size = {});
 
 }  // namespace dynamic_icp::figures

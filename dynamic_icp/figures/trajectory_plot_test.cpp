@@ -21,16 +21,17 @@ std::string drawn(const PathMap& paths) {
 
 TEST(TrajectoryPlot, DrawsNothingAndLittle) {
   EXPECT_NE(drawn({}).find("no poses"), std::string::npos);
-  drawn({.estimate = {{1.0, 2.0, 3.0}}});
-  drawn({.estimate = {{1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}}});
-  drawn({.estimate = {}, .ground_truth = {{1.0, 2.0, 3.0}, {4.0, 2.0, 3.0}}});
+  drawn({.estimates = {{"estimate", {{1.0, 2.0, 3.0}}}}});
+  drawn({.estimates = {{"estimate", {{1.0, 2.0, 3.0}, {1.0, 2.0, 3.0}}}}});
+  drawn({.estimates = {{"estimate", {}}}, .ground_truth = {{1.0, 2.0, 3.0}, {4.0, 2.0, 3.0}}});
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  drawn({.estimate = {{1.0, 2.0, 3.0}, {nan, nan, nan}, {2.0, 2.0, 3.0}}});
+  drawn({.estimates = {{"estimate", {{1.0, 2.0, 3.0}, {nan, nan, nan}, {2.0, 2.0, 3.0}}}}});
 }
 
 TEST(TrajectoryPlot, SquareStaysASquareAndYPointsUp) {
   const std::vector<drawing::Pixel> line =
-      drawing::polylines_of(drawn({.estimate = {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}, {0, 30, 0}}})).back();
+      drawing::polylines_of(drawn({.estimates = {{"estimate", {{0, 0, 0}, {30, 0, 0}, {30, 30, 0}, {0, 30, 0}}}}}))
+          .back();
   ASSERT_EQ(line.size(), 4u);
   const double side = line[1].x - line[0].x;
   EXPECT_GT(side, 100.0);
@@ -39,9 +40,9 @@ TEST(TrajectoryPlot, SquareStaysASquareAndYPointsUp) {
 }
 
 TEST(TrajectoryPlot, LongDrivesStaySmall) {
-  PathMap paths;
+  PathMap paths{.estimates = {{"estimate", {}}}};
   for (int k = 0; k < 100'000; ++k) {
-    paths.estimate.emplace_back(0.1 * k, 5.0 * std::sin(0.001 * k), 0.0);
+    paths.estimates[0].positions.emplace_back(0.1 * k, 5.0 * std::sin(0.001 * k), 0.0);
   }
   const std::string document = drawn(paths);
   EXPECT_LT(document.size(), 60'000u);
@@ -50,10 +51,23 @@ TEST(TrajectoryPlot, LongDrivesStaySmall) {
 }
 
 TEST(TrajectoryPlot, NamesGroundTruthOnlyWhereThereIsOne) {
-  PathMap paths{.estimate = {{0, 0, 0}, {1, 0, 0}}};
+  PathMap paths{.estimates = {{"estimate", {{0, 0, 0}, {1, 0, 0}}}}};
   EXPECT_EQ(drawn(paths).find("ground truth"), std::string::npos);
-  paths.ground_truth = paths.estimate;
+  paths.ground_truth = paths.estimates[0].positions;
   EXPECT_NE(drawn(paths).find("ground truth"), std::string::npos);
+}
+
+TEST(TrajectoryPlot, TellsSeveralEstimatesApart) {
+  PathMap paths;
+  for (int k = 0; k < 12; ++k) {
+    paths.estimates.push_back({"path <" + std::to_string(k) + ">", {{0, 0, 0}, {10, 1.0 * k, 0}}});
+  }
+  paths.ground_truth = {{0, 0, 0}, {10, 0, 0}};
+  const std::string document = drawn(paths);
+  EXPECT_EQ(drawing::polylines_of(document).size(), 13u);
+  for (int k = 0; k < 12; ++k) {
+    EXPECT_NE(document.find("path &lt;" + std::to_string(k) + "&gt;"), std::string::npos);
+  }
 }
 
 }  // namespace

@@ -1,12 +1,12 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/figures/summary_keys.hpp"
+#include "dynamic_icp/report/summary_keys.hpp"
 
 #include <cmath>
 
 #include <fmt/format.h>
 
-namespace dynamic_icp::figures {
+namespace dynamic_icp::report {
 namespace {
 
 struct Meaning {
@@ -48,7 +48,7 @@ std::string rounded(double number) {
 
 }  // namespace
 
-std::string value_with_unit(const Settings& summary, std::string_view key) {
+std::string value_with_unit(const figures::Settings& summary, std::string_view key) {
   for (const auto& [name, value] : summary) {
     const double* number = name == key ? std::get_if<double>(&value) : nullptr;
     if (number == nullptr) {
@@ -64,7 +64,7 @@ std::string value_with_unit(const Settings& summary, std::string_view key) {
                                                            : "";
     return fmt::format("{}{}", rounded(*number), unit);
   }
-  const std::string text = text_of(summary, key);
+  const std::string text = figures::text_of(summary, key);
   return text.empty() ? "-" : text;
 }
 
@@ -77,4 +77,4 @@ std::string_view meaning_of(std::string_view key) {
   return key.starts_with("statuses.") ? "scans with this status" : "";
 }
 
-}  // namespace dynamic_icp::figures
+}  // namespace dynamic_icp::report

@@ -1,0 +1,49 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "apps/number_list.hpp"
+
+#include <algorithm>
+#include <charconv>
+#include <set>
+#include <string_view>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/base/error.hpp"
+
+namespace dynamic_icp::apps {
+namespace {
+
+constexpr std::size_t kMost = 100'000;  // of a range: nobody means more
+
+bool read_number(std::string_view text, std::size_t& number) {
+  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return fault == std::errc() && end == text.data() + text.size();
+}
+
+}  // namespace
+
+std::vector<std::size_t> number_list(const char* option, const std::string& text) {
+  std::set<std::size_t> numbers;
+  std::string_view rest = text;
+  while (!rest.empty()) {
+    const std::size_t comma = std::min(rest.find(','), rest.size());
+    const std::string_view part = rest.substr(0, comma);
+    const std::size_t dash = std::min(part.find('-'), part.size());
+    std::size_t first = 0;
+    std::size_t last = 0;
+    const bool is_range = dash < part.size();
+    const bool is_read = read_number(part.substr(0, dash), first) &&
+                         read_number(is_range ? part.substr(dash + 1) : part.substr(0, dash), last);
+    if (!is_read || last < first || last - first >= kMost || comma + 1 == rest.size()) {
+      throw UsageError(fmt::format("{} is '{}', expected whole numbers and ranges of them: 10,20-25", option, text));
+    }
+    for (std::size_t number = first; number <= last; ++number) {
+      numbers.insert(number);
+    }
+    rest.remove_prefix(std::min(comma + 1, rest.size()));
+  }
+  return {numbers.begin(), numbers.end()};
+}
+
+}  // namespace dynamic_icp::apps

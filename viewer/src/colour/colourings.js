@@ -1,0 +1,51 @@
+// What the points of a scan can be coloured by.
+import { lastNotAbove, speedOf } from '../runs.js';
+
+/**
+ * `source` is the number the shader knows the value by. `limit`: the range is [-limit, limit] for two-sided maps and
+ * [0, limit] for others; height has a range of its own.
+ */
+export const colourings = [
+  { id: 'compensated', source: 0, key: '1', name: 'Doppler, own motion out', unit: 'm/s', map: 'diverging',
+    meaning: 'What is left of the Doppler velocity without the sensor’s own motion: grey stands, blue comes closer, orange goes away' },
+  { id: 'doppler', source: 1, key: '2', name: 'Doppler as measured', unit: 'm/s', map: 'diverging',
+    meaning: 'Doppler velocity as measured: blue comes closer, orange goes away' },
+  { id: 'kind', source: 2, key: '3', name: 'Static, moving, object', unit: '', map: 'categories',
+    meaning: 'What the odometry took a point for; every object has its colour' },
+  { id: 'residual', source: 3, key: '4', name: 'Residual', unit: 'm', map: 'sequential',
+    meaning: 'Distance to the surface of the scan before' },
+  { id: 'height', source: 4, key: '5', name: 'Height', unit: 'm', map: 'sequential',
+    meaning: 'Height over the ground under the sensor' },
+];
+
+export const colouring = (id) => colourings.find((entry) => entry.id === id) ?? colourings[0];
+
+const LIMITS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 50, 100];
+
+/** The next rounder limit above (`steps` = 1) or below (-1). */
+export function nextLimit(limit, steps) {
+  const at = LIMITS.findIndex((entry) => entry >= limit * 0.999);
+  const place = at < 0 ? LIMITS.length - 1 : at;
+  return LIMITS[Math.min(LIMITS.length - 1, Math.max(0, place + steps))];
+}
+
+/** The value that `share` of the list stay below, or `otherwise`. */
+export function quantile(values, share, otherwise) {
+  const sorted = Array.from(values).filter((value) => value !== null && Number.isFinite(value)).sort((a, b) => a - b);
+  return sorted.length ? sorted[Math.min(sorted.length - 1, Math.floor(share * sorted.length))] : otherwise;
+}
+
+const rounder = (limit, least) => Math.max(least, LIMITS[Math.min(LIMITS.length - 1, lastNotAbove(LIMITS, limit * 0.999) + 1)]);
+
+/** Limits that suit a run: by its own speed and by those of its objects. */
+export function usualLimits(run) {
+  const speeds = run.frames.index.map((_, frame) => speedOf(run, frame));
+  const objects = run.frames.objects.flat().map(([, vx, vy, vz]) => Math.hypot(vx, vy, vz));
+  return {
+    compensated: rounder(quantile(objects, 0.9, 5), 2),
+    doppler: rounder(quantile(speeds, 0.95, 5), 2),
+    kind: 1,
+    residual: 0.2,
+    height: 10,
+  };
+}

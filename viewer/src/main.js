@@ -1,0 +1,122 @@
+// The page: reads what it holds, puts the panels together, keeps the address in step.
+import './style/base.css';
+import './style/layout.css';
+import './style/panels.css';
+import { usualLimits } from './colour/colourings.js';
+import { element } from './dom.js';
+import { keyBindings, listenToKeys } from './keys.js';
+import { usualLayers } from './layers.js';
+import { readReport } from './page_data.js';
+import { createComparisonSheet, createRunChips, createTableSheet } from './panels/comparison.js';
+import { createHeader, firstRun } from './panels/header.js';
+import { createHelp } from './panels/help.js';
+import { createLegend, createPointReading } from './panels/legend.js';
+import { createDistributionSheet, createPlotSheet } from './panels/plots.js';
+import { createStatus } from './panels/status.js';
+import { createConfigurationSheet, createSummarySheet } from './panels/summary.js';
+import { createTabs } from './panels/tabs.js';
+import { createTimeline } from './panels/timeline.js';
+import { createToolbar } from './panels/toolbar.js';
+import { createPlayer } from './player.js';
+import { createFlatMap } from './plots/flat_map.js';
+import { lastFrame } from './runs.js';
+import { createView } from './scene/view.js';
+import { firstFrame, fitState, runAt } from './session.js';
+import { keptKeys, readFragment, writeFragment } from './state.js';
+import { createStore } from './store.js';
+import { followTheme } from './theme.js';
+
+/** What a page shows when its address says nothing. */
+function usualState(report) {
+  const run = firstRun(report, 0);
+  return {
+    group: 0, run, frame: report.kind === 'run' ? firstFrame(report.runs[run]) : lastFrame(report.runs[run]),
+    colour: 'compensated', limit: null, layers: usualLayers(),
+    camera: report.kind === 'run' ? 'follow' : 'free', eye: null, size: 2.5, speed: 1,
+    tab: report.kind === 'benchmark' ? 'tables' : 'plots', hidden: new Set(), theme: null,
+  };
+}
+
+function sheetsOf(report, store, player) {
+  const plots = { id: 'plots', name: 'Plots', element: createPlotSheet(report, store, player) };
+  const distributions = { id: 'distributions', name: 'Distribution', element: createDistributionSheet(report, store) };
+  const summary = { id: 'summary', name: report.kind === 'run' ? 'Summary' : 'Run', element: createSummarySheet(report, store) };
+  const configuration = { id: 'configuration', name: 'Settings', element: createConfigurationSheet(report, store) };
+  const several = report.kind === 'run' ? [] : [{ id: 'numbers', name: 'Numbers', element: createComparisonSheet(report, store) }];
+  const tables = report.tables?.length ? [{ id: 'tables', name: 'Tables', element: createTableSheet(report) }] : [];
+  return [...tables, plots, distributions, ...several, summary, configuration];
+}
+
+/** Keeps the address in step with the state, not more often than browsers allow. */
+function keepAddress(store, usual) {
+  let timer = 0;
+  const write = () => {
+    const fragment = `#${writeFragment(store.state, usual)}`;
+    if (fragment === location.hash) return;
+    try {
+      history.replaceState(null, '', fragment);
+    } catch {
+      // Some browsers allow no history for files; the link button still works.
+    }
+  };
+  store.watch(keptKeys, () => {
+    clearTimeout(timer);
+    timer = setTimeout(write, 250);
+  });
+}
+
+function show(page) {
+  document.getElementById('app').replaceChildren(page);
+  document.body.classList.add('with-viewer');
+}
+
+/** A benchmark of which nothing but its tables is left. */
+const pageWithoutRuns = (report) => element('div', {},
+  element('header', { class: 'top' }, element('h1', { text: report.title })),
+  report.tables?.length ? createTableSheet(report) : element('p', { class: 'text-sheet', text: 'This page holds no run.' }),
+  element('ul', { class: 'notes text-sheet' }, ...report.notes.map((text) => element('li', { text }))));
+
+function start() {
+  const report = readReport();
+  if (report.runs.length === 0) {
+    show(pageWithoutRuns(report));
+    return;
+  }
+  const usual = usualState(report);
+  const fromLink = fitState(report, { ...usual, ...readFragment(location.hash) });
+  const store = createStore({ ...fromLink, systemTheme: 'light', playing: false, shown: null, picked: null, limits: {} });
+  store.watch(['run'], (state) => store.set({ limits: usualLimits(runAt(report, state)) }));
+  store.watch(['group', 'run'], (state) => store.set({ frame: fitState(report, state).frame }));
+  followTheme(store);
+
+  const player = createPlayer(report, store);
+  const view = createView(report, store) ?? createFlatMap(report, store);
+  const showHelp = () => help.showModal();
+  const bindings = keyBindings(report, store, player, view, showHelp);
+  const help = createHelp(bindings);
+  const link = () => `${location.href.split('#')[0]}#${writeFragment(store.state, usual)}`;
+  const stage = element('div', { class: 'stage' }, view.element,
+    createStatus(report, store), createLegend(report, store), createPointReading(store));
+  const page = element('div', { class: 'page' },
+    createHeader(report, store, { showHelp, link }),
+    element('main', { class: 'columns' },
+      element('section', { class: 'view', 'aria-label': 'View' },
+        createToolbar(report, store, view), report.kind === 'run' ? null : createRunChips(report, store),
+        stage, createTimeline(report, store, player)),
+      createTabs(store, sheetsOf(report, store, player))),
+    help);
+  show(page);
+  view.start();
+  listenToKeys(bindings);
+  keepAddress(store, usual);
+  // Only a reader changes the fragment in a way that is told: another link, which is opened as if it were new.
+  window.addEventListener('hashchange', () => location.reload());
+}
+
+try {
+  start();
+} catch (error) {
+  // What the page holds without the viewer stays readable.
+  document.getElementById('app')?.prepend(element('p', { class: 'failure', role: 'alert', text: `The interactive view did not start: ${error.message}` }));
+  console.error(error);
+}

@@ -1,0 +1,61 @@
+// The ways of the runs and of the ground truth: what is driven is strong, what is to come is pale.
+import { Group } from 'three';
+import { rgb } from '../colour/maps.js';
+import { frameCount, poseOf } from '../runs.js';
+import { createSegments } from './segments.js';
+
+/**
+ * Lines from pose to pose; where a pose is missing there is a gap.
+ * @returns {{ends: number[], until: number[]}} `until`: the frame each line ends at
+ */
+export function pathSegments(poses, count, origin) {
+  const ends = [];
+  const until = [];
+  let last = null;
+  for (let frame = 0; frame < count; ++frame) {
+    const pose = poseOf(poses, frame);
+    const here = pose && pose.slice(0, 3).map((value, axis) => value - origin[axis]);
+    if (last && here) {
+      ends.push(...last, ...here);
+      until.push(frame);
+    }
+    last = here;
+  }
+  return { ends, until };
+}
+
+function createPath(poses, count, origin, colour, look) {
+  const { ends, until } = pathSegments(poses, count, origin);
+  const lines = createSegments(look);
+  lines.show(ends, until.flatMap(() => rgb(colour).map((value) => value / 255)), until);
+  return { object: lines.object, drive: lines.setNow, dispose: lines.dispose };
+}
+
+export function createPaths() {
+  const estimates = new Group();
+  const truths = new Group();
+  let paths = [];
+  return {
+    estimates,
+    truths,
+    /** @param {{run: object, colour: string}[]} shown @param {object|null} reference whose truth is drawn */
+    show(shown, reference, truthColour, origin) {
+      for (const path of paths) path.dispose();
+      estimates.clear();
+      truths.clear();
+      paths = shown.map(({ run, colour }) => {
+        const path = createPath(run.frames.poses, frameCount(run), origin, colour, { width: 2.4, opacity: 1, pale: 0.4 });
+        estimates.add(path.object);
+        return { ...path, run };
+      });
+      if (reference) {
+        const path = createPath(reference.truth.poses, frameCount(reference), origin, truthColour,
+          { width: 6, opacity: 0.35, pale: 0.18 });
+        truths.add(path.object);
+        paths.push({ ...path, run: reference });
+      }
+    },
+    /** @param {(run: object) => number} frameOf the current frame of each run */
+    drive(frameOf) { for (const path of paths) path.drive(frameOf(path.run)); },
+  };
+}

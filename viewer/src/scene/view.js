@@ -1,0 +1,357 @@
+// The view: puts the scene together and draws it whenever something changed, and only then.
+import { Color, LinearSRGBColorSpace, Matrix4, Quaternion, Scene, Vector3, WebGLRenderer } from 'three';
+import { canInflate } from '../bytes.js';
+import { colouring, quantile } from '../colour/colourings.js';
+import { markColours } from '../colour/maps.js';
+import { element } from '../dom.js';
+import { readMap, readScan } from '../page_data.js';
+import { frameCount, headingInSensor, keptScan, objectOf, originOf, poseOf } from '../runs.js';
+import { createScanCache } from '../scan_cache.js';
+import { groupAt, runAt, runsShown, sameScan } from '../session.js';
+import { cssColour, groundOf } from '../theme.js';
+import { createCameraRig } from './camera_rig.js';
+import { createLabels } from './labels.js';
+import { createObjects } from './objects.js';
+import { createPaths } from './paths.js';
+import { pointUnder } from './picking.js';
+import { createPredictedPoints } from './predicted_points.js';
+import { createScanPoints } from './scan_points.js';
+import { createRings, createSensor, createStaticMap } from './surroundings.js';
+
+const KEPT_POINTS = 4e6; // decoded, 29 bytes each
+const KEPT_SCANS = [8, 64]; // but not fewer and not more
+const READ_AHEAD = 4;
+const MOST_PIXELS_PER_POINT = 2;
+// Where the processor draws: so many points while something moves, all of them once it rests (ms).
+const POINTS_IN_MOTION = 8000;
+const REST = 180;
+
+/** Whether lines are drawn by the processor: then every pixel counts. */
+function isSoftware(gl) {
+  const info = gl.getExtension('WEBGL_debug_renderer_info');
+  return /swiftshader|llvmpipe|software|basic render/i.test(String(info && gl.getParameter(info.UNMASKED_RENDERER_WEBGL)));
+}
+
+/** A WebGL 2 context on a canvas, or null. */
+function openContext(canvas) {
+  const probe = document.createElement('canvas').getContext('webgl2');
+  if (!probe) return null;
+  const software = isSoftware(probe);
+  probe.getExtension('WEBGL_lose_context')?.loseContext();
+  const gl = canvas.getContext('webgl2', { alpha: false, antialias: !software, powerPreference: 'high-performance' });
+  return gl && { gl, software };
+}
+
+const poseMatrix = (pose, origin) => new Matrix4().compose(
+  new Vector3(pose[0] - origin[0], pose[1] - origin[1], pose[2] - origin[2]),
+  new Quaternion(pose[3], pose[4], pose[5], pose[6]), new Vector3(1, 1, 1));
+
+/** The middle and size of all positions of the runs. */
+function boundsOf(runs, origin) {
+  const low = [Infinity, Infinity, Infinity];
+  const high = [-Infinity, -Infinity, -Infinity];
+  for (const run of runs) {
+    for (let frame = 0; frame < frameCount(run); ++frame) {
+      poseOf(run.frames.poses, frame)?.slice(0, 3).forEach((value, axis) => {
+        low[axis] = Math.min(low[axis], value - origin[axis]);
+        high[axis] = Math.max(high[axis], value - origin[axis]);
+      });
+    }
+  }
+  if (!Number.isFinite(low[0])) return { centre: [0, 0, 0], radius: 30 };
+  return {
+    centre: low.map((value, axis) => 0.5 * (value + high[axis])),
+    radius: Math.max(10, 0.5 * Math.hypot(...low.map((value, axis) => high[axis] - value))),
+  };
+}
+
+/**
+ * @returns {{element: HTMLElement, resetCamera: () => void} | null} null without WebGL
+ */
+export function createView(report, store) {
+  const canvas = element('canvas', { class: 'scene', tabindex: 0, role: 'img', 'aria-label': 'Scan and trajectory in 3D' });
+  const context = openContext(canvas);
+  if (!context) return null;
+  const renderer = new WebGLRenderer({ canvas, context: context.gl });
+  renderer.outputColorSpace = LinearSRGBColorSpace; // colours go to the screen as they are
+  renderer.setPixelRatio(context.software ? 1 : Math.min(window.devicePixelRatio, MOST_PIXELS_PER_POINT));
+
+  const labels = createLabels();
+  const holder = element('div', { class: 'scene-holder' }, canvas, labels.element);
+  const scene = new Scene();
+  const points = createScanPoints();
+  const predicted = createPredictedPoints();
+  const objects = createObjects();
+  const paths = createPaths();
+  const map = createStaticMap();
+  const rings = createRings();
+  const sensor = createSensor();
+  // What is at rest in the sensor frame of the shown scan, and of the current frame.
+  const atScan = [points.object, predicted.object];
+  const atFrame = [objects.object, rings.object, sensor.object];
+  for (const object of [...atScan, ...atFrame]) object.matrixAutoUpdate = false;
+  scene.add(paths.estimates, paths.truths, map.object, ...atScan, ...atFrame);
+
+  const rig = createCameraRig(canvas, () => {
+    showPoints(true);
+    draw();
+    keepEye();
+  });
+  const largest = report.runs.reduce((most, run) => (run.scans?.points ?? []).reduce((a, b) => Math.max(a, b), most), 1);
+  const cache = createScanCache(readScan, Math.min(KEPT_SCANS[1], Math.max(KEPT_SCANS[0], Math.floor(KEPT_POINTS / largest))));
+  let origin = [0, 0, 0];
+  let heading = 0;
+  let ground = 'light';
+  let groundHeight = -1.8;
+  let current = { ticket: 0, frame: 0, place: null, scan: null, objects: [], scanObjects: [], run: null };
+  let tickets = 0;
+  let waiting = false;
+  let eyeTimer = 0;
+  let restTimer = 0;
+  let drawn = null; // the scan in the buffers, and whether it is all of it
+
+  const keepEye = () => {
+    clearTimeout(eyeTimer);
+    eyeTimer = setTimeout(() => store.set({ eye: rig.eye() }), 120);
+  };
+
+  function draw() {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => {
+      waiting = false;
+      drawNow();
+    });
+  }
+
+  function drawNow() {
+    const { clientWidth: width, clientHeight: height } = holder;
+    if (width === 0 || height === 0) return;
+    renderer.render(scene, rig.camera);
+    const { layers } = store.state;
+    labels.draw([
+      ...(layers.has('ids') ? objects.labels(current.objects) : []),
+      ...(layers.has('rings') ? rings.labels() : []),
+    ], objects.object.matrix, rig.camera, width, height);
+    holder.dataset.frame = current.frame;
+    holder.dataset.draws = Number(holder.dataset.draws ?? 0) + 1;
+  }
+
+  function colourPoints() {
+    const { colour, limit, limits } = store.state;
+    const chosen = colouring(colour);
+    const most = limit ?? limits[chosen.id];
+    points.colourBy(chosen, chosen.map === 'diverging' ? [-most, most] : [0, most], ground);
+  }
+
+  function drawObjects() {
+    objects.show(current.objects, ground);
+    const run = runAt(report, store.state);
+    const velocity = run.frames.ego_velocity.slice(3 * current.frame, 3 * current.frame + 3);
+    sensor.show(velocity.every((value) => value !== null) ? velocity : null, cssColour('--ink'));
+  }
+
+  /** Puts the points of the current scan into the buffers: fewer while something moves and that would be slow. */
+  function showPoints(inMotion) {
+    const { scan, scanObjects } = current;
+    const most = context.software && inMotion && scan ? POINTS_IN_MOTION : Infinity;
+    const all = !scan || scan.count <= most;
+    if (drawn?.scan !== scan || drawn.all !== all) points.show(scan, scanObjects.map(({ id }) => id), most);
+    drawn = { scan, all };
+    clearTimeout(restTimer);
+    if (!all) {
+      restTimer = setTimeout(() => {
+        showPoints(false);
+        draw();
+      }, REST);
+    }
+  }
+
+  function showScan(run, place, scan) {
+    const frame = place === null ? null : run.scans.frames[place];
+    const listed = frame === null ? [] : (run.frames.objects[frame] ?? []).map(objectOf);
+    current.scanObjects = listed;
+    showPoints(true);
+    predicted.show(scan, listed, place === null ? 0 : run.scans.dt[place] ?? 0);
+    if (scan && scan.count > 0) {
+      // One height for a whole run, so that colours and rings do not jump.
+      if (current.groundOf !== run) {
+        groundHeight = quantile(scan.positions.filter((_, i) => i % 3 === 2), 0.05, -1.8);
+        points.setGroundHeight(groundHeight);
+        rings.show(groundHeight, cssColour('--rings'));
+        current.groundOf = run;
+      }
+    }
+    const pose = frame === null ? null : poseOf(run.frames.poses, frame);
+    for (const object of atScan) object.matrix.copy(pose ? poseMatrix(pose, origin) : new Matrix4());
+  }
+
+  async function showFrame() {
+    const ticket = ++tickets;
+    const { run: runIndex, frame, playing } = store.state;
+    const run = report.runs[runIndex];
+    const place = canInflate() ? keptScan(run, frame) : null;
+    let scan = null;
+    let trouble = run.scans && !canInflate()
+      ? 'This browser cannot unpack the scans (it lacks DecompressionStream); everything else works.' : '';
+    if (place !== null) {
+      try {
+        scan = await cache.get(runIndex, place);
+      } catch (error) {
+        trouble = `The scan of frame ${run.scans.frames[place]} cannot be read: ${error.message}`;
+      }
+      if (playing) {
+        for (let k = 1; k <= READ_AHEAD && place + k < run.scans.frames.length; ++k) cache.get(runIndex, place + k).catch(() => {});
+      }
+    }
+    // Something newer may be drawn already; something older may not stand in the way of what follows.
+    if (ticket < current.ticket || runIndex !== store.state.run) return;
+    const isNewScan = scan !== current.scan || run !== current.run;
+    current = { ...current, ticket, frame, place, scan, run, objects: (run.frames.objects[frame] ?? []).map(objectOf) };
+    if (isNewScan) showScan(run, place, scan);
+    const pose = poseOf(run.frames.poses, frame);
+    const matrix = pose ? poseMatrix(pose, origin) : new Matrix4();
+    for (const object of atFrame) object.matrix.copy(matrix);
+    drawObjects();
+    paths.drive((other) => sameScan(run, frame, other));
+    if (pose) {
+      const [x, y] = matrix.elements; // the sensor's x axis in the world
+      rig.moveAnchor({ place: matrix.elements.slice(12, 15), yaw: Math.atan2(y, x) + heading });
+    }
+    store.set({ shown: { frame, place, scanFrame: place === null ? null : run.scans.frames[place], trouble } });
+    draw();
+  }
+
+  function showRuns() {
+    const shown = runsShown(report, store.state, ground);
+    const group = groupAt(report, store.state);
+    const run = runAt(report, store.state);
+    origin = originOf(report.runs[group.runs[0]] ?? run);
+    heading = headingInSensor(run);
+    const reference = run.truth ? run : shown.map((entry) => entry.run).find((other) => other.truth) ?? null;
+    paths.show(shown, reference, cssColour('--ink'), origin);
+    rig.setBounds(boundsOf(shown.map((entry) => entry.run), origin));
+  }
+
+  async function showMap() {
+    const runIndex = store.state.run;
+    const wanted = store.state.layers.has('map') && report.runs[runIndex].map && canInflate();
+    if (!wanted || map.object.userData.run === runIndex) return;
+    map.object.userData.run = runIndex;
+    map.show(null, origin);
+    try {
+      map.show(await readMap(runIndex), origin);
+    } catch (error) {
+      store.set({ shown: { ...store.state.shown, trouble: `The static map cannot be read: ${error.message}` } });
+    }
+    draw();
+  }
+
+  function showLayers() {
+    const { layers } = store.state;
+    points.setShown(layers.has('unused'), layers.has('still'), layers.has('moving'));
+    predicted.object.visible = layers.has('predicted');
+    objects.boxes.visible = layers.has('boxes');
+    objects.arrows.visible = layers.has('arrows');
+    paths.estimates.visible = layers.has('path');
+    paths.truths.visible = layers.has('truth');
+    map.object.visible = layers.has('map') && map.object.userData.run === store.state.run;
+    rings.object.visible = layers.has('rings');
+    sensor.object.visible = layers.has('sensor');
+    draw();
+  }
+
+  function resize() {
+    const { clientWidth: width, clientHeight: height } = holder;
+    if (width === 0 || height === 0) return;
+    renderer.setSize(width, height, false);
+    rig.resize(width, height);
+    drawNow(); // at once, or the emptied canvas shows for a moment
+  }
+
+  /** What is known of the point under the pointer: rows for the read-out, or null. */
+  function pick(event) {
+    const { scan } = current;
+    if (!scan || !points.object.visible) return null;
+    const box = canvas.getBoundingClientRect();
+    rig.camera.updateMatrixWorld();
+    const matrix = new Matrix4().multiplyMatrices(rig.camera.projectionMatrix, rig.camera.matrixWorldInverse).multiply(points.object.matrix);
+    const { layers } = store.state;
+    const isShown = (i) => layers.has(scan.label[i] === 0 ? 'unused' : scan.label[i] === 1 ? 'still' : 'moving');
+    const i = pointUnder(scan.positions, scan.count, matrix.elements,
+      { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height, reach: 10 }, isShown);
+    return i < 0 ? null : {
+      place: Array.from(scan.positions.slice(3 * i, 3 * i + 3)), doppler: scan.doppler[i],
+      compensated: scan.compensated[i], residual: scan.residual[i], label: scan.label[i],
+      object: current.scanObjects[scan.label[i] - 3]?.id ?? null,
+    };
+  }
+
+  let pressedAt = null;
+  canvas.addEventListener('pointerdown', (event) => { pressedAt = [event.clientX, event.clientY]; });
+  canvas.addEventListener('pointerup', (event) => {
+    const moved = pressedAt && Math.hypot(event.clientX - pressedAt[0], event.clientY - pressedAt[1]);
+    if (moved !== null && moved < 4) store.set({ picked: pick(event) });
+  });
+  canvas.addEventListener('webglcontextrestored', draw);
+
+  const start = () => {
+    points.reserve(largest);
+    store.watch(['theme', 'systemTheme'], () => {
+      ground = groundOf(store.state);
+      renderer.setClearColor(new Color().setRGB(...cssColour('--scene', true)));
+      predicted.setGround(ground);
+      map.setGround(ground);
+      rings.show(groundHeight, cssColour('--rings'));
+      drawObjectsIfAny();
+      draw();
+    });
+    store.watch(['colour', 'limit', 'limits', 'theme', 'systemTheme'], () => { colourPoints(); draw(); });
+    store.watch(['group', 'run', 'hidden', 'theme', 'systemTheme'], () => { showRuns(); drawObjectsIfAny(); draw(); });
+    store.watch(['run', 'layers'], showMap);
+    store.watch(['layers', 'run'], showLayers);
+    store.watch(['size'], ({ size }) => {
+      for (const part of [points, predicted, map]) part.setSize(size);
+      draw();
+    });
+    rig.setMode(store.state.camera, null);
+    resize();
+    let restored = store.state.eye;
+    store.watch(['run', 'frame'], async () => {
+      await showFrame();
+      // The eye of a link is relative to the sensor, whose place is known only now.
+      if (restored) rig.setMode(store.state.camera, restored);
+      else if (store.state.camera === 'free' && current.ticket === 1) rig.reset();
+      restored = null;
+      draw();
+    });
+    store.watch(['group'], (_, changed) => {
+      if (changed && store.state.camera === 'free' && current.ticket > 0) rig.reset();
+    });
+    let mode = store.state.camera;
+    store.watch(['camera'], ({ camera }) => {
+      if (camera === mode) return;
+      mode = camera;
+      rig.setMode(camera, null);
+      keepEye();
+      draw();
+    });
+    new ResizeObserver(resize).observe(holder);
+  };
+
+  function drawObjectsIfAny() {
+    if (!current.run) return;
+    drawObjects();
+    paths.drive((other) => sameScan(current.run, current.frame, other));
+  }
+
+  return {
+    element: holder,
+    start,
+    resetCamera() {
+      rig.reset();
+      keepEye();
+      draw();
+    },
+  };
+}

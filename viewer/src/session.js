@@ -1,0 +1,51 @@
+// What is looked at: the runs that are shown over each other, the one in front, and its frames.
+import { categoryColour } from './colour/maps.js';
+import { frameCount, keptScan, lastFrame } from './runs.js';
+
+/** The groups of a page; a page of one run has one. */
+export const groupsOf = (report) =>
+  report.groups?.some(({ runs }) => runs.length) ? report.groups.filter(({ runs }) => runs.length) : [{ name: report.title, runs: report.runs.map((_, k) => k) }];
+
+export const groupAt = (report, state) => groupsOf(report)[state.group] ?? groupsOf(report)[0];
+
+export const runAt = (report, state) => report.runs[state.run];
+
+/** The runs shown over each other, with their colours. */
+export const runsShown = (report, state, ground) =>
+  groupAt(report, state).runs
+    .map((index, k) => ({ index, run: report.runs[index], colour: categoryColour(k, ground), dash: k >= 8 }))
+    .filter(({ index }) => index === state.run || !state.hidden.has(index));
+
+/** The frame of another run over the same recording that belongs to a frame of the one in front: the same scan. */
+export function sameScan(from, frame, to) {
+  if (from === to) return frame;
+  const scan = from.frames.index[frame];
+  let low = 0;
+  let high = frameCount(to) - 1;
+  while (low < high) {
+    const middle = (low + high + 1) >> 1;
+    if (to.frames.index[middle] <= scan) low = middle;
+    else high = middle - 1;
+  }
+  return low;
+}
+
+/** What must be true of a state read from a link before it is used on this page. */
+export function fitState(report, state) {
+  const groups = groupsOf(report);
+  const group = groups[state.group] ? state.group : 0;
+  const runs = groups[group].runs;
+  const withScans = runs.find((index) => report.runs[index].scans !== null);
+  const run = runs.includes(state.run) ? state.run : withScans ?? runs[0] ?? 0;
+  return { ...state, group, run, frame: Math.min(state.frame, lastFrame(report.runs[run])) };
+}
+
+/** A frame to begin with: the first whose scan has moving objects in it, some way into the drive. */
+export function firstFrame(run) {
+  const begin = Math.min(frameCount(run) - 1, Math.max(1, Math.floor(frameCount(run) / 4)));
+  for (let frame = begin; frame < frameCount(run); ++frame) {
+    const place = keptScan(run, frame);
+    if (place !== null && run.scans.frames[place] === frame && run.frames.objects[frame]?.length > 0) return frame;
+  }
+  return Math.max(0, begin);
+}

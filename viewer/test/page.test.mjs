@@ -1,0 +1,499 @@
+// The page as a reader meets it, opened from a file by a headless Chromium. Skipped with 77 where there is none.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import test, { after, before } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { bundle } from '../build.mjs';
+import { findBrowser, openPage, skipIfMissing } from './browser.mjs';
+import { pageOf, sampleRun, samples } from './sample_page.mjs';
+
+const found = await findBrowser();
+skipIfMissing(found);
+
+const folder = mkdtempSync(join(tmpdir(), 'viewer-'));
+let browser;
+let viewer;
+before(async () => {
+  viewer = await bundle();
+  browser = await found.launch();
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+/** The address of a page with this content. */
+function write(name, content) {
+  const file = join(folder, `${name}.html`);
+  writeFileSync(file, pageOf(content, viewer));
+  return pathToFileURL(file).href;
+}
+
+/** Opens a page, lets `act` use it, and fails when the page wrote an error or asked for anything. */
+async function onPage(address, act, options = {}) {
+  const { page, troubles } = await openPage(options.browser ?? browser, address, options.context);
+  try {
+    await page.waitForSelector('.scene-holder[data-frame]');
+    await act(page);
+    assert.deepEqual(troubles, []);
+  } finally {
+    await page.context().close();
+  }
+}
+
+const frameOf = (page) => page.$eval('.scene-holder', (holder) => Number(holder.dataset.frame));
+const shown = (page, frame) => page.waitForSelector(`.scene-holder[data-frame="${frame}"]`);
+
+// What lies over the view is no part of its picture.
+const SCENE_ONLY = '.status, .legend, .point-reading, .menu-body, .labels { visibility: hidden } .scene { outline: none !important }';
+
+/** Waits until nothing is drawn any more, then gives the picture of the view. */
+async function picture(page) {
+  await page.evaluate(async () => {
+    const holder = document.querySelector('.scene-holder');
+    let draws = '';
+    while (draws !== holder.dataset.draws) {
+      draws = holder.dataset.draws;
+      await new Promise((done) => setTimeout(done, 120));
+    }
+  });
+  return page.locator('canvas.scene').screenshot({ style: SCENE_ONLY });
+}
+
+/** The pixels of a picture, four bytes each. */
+async function pixels(page, image) {
+  const text = await page.evaluate(async (png) => {
+    const bytes = Uint8Array.from(atob(png), (c) => c.charCodeAt(0));
+    const bitmap = await createImageBitmap(new Blob([bytes], { type: 'image/png' }));
+    const canvas = new OffscreenCanvas(bitmap.width, bitmap.height);
+    const pen = canvas.getContext('2d');
+    pen.drawImage(bitmap, 0, 0);
+    const { data } = pen.getImageData(0, 0, bitmap.width, bitmap.height);
+    let binary = '';
+    for (let at = 0; at < data.length; at += 8192) binary += String.fromCharCode(...data.subarray(at, at + 8192));
+    return btoa(binary);
+  }, image.toString('base64'));
+  return Buffer.from(text, 'base64');
+}
+
+/** Whether two pictures are the same but for the rounding of a place that went through a link or around the sensor. */
+async function isSame(page, one, other) {
+  const [a, b] = [await pixels(page, one), await pixels(page, other)];
+  assert.equal(a.length, b.length);
+  let different = 0;
+  for (let i = 0; i < a.length; i += 4) {
+    different += Math.max(Math.abs(a[i] - b[i]), Math.abs(a[i + 1] - b[i + 1]), Math.abs(a[i + 2] - b[i + 2])) > 16;
+  }
+  return different < 0.002 * (a.length / 4);
+}
+
+/** How many pixels of the view have which colour. */
+async function colours(page) {
+  const data = await pixels(page, await picture(page));
+  const counts = {};
+  for (let i = 0; i < data.length; i += 4) {
+    const key = `${data[i]},${data[i + 1]},${data[i + 2]}`;
+    counts[key] = (counts[key] ?? 0) + 1;
+  }
+  return counts;
+}
+
+const run = () => write('run', samples.run());
+
+test('the view is not blank, and nothing is asked for but the page', async () => {
+  await onPage(run(), async (page) => {
+    const counts = await colours(page);
+    assert.ok(Object.keys(counts).length > 50, `only ${Object.keys(counts).length} colours`);
+    assert.ok((await page.$$('.chart')).length >= 8);
+  });
+});
+
+test('scrubbing, stepping, keys and the ends of the timeline change the frame and the picture', async () => {
+  await onPage(`${run()}#frame=5`, async (page) => {
+    await shown(page, 5);
+    const first = await picture(page);
+    await page.fill('.timeline input.frames', '11');
+    await shown(page, 11);
+    assert.ok(!first.equals(await picture(page)));
+    await page.click('[aria-label^="One frame on"]');
+    await shown(page, 12);
+    await page.keyboard.press('ArrowLeft');
+    await shown(page, 11);
+    await page.keyboard.press('Shift+ArrowLeft');
+    await shown(page, 1);
+    await page.keyboard.press('End');
+    await shown(page, 23);
+    await page.keyboard.press('Home');
+    await shown(page, 0);
+    await page.keyboard.press('n');
+    await shown(page, 7);
+    assert.match(await page.textContent('.status'), /degenerate.*planes alone do not hold the position.*along x/s);
+    await page.keyboard.press('n');
+    await shown(page, 12);
+    assert.match(await page.textContent('.status .badge'), /lost/);
+  });
+});
+
+test('playing goes on by itself, stops at the end, and begins again', async () => {
+  await onPage(`${run()}#frame=0&speed=8`, async (page) => {
+    await page.click('.play');
+    await shown(page, 23);
+    await page.waitForSelector('.play[aria-pressed="false"]');
+    await page.keyboard.press('Space');
+    await page.waitForFunction(() => Number(document.querySelector('.scene-holder').dataset.frame) < 20);
+    await page.keyboard.press('Space');
+    await page.waitForSelector('.play[aria-pressed="false"]');
+    const frame = await frameOf(page);
+    await page.waitForTimeout(300);
+    assert.ok(Math.abs((await frameOf(page)) - frame) <= 1);
+  });
+});
+
+test('every colouring draws another picture, and its legend has numbers and units', async () => {
+  await onPage(`${run()}#frame=6`, async (page) => {
+    const pictures = [];
+    for (const [key, legend] of [['1', /−\d+.*\+\d+/s], ['2', /measured \(m\/s\)/], ['3', /static.*moving.*not used/s], ['4', /Residual \(m\).*0\.2/s], ['5', /Height \(m\)/]]) {
+      await page.keyboard.press(key);
+      pictures.push((await picture(page)).toString('base64'));
+      assert.match(await page.textContent('.legend'), legend);
+    }
+    assert.equal(new Set(pictures).size, 5);
+    await page.selectOption('.toolbar select', 'compensated');
+    const usual = await picture(page);
+    assert.equal(usual.toString('base64'), pictures[0]);
+    await page.click('[aria-label^="Narrower range"]');
+    assert.ok(!usual.equals(await picture(page)));
+  });
+});
+
+test('every layer changes the picture, and back', async () => {
+  await onPage(`${run()}#frame=6`, async (page) => {
+    const before = await picture(page);
+    await page.click('.menu summary');
+    for (const layer of ['still', 'moving', 'unused', 'boxes', 'arrows', 'predicted', 'path', 'truth', 'map', 'rings', 'sensor']) {
+      const box = page.locator(`[data-layer="${layer}"]`);
+      const labels = await page.locator('.labels').innerText();
+      await box.click();
+      assert.ok(!before.equals(await picture(page)), layer);
+      assert.equal(await page.locator('.labels').innerText() === labels, layer !== 'rings', layer);
+      await box.click();
+      assert.ok(before.equals(await picture(page)), `${layer} and back`);
+    }
+    assert.match(await page.locator('.labels').innerText(), /6 · \d+ m\/s/);
+    await page.keyboard.press('i');
+    await picture(page);
+    assert.doesNotMatch(await page.locator('.labels').innerText(), /m\/s/);
+  });
+});
+
+test('predicted points stand beside the measured ones, in two colours and two shapes', async () => {
+  await onPage(`${run()}#frame=6&layers=predicted&size=4`, async (page) => {
+    const counts = await colours(page);
+    const [measured, predicted] = [counts['209,53,15'] ?? 0, counts['0,138,99'] ?? 0];
+    assert.ok(measured > 30 && predicted > 30, `${measured} and ${predicted} pixels`);
+    assert.match(await page.textContent('.legend'), /measured.*at the next scan/s);
+  });
+});
+
+test('cameras: follow goes along, free stays, top looks down; reset puts them back', async () => {
+  await onPage(`${run()}#frame=6`, async (page) => {
+    const pictures = [await picture(page)];
+    for (const key of ['v', 'c']) {
+      await page.keyboard.press(key);
+      if (key === 'v') await page.keyboard.press('r');
+      pictures.push(await picture(page));
+    }
+    assert.equal(new Set(pictures.map((image) => image.toString('base64'))).size, 3);
+    await page.keyboard.press('f');
+    assert.ok(await isSame(page, await picture(page), pictures[0]));
+    const box = await page.locator('canvas.scene').boundingBox();
+    await page.mouse.move(box.x + 300, box.y + 300);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 420, box.y + 330, { steps: 4 });
+    await page.mouse.up();
+    assert.ok(!(await isSame(page, await picture(page), pictures[0])));
+    await page.click('[aria-label^="Put the camera back"]');
+    assert.ok(await isSame(page, await picture(page), pictures[0]));
+  });
+});
+
+test('a click on a plot goes to that frame; hovering reads the values there', async () => {
+  await onPage(`${run()}#frame=0`, async (page) => {
+    const area = page.locator('[data-plot="iterations"] .chart-area');
+    const box = await area.boundingBox();
+    // The axis runs from 44 px to 8 px before the end (time 0 to 2.3 s): 1.5 s is frame 15.
+    const x = 44 + ((box.width - 52) * 1.5) / 2.3;
+    await area.click({ position: { x, y: 40 } });
+    await shown(page, 15);
+    assert.equal(await page.inputValue('input.frames'), '15');
+    const at15 = await page.textContent('[data-plot="ego_speed"] .reading b');
+    await area.hover({ position: { x: 46, y: 30 } });
+    assert.match(await page.textContent('[data-plot="iterations"] .chart-at'), /^time 0/);
+    assert.equal(await page.textContent('[data-plot="ego_speed"] .reading b'), at15);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 44 + ((box.width - 52) * 0.8) / 2.3, box.y + 30, { steps: 5 });
+    await page.mouse.up();
+    await shown(page, 8);
+  });
+});
+
+test('a click on a point tells what is known of it', async () => {
+  await onPage(`${run()}#frame=6&camera=top&layers=still&size=6`, async (page) => {
+    await picture(page);
+    const box = await page.locator('canvas.scene').boundingBox();
+    for (let k = 0; k < 40 && !(await page.locator('.point-reading').isVisible()); ++k) {
+      await page.mouse.click(box.x + box.width / 2 - 100 + 9 * k, box.y + box.height / 2 - 60 + 4 * k);
+    }
+    assert.match(await page.textContent('.point-reading'), /range.*m.*Doppler.*m\/s.*static/s);
+  });
+});
+
+test('the address holds the state, and a reload brings it back', async () => {
+  await onPage(`${run()}#frame=4`, async (page) => {
+    await page.keyboard.press('3');
+    await page.keyboard.press('b');
+    await page.keyboard.press('v');
+    await page.fill('input.frames', '9');
+    await page.click('text=Summary');
+    const box = await page.locator('canvas.scene').boundingBox();
+    await page.mouse.move(box.x + 200, box.y + 300);
+    await page.mouse.down();
+    await page.mouse.move(box.x + 330, box.y + 280, { steps: 4 });
+    await page.mouse.up();
+    await page.mouse.move(5, 5);
+    const before = await picture(page);
+    await page.waitForFunction(() => /eye=/.test(location.hash) && /frame=9/.test(location.hash));
+    await page.waitForTimeout(400);
+    const hash = await page.evaluate(() => location.hash);
+    assert.match(hash, /colour=kind/);
+    assert.match(hash, /camera=free/);
+    assert.match(hash, /tab=summary/);
+    assert.doesNotMatch(hash, /boxes/);
+    await page.reload();
+    await shown(page, 9);
+    assert.equal(await page.locator('[data-camera="free"]').getAttribute('aria-pressed'), 'true');
+    assert.ok(await page.locator('#sheet-summary').isVisible());
+    assert.ok(await isSame(page, await picture(page), before));
+  });
+});
+
+for (const [width, height] of [[1280, 800], [820, 1180], [390, 844], [360, 640]]) {
+  for (const colorScheme of ['light', 'dark']) {
+    test(`${width} x ${height}, ${colorScheme}: nothing sticks out, the view is there`, async () => {
+      await onPage(run(), async (page) => {
+        for (const tab of ['Plots', 'Distribution', 'Summary', 'Settings']) {
+          await page.click(`.tabs >> text=${tab}`);
+          assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width, tab);
+        }
+        const box = await page.locator('canvas.scene').boundingBox();
+        assert.ok(box.width > 0.55 * Math.min(width, 1000) && box.height > 200);
+        const ground = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
+        assert.equal(ground, colorScheme === 'dark' ? 'rgb(10, 13, 19)' : 'rgb(238, 240, 244)');
+        const counts = await colours(page);
+        assert.ok((counts[colorScheme === 'dark' ? '12,16,23' : '250,251,252'] ?? 0) > 1000);
+        await page.keyboard.press('t');
+        assert.notEqual(await page.evaluate(() => getComputedStyle(document.body).backgroundColor), ground);
+      }, { context: { viewport: { width, height }, colorScheme } });
+    });
+  }
+}
+
+const HOSTILE = '</script><script>window.broken=1</script><img src=x onerror="window.broken=1">"\'&amp;<!-- \u2028 ${1} ';
+
+test('hostile texts are shown as texts', async () => {
+  const texts = {
+    name: HOSTILE, facts: [[HOSTILE, HOSTILE]], command: HOSTILE, warnings: [HOSTILE], origin: [[HOSTILE, HOSTILE]],
+    configuration: [[HOSTILE, HOSTILE]], summary: [{ key: HOSTILE, value: HOSTILE, meaning: HOSTILE, number: 1, better: 'lower' }],
+  };
+  const part = sampleRun({ texts });
+  part.run.frames.reason.fill(HOSTILE);
+  part.run.frames.status.fill(HOSTILE);
+  part.run.frames.lost_directions.fill([HOSTILE]);
+  for (const plot of part.run.plots) Object.assign(plot, { title: HOSTILE, unit: HOSTILE }, plot.series.forEach((series) => { series.name = HOSTILE; }));
+  const tables = [{ title: HOSTILE, caption: HOSTILE, columns: [HOSTILE], rows: [[HOSTILE]], best: [[true]] }];
+  const content = { kind: 'benchmark', title: HOSTILE, parts: [part], notes: [HOSTILE], groups: [{ name: HOSTILE, runs: [0] }], tables };
+  await onPage(write('hostile', content), async (page) => {
+    for (const tab of await page.$$('.tabs button')) {
+      await tab.click();
+      const visible = await page.$eval('.sheet:not([hidden])', (sheet) => sheet.textContent);
+      if ((await tab.textContent()) !== 'Distribution') assert.ok(visible.includes(HOSTILE), await tab.textContent());
+    }
+    assert.equal(await page.title(), HOSTILE.replace(/[ \n]+/g, ' ').trim());
+    assert.ok((await page.textContent('h1')) === HOSTILE);
+    assert.equal(await page.evaluate(() => window.broken), undefined);
+    assert.equal(await page.$('img'), null);
+    assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280);
+  });
+});
+
+test('a comparison lays runs over each other, marks the best, and brings one to the front', async () => {
+  await onPage(write('comparison', samples.comparison()), async (page) => {
+    assert.equal((await page.$$('.chip')).length, 3);
+    assert.match(await page.textContent('[data-plot="translation_error"]'), /dynamic-icp.*kiss-icp.*gicp/s);
+    await page.click('.tabs >> text=Numbers');
+    const best = await page.$$eval('.numbers .best', (cells) => cells.map((cell) => cell.textContent));
+    assert.deepEqual(best, ['★0.00667 m', '★0.00200°', '★102 1/s']);
+    await page.click('.tabs >> text=Distribution');
+    assert.match(await page.getAttribute('[data-plot="translation_error-distribution"] canvas', 'aria-label'), /kiss-icp from 0 to 100/);
+    const all = await picture(page);
+    await page.click('[aria-label="Show gicp"]');
+    assert.ok(!all.equals(await picture(page)));
+    assert.equal((await page.$$('[data-plot="translation_error-distribution"] .reading')).length, 2);
+    await page.click('.chip button:has-text("kiss-icp")');
+    await page.waitForFunction(() => /No scans in this page/.test(document.querySelector('.status-note').textContent));
+    await page.click('.tabs >> text=Run');
+    assert.match(await page.textContent('.run-name'), /kiss-icp/);
+  });
+});
+
+test('a benchmark shows its tables and each of its sequences', async () => {
+  await onPage(write('benchmark', samples.benchmark()), async (page) => {
+    assert.match(await page.textContent('#sheet-tables'), /Accuracy.*tunnel.*★0\.007/s);
+    const street = await picture(page);
+    await page.selectOption('[aria-label="Sequence"]', '1');
+    assert.ok(!street.equals(await picture(page)));
+    await page.click('.tabs >> text=Numbers');
+    assert.match(await page.textContent('#sheet-numbers'), /tunnel.*24/s);
+    assert.equal((await page.$$('.chip')).length, 2);
+  });
+});
+
+test('frames without their own scan show the one before, and say so', async () => {
+  await onPage(`${write('sparse', samples.run({ keepEvery: 4 }))}#frame=6`, async (page) => {
+    await shown(page, 6);
+    assert.match(await page.textContent('.status-note'), /points of frame 4/);
+    await page.fill('input.frames', '8');
+    await shown(page, 8);
+    assert.doesNotMatch(await page.textContent('.status-note'), /points of frame/);
+  });
+});
+
+test('a run without truth, scans, map and objects still has its page', async () => {
+  const part = sampleRun({ truth: false, scans: false, map: false });
+  part.run.frames.objects = part.run.frames.objects.map(() => []);
+  part.run.frames.poses.fill(null, 35, 42);
+  await onPage(write('bare', { kind: 'run', title: 'bare', parts: [part] }), async (page) => {
+    await page.keyboard.press('Home');
+    await shown(page, 0);
+    await page.fill('input.frames', '5'); // has no pose
+    await shown(page, 5);
+    assert.ok(Object.keys(await colours(page)).length > 3);
+    await page.click('.menu summary');
+    assert.deepEqual(await page.$$eval('[data-layer]', (boxes) => boxes.map((box) => box.dataset.layer)), ['path', 'rings', 'sensor']);
+  });
+});
+
+test('a run without frames and a benchmark without runs have their page', async () => {
+  await onPage(write('empty', samples.run({ frames: 0 })), async (page) => {
+    await page.keyboard.press('End');
+    await page.keyboard.press('n');
+    assert.equal(await frameOf(page), 0);
+  });
+  const { tables } = samples.benchmark();
+  const content = { kind: 'benchmark', title: 'tables', parts: [], groups: [{ name: 'street', runs: [] }], tables, notes: ['runs left out'] };
+  const { page, troubles } = await openPage(browser, write('tables', content));
+  assert.match(await page.textContent('#app'), /Accuracy.*★0\.007.*runs left out/s);
+  assert.deepEqual(troubles, []);
+  await page.context().close();
+});
+
+test('a single frame is a run', async () => {
+  await onPage(write('single', samples.run({ frames: 1 })), async (page) => {
+    await shown(page, 0);
+    await page.keyboard.press('Space');
+    await page.keyboard.press('ArrowRight');
+    assert.equal(await frameOf(page), 0);
+  });
+});
+
+test('a damaged scan is told, and the others stay', async () => {
+  const part = sampleRun();
+  part.scans[6] = part.scans[6].subarray(0, 100);
+  await onPage(`${write('damaged', { kind: 'run', title: 'damaged', parts: [part] })}#frame=6`, async (page) => {
+    await page.waitForFunction(() => /scan of frame 6 cannot be read/.test(document.querySelector('.status-note').textContent));
+    await page.keyboard.press('ArrowRight');
+    await shown(page, 7);
+    assert.doesNotMatch(await page.textContent('.status-note'), /cannot be read/);
+  });
+});
+
+test('without DecompressionStream the page says so and the rest works', async () => {
+  const { page, troubles } = await openPage(browser, 'about:blank');
+  await page.addInitScript(() => { delete window.DecompressionStream; });
+  await page.goto(run());
+  await page.waitForFunction(() => /lacks DecompressionStream/.test(document.querySelector('.status-note')?.textContent));
+  assert.ok((await page.$$('.chart')).length >= 8);
+  assert.deepEqual(troubles.filter((text) => !text.startsWith('request: file:')), []);
+  await page.context().close();
+});
+
+test('without WebGL the page says so and the rest works', async () => {
+  const address = run();
+  await browser.close();
+  browser = await found.launch(['--disable-gpu', '--disable-3d-apis']);
+  await onPage(`${address}#frame=3`, async (page) => {
+    await shown(page, 3);
+    assert.match(await page.textContent('.scene-note'), /no WebGL/);
+    await page.keyboard.press('ArrowRight');
+    await shown(page, 4);
+    await page.locator('[data-plot="iterations"] .chart-area').click({ position: { x: 60, y: 30 } });
+    assert.notEqual(await frameOf(page), 4);
+  });
+  await browser.close();
+  browser = await found.launch();
+});
+
+test('everything can be reached by the keyboard, has a name, and shows its focus', async () => {
+  await onPage(run(), async (page) => {
+    const nameless = await page.$$eval('button, input, select, summary', (all) =>
+      all.filter((one) => !(one.getAttribute('aria-label') || one.textContent.trim() || one.closest('label')?.textContent.trim())).length);
+    assert.equal(nameless, 0);
+    const reached = new Set();
+    await page.click('h1');
+    for (let k = 0; k < 40; ++k) {
+      await page.keyboard.press('Tab');
+      reached.add(await page.evaluate(() => {
+        const one = document.activeElement;
+        if (one === document.body) return 'the end';
+        return getComputedStyle(one).outlineStyle === 'none' ? `no outline: ${one.className}` : one.getAttribute('aria-label') ?? one.textContent;
+      }));
+    }
+    for (const name of ['Colour of the points', 'Play or pause (space)', 'Frame', 'Point size in pixels', 'Layers', 'Plots']) {
+      assert.ok([...reached].some((entry) => entry.startsWith(name)), `${name} in ${[...reached].join(' | ')}`);
+    }
+    assert.ok(![...reached].some((entry) => entry.startsWith('no outline')), [...reached].join(' | '));
+    await page.keyboard.press('?');
+    assert.ok(await page.locator('dialog.help').isVisible());
+    assert.match(await page.textContent('dialog.help'), /play or pause.*follow the sensor/s);
+    await page.keyboard.press('Escape');
+    assert.ok(!(await page.locator('dialog.help').isVisible()));
+    await page.locator('[role=tab][aria-selected=true]').focus();
+    await page.keyboard.press('ArrowRight');
+    assert.ok(await page.locator('#sheet-distributions').isVisible());
+  });
+});
+
+test('settings can be searched, the command copied, a link shared', async () => {
+  await onPage(`${run()}#tab=configuration&frame=3`, async (page) => {
+    await page.fill('input[type=search]', 'kernel');
+    assert.deepEqual(await page.$$eval('#sheet-configuration details th', (cells) => cells.map((cell) => cell.textContent)), ['registration.kernel']);
+    assert.equal(await frameOf(page), 3); // letters typed there are no keys of the page
+    await page.click('.tabs >> text=Summary');
+    await page.context().grantPermissions(['clipboard-read', 'clipboard-write']);
+    await page.click('.command button');
+    assert.match(await page.evaluate(() => navigator.clipboard.readText()), /^dynamic-icp run street/);
+    await page.click('text=Copy link');
+    assert.match(await page.evaluate(() => navigator.clipboard.readText()), /^file:.*#.*frame=3/);
+  });
+});
+
+test('a page of a newer schema keeps what it shows without the viewer', async () => {
+  const address = write('newer', samples.run());
+  const file = join(folder, 'newer.html');
+  writeFileSync(file, pageOf(samples.run(), viewer).replace('"schema":1', '"schema":2'));
+  const { page } = await openPage(browser, address);
+  assert.match(await page.textContent('#app'), /did not start: .*schema 2.*Without JavaScript this page shows its numbers/s);
+  await page.context().close();
+});

@@ -1,0 +1,101 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { decodeScan } from '../src/bytes.js';
+import { closest, headingInSensor, keptScan, lastNotAbove, troubledRanges } from '../src/runs.js';
+import { fromAnchor, toAnchor } from '../src/scene/camera_rig.js';
+import { pathSegments } from '../src/scene/paths.js';
+import { pointUnder } from '../src/scene/picking.js';
+import { predictPoints } from '../src/scene/predicted_points.js';
+import { categoriesOf } from '../src/scene/scan_points.js';
+import { arrow, boxEdges, circle } from '../src/scene/shapes.js';
+import { createScanCache } from '../src/scan_cache.js';
+import { scanBytes } from './sample_page.mjs';
+
+const near = (a, b) => a.forEach((value, k) => assert.ok(Math.abs(value - b[k]) < 1e-6, `${a} is not ${b}`));
+
+test('a box has twelve edges of its lengths, its corners turned about its centre', () => {
+  const edges = boxEdges({ centre: [10, 5, 1], extent: [4, 2, 1.5], yaw: Math.PI / 6 });
+  const lengths = [];
+  for (let k = 0; k < edges.length; k += 6) lengths.push(Math.hypot(...[0, 1, 2].map((axis) => edges[k + axis] - edges[k + 3 + axis])));
+  near(lengths.sort(), [1.5, 1.5, 1.5, 1.5, 2, 2, 2, 2, 4, 4, 4, 4]);
+  const front = [10 + 2 * Math.cos(Math.PI / 6) - Math.sin(Math.PI / 6), 5 + 2 * Math.sin(Math.PI / 6) + Math.cos(Math.PI / 6), 1.75];
+  const corners = Array.from({ length: 24 }, (_, k) => edges.slice(3 * k, 3 * k + 3));
+  assert.ok(corners.some((corner) => Math.hypot(...corner.map((value, k) => value - front[k])) < 1e-9));
+});
+
+test('an arrow ends where the velocity leads in a second; what stands has none', () => {
+  const ends = arrow([1, 2, 3], [3, 4, 0]);
+  near(ends.slice(0, 6), [1, 2, 3, 4, 6, 3]);
+  assert.deepEqual(arrow([0, 0, 0], [0, 0, 0]), []);
+  assert.ok(arrow([0, 0, 0], [0, 0, 5]).every(Number.isFinite));
+});
+
+test('a circle closes and keeps its radius', () => {
+  const ends = circle(20, -1.8);
+  near(ends.slice(0, 3), ends.slice(-3));
+  for (let k = 0; k < ends.length; k += 3) assert.ok(Math.abs(Math.hypot(ends[k], ends[k + 1]) - 20) < 1e-9 && ends[k + 2] === -1.8);
+});
+
+const point = (x, label) => ({ x, y: 1, z: 0, doppler: 0, compensated: 0, label, residual: 0 });
+const scan = (() => {
+  const bytes = scanBytes([point(1, 1), point(2, 3), point(3, 4), point(4, 2), point(5, 9)], 0.5);
+  return decodeScan(bytes.buffer.slice(bytes.byteOffset, bytes.byteOffset + bytes.byteLength));
+})();
+
+test('predicted points are those of objects, moved by velocity times time', () => {
+  const { count, positions } = predictPoints(scan, [{ velocity: [10, 0, 0] }, { velocity: [0, -5, 1] }], 0.1);
+  assert.equal(count, 2);
+  near([...positions], [2, 1, 0, 3, 1, 0, 3, 1, 0, 3, 0.5, 0.1]);
+});
+
+test('points take the colour of their object by its id; a label without object is moving', () => {
+  assert.deepEqual([...categoriesOf(scan.label, [12, 7], new Uint8Array(5))], [1, 3 + 4, 3 + 7, 2, 2]);
+});
+
+test('a path breaks where a pose is missing and knows the frame of every piece', () => {
+  const pose = (x) => [x, 0, 0, 0, 0, 0, 1];
+  const none = Array(7).fill(null);
+  const { ends, until } = pathSegments([...pose(1), ...pose(2), ...none, ...pose(4), ...pose(6)], 5, [1, 0, 0]);
+  assert.deepEqual(until, [1, 4]);
+  assert.deepEqual(ends, [0, 0, 0, 1, 0, 0, 3, 0, 0, 5, 0, 0]);
+});
+
+test('the camera comes along: what is relative to the sensor stays so', () => {
+  const anchor = { place: [100, -50, 3], yaw: 0.7 };
+  for (const mode of ['follow', 'top', 'free']) near(toAnchor(mode, anchor, fromAnchor(mode, anchor, [-20, 3, 9])), [-20, 3, 9]);
+  near(fromAnchor('follow', { place: [1, 1, 0], yaw: Math.PI / 2 }, [-10, 0, 5]), [1, -9, 5]);
+  near(fromAnchor('top', { place: [1, 1, 0], yaw: Math.PI / 2 }, [-10, 0, 5]), [-9, 1, 5]);
+});
+
+test('the point under the pointer is the near one of those it hits', () => {
+  // Looking along z with w = z: x and y are halved at twice the distance.
+  const matrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0];
+  const positions = Float32Array.from([0, 0, 10, 0, 0, 4, 2, 0, 4, 0, 0, -3]);
+  const pointer = { x: 50, y: 50, width: 100, height: 100, reach: 5 };
+  assert.equal(pointUnder(positions, 4, matrix, pointer), 1);
+  assert.equal(pointUnder(positions, 4, matrix, pointer, (i) => i !== 1), 0);
+  assert.equal(pointUnder(positions, 4, matrix, { ...pointer, x: 75 }), 2);
+  assert.equal(pointUnder(positions, 4, matrix, { ...pointer, x: 10 }), -1);
+});
+
+test('frames find their kept scan and the frames that need attention', () => {
+  const run = { scans: { frames: [2, 5] }, frames: { status: ['first', 'ok', 'degenerate', 'degenerate', 'lost', 'ok'] } };
+  assert.deepEqual([0, 2, 4, 5, 9].map((frame) => keptScan(run, frame)), [null, 0, 0, 1, 1]);
+  assert.equal(keptScan({ scans: null }, 3), null);
+  assert.deepEqual(troubledRanges(run), [{ status: 'degenerate', from: 2, to: 3 }, { status: 'lost', from: 4, to: 4 }]);
+  assert.deepEqual([-1, 0, 3, 99].map((value) => lastNotAbove([0, 2, 4], value)), [-1, 0, 1, 2]);
+  assert.deepEqual([-5, 0.9, 1.1, 3.1, 77].map((value) => closest([0, 2, 4], value)), [0, 0, 1, 2, 2]);
+});
+
+test('the way the sensor drives is known from its velocity, and is ahead when it stands', () => {
+  const run = (velocity) => ({ frames: { index: [0, 1], ego_velocity: [...velocity, ...velocity] } });
+  assert.ok(Math.abs(headingInSensor(run([0, 5, 0])) - Math.PI / 2) < 1e-9);
+  assert.equal(headingInSensor(run([0, 0.1, 0])), 0);
+});
+
+test('the cache reads a scan once and forgets the one not used for longest', async () => {
+  const reads = [];
+  const cache = createScanCache(async (run, place) => { reads.push(place); return place; }, 2);
+  for (const place of [0, 1, 0, 2, 0, 1]) assert.equal(await cache.get(0, place), place);
+  assert.deepEqual(reads, [0, 1, 2, 1]);
+});

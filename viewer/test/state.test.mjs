@@ -1,0 +1,48 @@
+import assert from 'node:assert/strict';
+import test from 'node:test';
+import { fitState, sameScan } from '../src/session.js';
+import { readFragment, writeFragment } from '../src/state.js';
+
+const usual = {
+  group: 0, run: 0, frame: 0, colour: 'compensated', limit: null, layers: new Set(['boxes', 'ids']), camera: 'follow',
+  eye: null, size: 2.5, speed: 1, tab: 'plots', hidden: new Set(), theme: null,
+};
+
+test('what is written is read again', () => {
+  const state = {
+    ...usual, group: 2, run: 5, frame: 77, colour: 'residual', limit: 0.05, layers: new Set(['map']), camera: 'free',
+    eye: [1.25, -2, 3, 4, 5.5, -6.75], size: 4, speed: 0.25, tab: 'summary', hidden: new Set([3, 4]), theme: 'dark',
+  };
+  assert.deepEqual({ ...usual, ...readFragment(`#${writeFragment(state, usual)}`) }, state);
+});
+
+test('what is usual is left out, but the frame', () => {
+  assert.equal(writeFragment({ ...usual, frame: 9 }, usual), 'frame=9');
+});
+
+test('an empty set of layers is a state of its own', () => {
+  const text = writeFragment({ ...usual, layers: new Set() }, usual);
+  assert.deepEqual(readFragment(text).layers, new Set());
+});
+
+test('nonsense in a link is left out', () => {
+  assert.deepEqual(readFragment('#frame=-3&colour=<b>&eye=1,2&size=NaN&camera=free&__proto__=1&toString=2&limit=&run=1e9'), { camera: 'free' });
+  assert.deepEqual(readFragment('#layers=boxes,<script>,ids').layers, new Set(['boxes', 'ids']));
+});
+
+const run = (frames, scans = null) => ({ frames: { index: Array.from({ length: frames }, (_, k) => 10 + 2 * k) }, scans });
+const report = { runs: [run(5), run(9, {}), run(3)], groups: [{ name: 'a', runs: [0, 1] }, { name: 'b', runs: [2] }] };
+
+test('a link to what this page has not falls back to what it has', () => {
+  assert.equal(fitState(report, { ...usual, frame: 400, run: 1 }).frame, 8);
+  const other = fitState(report, { ...usual, group: 1, run: 0, frame: 4 });
+  assert.deepEqual([other.group, other.run, other.frame], [1, 2, 2]);
+  assert.deepEqual([fitState(report, { ...usual, group: 7, run: 77 }).group, fitState(report, { ...usual, run: 77 }).run], [0, 1]);
+});
+
+test('another run is shown at the same scan', () => {
+  const every = { frames: { index: [0, 1, 2, 3, 4, 5, 6, 7] } };
+  const second = { frames: { index: [1, 3, 5] } };
+  assert.deepEqual([0, 1, 2, 3, 7].map((frame) => sameScan(every, frame, second)), [0, 0, 0, 1, 2]);
+  assert.deepEqual([0, 1, 2].map((frame) => sameScan(second, frame, every)), [1, 3, 5]);
+});
