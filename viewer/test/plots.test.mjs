@@ -3,6 +3,7 @@ import test from 'node:test';
 import { bestOf } from '../src/panels/comparison.js';
 import { cumulative } from '../src/plots/distributions.js';
 import { tracePolyline } from '../src/plots/polyline.js';
+import { needsLogarithm } from '../src/plots/time_plots.js';
 import { createScale, roundStep, tickText, valueRange } from '../src/plots/scale.js';
 
 test('steps are 1, 2 or 5 times a power of ten', () => {
@@ -73,6 +74,13 @@ test('the cumulative curve gives the share up to a value', () => {
   const values = Array.from({ length: 5000 }, (_, k) => (k * 7919) % 5000);
   const long = cumulative(values);
   long.xs.forEach((x, k) => { if (k % 2) assert.ok(Math.abs(long.ys[k] - (100 * values.filter((value) => value <= x).length) / 5000) < 1e-9); });
+});
+
+test('runs that differ by far get a logarithmic axis, runs alike do not', () => {
+  assert.ok(needsLogarithm([[0.0005, 0.0006, null], [0.03, 0.2, 0.04]]));
+  assert.ok(!needsLogarithm([[5, 6], [7, 9, 8]]));
+  assert.ok(!needsLogarithm([[0, 0, 0], [4, 5, 6]]));
+  assert.ok(!needsLogarithm([[1, 2], [null]]));
 });
 
 test('the best is marked only where there is a choice', () => {

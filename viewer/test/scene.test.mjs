@@ -5,7 +5,7 @@ import { closest, headingInSensor, keptScan, lastNotAbove, troubledRanges } from
 import { fromAnchor, toAnchor } from '../src/scene/camera_rig.js';
 import { pathSegments } from '../src/scene/paths.js';
 import { pointUnder } from '../src/scene/picking.js';
-import { predictPoints } from '../src/scene/predicted_points.js';
+import { MOST_CROSSES, predictPoints } from '../src/scene/predicted_points.js';
 import { categoriesOf } from '../src/scene/scan_points.js';
 import { arrow, boxEdges, circle } from '../src/scene/shapes.js';
 import { createScanCache } from '../src/scan_cache.js';
@@ -43,9 +43,19 @@ const scan = (() => {
 })();
 
 test('predicted points are those of objects, moved by velocity times time', () => {
-  const { count, positions } = predictPoints(scan, [{ velocity: [10, 0, 0] }, { velocity: [0, -5, 1] }], 0.1);
-  assert.equal(count, 2);
+  const { measured, predicted, positions } = predictPoints(scan, [{ velocity: [10, 0, 0] }, { velocity: [0, -5, 1] }], 0.1);
+  assert.deepEqual([measured, predicted], [2, 2]);
   near([...positions], [2, 1, 0, 3, 1, 0, 3, 1, 0, 3, 0.5, 0.1]);
+});
+
+test('of an object with many points some are predicted, from all over it', () => {
+  const label = new Uint8Array(1000).fill(3);
+  const many = { count: 1000, label, positions: Float32Array.from({ length: 3000 }, (_, i) => (i % 3 ? 0 : i / 3)) };
+  const { measured, predicted, positions } = predictPoints(many, [{ velocity: [0, 20, 0] }], 0.5);
+  assert.deepEqual([measured, predicted], [1000, MOST_CROSSES]);
+  const xs = [...positions.slice(3000)].filter((_, i) => i % 3 === 0);
+  xs.forEach((x, k) => assert.ok(Math.abs(x - (1000 * k) / MOST_CROSSES) < 2));
+  assert.ok([...positions.slice(3000)].every((value, i) => i % 3 !== 1 || value === 10));
 });
 
 test('points take the colour of their object by its id; a label without object is moving', () => {

@@ -4,6 +4,7 @@ import { colouring, nextLimit } from '../colour/colourings.js';
 import { gradient, markColours } from '../colour/maps.js';
 import { button, element } from '../dom.js';
 import { shortNumber } from '../format.js';
+import { MOST_CROSSES } from '../scene/predicted_points.js';
 import { runAt } from '../session.js';
 import { groundOf } from '../theme.js';
 
@@ -55,7 +56,7 @@ export function createLegend(report, store) {
       }
       if (state.layers.has('predicted')) {
         parts.push(element('div', { class: 'legend-entries' }, entry(marks.measured, 'object points, measured'),
-          entry(marks.predicted, 'at the next scan', 'cross')));
+          entry(marks.predicted, `at the next scan (up to ${MOST_CROSSES} an object)`, 'cross')));
       }
     }
     if (run.truth && state.layers.has('truth')) parts.push(element('div', { class: 'legend-entries' }, entry('var(--ink)', 'ground truth', 'band')));

@@ -42,10 +42,11 @@ export function createToolbar(report, store, view) {
   store.watch(['camera'], (state) => {
     cameras.forEach((entry, k) => entry.setAttribute('aria-pressed', String(CAMERAS[k].id === state.camera)));
   });
+  const noScans = report.runs.every((run) => run.scans === null);
   return element('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'View' },
-    element('label', { class: 'field' }, element('span', { text: 'Colour' }), colour.element),
+    element('label', { class: 'field', hidden: noScans }, element('span', { text: 'Colour' }), colour.element),
     element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' }, ...cameras),
     button('Reset', 'Put the camera back (R)', () => view.resetCamera()),
     layerMenu(report, store),
-    element('label', { class: 'field size' }, element('span', { text: 'Points' }), size));
+    element('label', { class: 'field size', hidden: noScans && report.runs.every((run) => run.map === null) }, element('span', { text: 'Points' }), size));
 }

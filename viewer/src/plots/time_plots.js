@@ -1,4 +1,5 @@
 // The plots over the drive: of one run, or of all runs of a group over each other.
+import { quantile } from '../colour/colourings.js';
 import { troubledRanges } from '../runs.js';
 
 const seriesColour = (k) => `--series-${k % 8}`;
@@ -8,6 +9,14 @@ export const leadingSeries = (plot) =>
   plot.series.find(({ name }) => name === 'total' || name === 'estimate') ?? plot.series.find(({ broad }) => !broad) ?? plot.series[0];
 
 const looks = (plot) => ({ log: plot.log, fromZero: plot.from_zero, whole: plot.whole_numbers });
+
+const LEVELS_APART = 8;
+
+/** Whether runs differ so much that the better ones would lie flat on the axis: then only a logarithm shows them all. */
+export function needsLogarithm(lists) {
+  const levels = lists.map((list) => quantile(list, 0.5, null)).filter((level) => level !== null);
+  return levels.length > 1 && Math.min(...levels) > 0 && Math.max(...levels) > LEVELS_APART * Math.min(...levels);
+}
 
 /** @returns {import('./chart.js').Plot[]} over seconds */
 export function plotsOfRun(run) {
@@ -35,13 +44,13 @@ export function plotsOfRuns(shown) {
     const having = shown.filter(({ run }) => run.plots.some((plot) => plot.id === id));
     const first = having[0].run.plots.find((plot) => plot.id === id);
     const lead = leadingSeries(first).name;
+    const values = having.map(({ run }) => leadingSeries(run.plots.find((plot) => plot.id === id)).values);
+    const log = first.log || (!first.whole_numbers && needsLogarithm(values));
     return {
-      id, title: first.series.length > 1 ? `${first.title}, ${lead}` : first.title, unit: first.unit, xName: 'scan', y: looks(first),
+      id, title: first.series.length > 1 ? `${first.title}, ${lead}` : first.title, unit: first.unit, xName: 'scan',
+      y: { ...looks(first), log, fromZero: first.from_zero && !log },
       x: { low, high: Math.max(high, low + 1), whole: true },
-      series: having.map(({ run, colour, dash }) => ({
-        name: run.name, colour, dash, xs: run.frames.index,
-        ys: leadingSeries(run.plots.find((plot) => plot.id === id)).values,
-      })),
+      series: having.map(({ run, colour, dash }, k) => ({ name: run.name, colour, dash, xs: run.frames.index, ys: values[k] })),
     };
   });
 }

@@ -10,7 +10,9 @@ varying float isPredicted;
 void main() {
   isPredicted = predicted;
   gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
-  gl_PointSize = predicted > 0.5 ? 2.0 * size + 3.0 : size + 1.5;
+  // Crosses stand a little before the points they were made of.
+  if (predicted > 0.5) gl_Position.z -= 0.004 * gl_Position.w;
+  gl_PointSize = predicted > 0.5 ? 1.6 * size + 3.0 : size + 1.5;
 }`;
 
 const fragmentShader = `
@@ -25,26 +27,30 @@ void main() {
 
 const asColour = (hex) => new Color().setRGB(...rgb(hex).map((value) => value / 255));
 
+/** So many crosses an object: more would be one blot. */
+export const MOST_CROSSES = 250;
+
 /**
- * The measured points of objects, then the same moved by velocity * dt.
+ * The measured points of objects, then some of them (evenly picked where an object has many) moved by velocity * dt.
  * @param {import('../bytes.js').Scan} scan
  * @param {{velocity: number[]}[]} objects of the scan's frame
  * @param {number} dt s
- * @returns {{count: number, positions: Float32Array}} 2 * count points
+ * @returns {{measured: number, predicted: number, positions: Float32Array}}
  */
 export function predictPoints(scan, objects, dt) {
-  const members = [];
-  scan.label.forEach((label, i) => { if (label >= 3 && objects[label - 3]) members.push(i); });
-  const count = members.length;
-  const positions = new Float32Array(6 * count);
-  members.forEach((i, k) => {
-    const { velocity } = objects[scan.label[i] - 3];
-    for (let axis = 0; axis < 3; ++axis) {
-      positions[3 * k + axis] = scan.positions[3 * i + axis];
-      positions[3 * (count + k) + axis] = scan.positions[3 * i + axis] + velocity[axis] * dt;
-    }
+  const members = objects.map(() => []);
+  scan.label.forEach((label, i) => members[label - 3]?.push(i));
+  const places = [];
+  const put = (i, velocity, seconds) => {
+    for (let axis = 0; axis < 3; ++axis) places.push(scan.positions[3 * i + axis] + velocity[axis] * seconds);
+  };
+  members.forEach((list, k) => list.forEach((i) => put(i, objects[k].velocity, 0)));
+  const measured = places.length / 3;
+  members.forEach((list, k) => {
+    const count = Math.min(list.length, MOST_CROSSES);
+    for (let j = 0; j < count; ++j) put(list[Math.floor((j * list.length) / count)], objects[k].velocity, dt);
   });
-  return { count, positions };
+  return { measured, predicted: places.length / 3 - measured, positions: Float32Array.from(places) };
 }
 
 export function createPredictedPoints() {
@@ -68,16 +74,16 @@ export function createPredictedPoints() {
   return {
     object: points,
     show(scan, objects, dt) {
-      const { count, positions } = scan ? predictPoints(scan, objects, dt) : { count: 0, positions: new Float32Array(0) };
-      reserve(2 * count);
+      const { measured, predicted, positions } = scan ? predictPoints(scan, objects, dt) : { measured: 0, predicted: 0, positions: [] };
+      reserve(measured + predicted);
       if (capacity === 0) return;
       const place = geometry.getAttribute('position');
       place.array.set(positions);
       place.needsUpdate = true;
       const flag = geometry.getAttribute('predicted');
-      flag.array.fill(0, 0, count).fill(1, count, 2 * count);
+      flag.array.fill(0, 0, measured).fill(1, measured, measured + predicted);
       flag.needsUpdate = true;
-      geometry.setDrawRange(0, 2 * count);
+      geometry.setDrawRange(0, measured + predicted);
     },
     setSize(size) { uniforms.size.value = size; },
     setGround(ground) {
