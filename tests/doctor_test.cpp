@@ -50,6 +50,43 @@ TEST_F(Doctor, InfoSaysItAsJson) {
   EXPECT_EQ(turned["diagnosis"][0]["fix"], "--doppler-sign away");
 }
 
+TEST_F(Doctor, TheJsonHoldsWhatTheTextShows) {
+  const json about = json::parse(run_program("info --json " + street().string()).text);
+  EXPECT_NEAR(about["time"]["period_s"].get<double>(), 0.1, 1e-6);
+  EXPECT_TRUE(about["time"]["gaps"].empty());
+  const json& points = about["points"];
+  EXPECT_GT(points["range_m"][0].get<double>(), 0.0);
+  EXPECT_GT(points["range_m"][1].get<double>(), points["range_m"][0].get<double>() + 10.0);
+  EXPECT_LT(points["doppler_mps"][0].get<double>(), -5.0) << "it drives towards what it sees";
+  EXPECT_LE(points["least"].get<int>(), points["median"].get<int>());
+  EXPECT_LE(points["median"].get<int>(), points["most"].get<int>());
+  const std::string text = run_program("info " + street().string()).text;
+  EXPECT_NE(text.find(std::to_string(points["median"].get<int>())), std::string::npos) << text;
+}
+
+TEST_F(Doctor, RunRefusesAReflectanceInPlaceOfTheDoppler) {
+  for (const auto& [name, most] : {std::pair{"unit", 1.0F}, std::pair{"byte", 255.0F}}) {
+    unsigned state = 1;
+    const float scale = most;
+    const fs::path grey = changed(name, [&state, scale](float) {
+      state = state * 1664525U + 1013904223U;
+      const float share = static_cast<float>(state >> 8U) / 16777216.0F;
+      return scale * share * share;  // most surfaces are dark
+    });
+    const Outcome refused = run(grey, std::string("out-") + name);
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_NE(refused.text.find("there is no Doppler: of "), std::string::npos) << refused.text;
+    const json about = json::parse(run_program("info --json " + grey.string()).text);
+    for (const json& finding : about["diagnosis"]) {
+      if (finding["question"] == "columns" || finding["question"] == "doppler_kind") {
+        EXPECT_EQ(finding["verdict"], "wrong") << finding;
+      } else {
+        EXPECT_NE(finding["verdict"], "wrong") << finding;
+      }
+    }
+  }
+}
+
 TEST_F(Doctor, RunRefusesATurnedSignUntilItIsSaid) {
   const fs::path turned = changed("turned", [](float doppler) { return -doppler; });
   const Outcome refused = run(turned, "out");

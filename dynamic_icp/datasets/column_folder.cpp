@@ -6,6 +6,7 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/datasets/column_file.hpp"
@@ -59,8 +60,9 @@ class Arrays {
     }
     rows_ = arrays_.size() == 1 ? formats::rows_of(array) : rows_;
     if (formats::rows_of(array) != rows_) {
-      throw DataError(fmt::format("{}: array '{}' has {} rows, expected {} as in the others", path_.string(),
-                                  field.array, formats::rows_of(array), rows_));
+      throw DataError(fmt::format("{}: array '{}' of shape ({}) has {} rows, expected {} as in the others",
+                                  path_.string(), field.array, fmt::join(array.shape, ", "), formats::rows_of(array),
+                                  rows_));
     }
     return array;
   }
@@ -96,7 +98,8 @@ class ColumnDataset final : public Dataset {
     const fs::path folder = is_folder ? found : fs::absolute(found).parent_path();
     files_ = is_folder ? scan_files(found) : std::vector<fs::path>{found};
     find_stamps(folder, options.period_s);
-    fields_ = map_fields(ColumnFile(kind_, files_.front()).names(), options.fields, files_.front().string());
+    const ColumnFile first(kind_, files_.front());
+    fields_ = map_fields(first.names(), options.fields, files_.front().string(), first.unusable());
     assumptions_.insert(assumptions_.end(), fields_.assumptions.begin(), fields_.assumptions.end());
     find_time_unit(options.period_s);
     if (folder.filename().string().find("compensated") != std::string::npos) {

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/doctor/no_doppler.hpp"
 #include "dynamic_icp/doctor/questions.hpp"
 #include "dynamic_icp/ego_motion/consensus_regression.hpp"
 
@@ -21,6 +22,10 @@ constexpr double kScatter_mps = 0.03;
 
 Finding doppler_bias(const Evidence& evidence) {
   Finding finding{Question::kDopplerBias, Verdict::kCannotTell, ""};
+  if (no_doppler(evidence)) {
+    finding.sentence = "there is no Doppler";
+    return finding;
+  }
   const double prior = ego_motion::EgoPrior::default_covariance()(6, 6);
   double weights = 0.0;
   double weighted = 0.0;

@@ -14,6 +14,16 @@
 
 namespace dynamic_icp::doctor {
 
+/// The Doppler of the usable points of a scan.
+struct DopplerValues {
+  std::size_t count = 0;
+  std::size_t negative = 0;
+  std::size_t positive = 0;  ///< the others are exactly zero
+  double median = 0.0;
+  double scatter = 0.0;       ///< median absolute deviation from the median
+  double scatter_left = 0.0;  ///< the same after the velocity of the sensor was taken out
+};
+
 /// What one scan shows by itself.
 struct ScanLook {
   std::size_t index = 0;
@@ -25,6 +35,7 @@ struct ScanLook {
   double last_time_s = 0.0;
   double far_m = 0.0;                                        ///< 95 % of the points are nearer
   double fast_mps = 0.0;                                     ///< 95 % of the Doppler are slower
+  DopplerValues values;
   Eigen::Vector3d look_direction = Eigen::Vector3d::Zero();  ///< mean line of sight
   Eigen::Vector3d look_spread = Eigen::Vector3d::Zero();     ///< root mean square of each axis of the lines of sight
   ego_motion::EgoVelocity ego;                               ///< by the Doppler, with its bias

@@ -122,6 +122,7 @@ class ArchiveBuilder {
 class NpzFile::Archive {
  public:
   explicit Archive(const std::filesystem::path& path) {
+    refuse_irregular(path);
     int code = 0;
     handle_ = zip_open(path.c_str(), ZIP_RDONLY, &code);
     if (handle_ == nullptr) {
@@ -159,15 +160,16 @@ bool NpzFile::contains(std::string_view name) const {
   return zip_name_locate(archive_->handle(), member_name(name).c_str(), 0) >= 0;
 }
 
-bool NpzFile::holds_numbers(std::string_view name) const {
+std::string NpzFile::why_no_numbers(std::string_view name) const {
   const std::unique_ptr<zip_file_t, FileCloser> file(zip_fopen(archive_->handle(), member_name(name).c_str(), 0));
   std::array<char, kChunkBytes> chunk;
   const zip_int64_t got = file ? zip_fread(file.get(), chunk.data(), chunk.size()) : 0;
   try {
-    parse_npy_header(std::string_view(chunk.data(), static_cast<std::size_t>(std::max<zip_int64_t>(got, 0))), name);
-    return true;
-  } catch (const DataError&) {
-    return false;
+    parse_npy_header(std::string_view(chunk.data(), static_cast<std::size_t>(std::max<zip_int64_t>(got, 0))),
+                     fmt::format("array '{}'", name));
+    return "";
+  } catch (const DataError& error) {
+    return error.what();
   }
 }
 
