@@ -10,8 +10,8 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/datasets/folder_search.hpp"
+#include "dynamic_icp/datasets/foreign_numbers.hpp"
 #include "dynamic_icp/datasets/numbered_files.hpp"
-#include "dynamic_icp/datasets/record_guess.hpp"
 #include "dynamic_icp/datasets/scan_stamps.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/point_records.hpp"

@@ -46,7 +46,16 @@ std::string text_of(int code) {
   std::ifstream file(path, std::ios::binary);
   file.read(head.data(), head.size());
   refuse_other_kind(path, std::string_view(head.data(), static_cast<std::size_t>(file.gcount())), FileKind::kZip);
-  throw DataError(fmt::format("{}: cannot be read as a zip archive: {}", path.string(), reason));
+  std::error_code unknown;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+  if (!unknown && bytes == 0) {
+    throw DataError(fmt::format("{}: empty file, expected a zip archive of arrays", path.string()));
+  }
+  if (kind_of(std::string_view(head.data(), head.size())) == FileKind::kZip) {
+    throw DataError(fmt::format("{}: a zip archive without an end: cut short at byte {}, or damaged ({})",
+                                path.string(), bytes, reason));
+  }
+  throw DataError(fmt::format("{}: expected a zip archive of arrays: {}", path.string(), reason));
 }
 
 struct FileCloser {
