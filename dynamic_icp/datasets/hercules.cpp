@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The numbers after the key, which takes points of the LiDAR to the IMU.
+}  // namespace
+
 Eigen::Isometry3d read_imu_lidar(const fs::path& path) {
   constexpr std::string_view kKey = "Tr_lidar_to_imu:";
   const std::string text = formats::read_whole_file(path);
@@ -35,8 +36,6 @@ Eigen::Isometry3d read_imu_lidar(const fs::path& path) {
   }
   throw DataError(fmt::format("{}: no line '{}' with 12 numbers", path.string(), kKey));
 }
-
-}  // namespace
 
 fs::path find_hercules(const fs::path& input) {
   const fs::path folder = find_aeva_folder(input);
