@@ -113,7 +113,6 @@ class Seeds {
     write("texts", "2" + matrix + "\n0 0 0 1\n");
     write("texts", "3# calibration\nTr_lidar_to_imu: 1 0 0 0.5 0 1 0 0 0 0 1 1\n");
     write("texts", R"(4{"T_V_to_S":{"translation":{"x":1,"y":2,"z":3},"quaternion":{"w":0.6,"x":0,"y":0,"z":0.8}}})");
-    write("texts", "5preset: default\nsweep:\n  declared_duration_s: 0.1\nlist: [1, 2.5, -3]\nname: \"a b\"\n");
   }
 
   fs::path folder_;

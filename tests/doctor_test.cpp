@@ -1,9 +1,11 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 // What the program says and does about a recording whose numbers are wrong.
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -138,6 +140,37 @@ TEST_F(Doctor, ARecordedRadarIsWhatItIs) {
   EXPECT_EQ(findings("--doppler-sign towards ")["doppler_sign"], "wrong");
   EXPECT_EQ(findings("--time-scale 1.2 ")["time_scale"], "wrong") << "as if it came at 10 Hz";
   EXPECT_EQ(findings("--point-scale 1000 ")["point_units"], "wrong");
+}
+
+// Without the sensor's own motion in the Doppler nothing shows the way along smooth walls, but the noise of the points:
+// no frame may claim to know it.
+TEST_F(Doctor, CompensatedDopplerInATunnelLeavesTheWayUnknown) {
+  const auto frames_of = [&](const std::string& scene) {
+    const fs::path drive = folder_ / scene;
+    EXPECT_EQ(run_program("simulate " + scene + " --frames 10 --instant --quiet --layout aevascenes --output " +
+                          drive.string())
+                  .status,
+              0);
+    const Outcome ran = run(drive / "pointcloud_compensated", "out-" + scene);
+    EXPECT_EQ(ran.status, 0) << ran.text;
+    std::vector<json> frames;
+    std::istringstream lines(read_file(folder_ / ("out-" + scene) / "frames.jsonl"));
+    for (std::string line; std::getline(lines, line);) {
+      frames.push_back(json::parse(line));
+    }
+    return frames;
+  };
+  const std::vector<json> tunnel = frames_of("tunnel");
+  ASSERT_EQ(tunnel.size(), 10u);
+  for (std::size_t i = 1; i < tunnel.size(); ++i) {
+    EXPECT_EQ(tunnel[i]["status"], "degenerate") << i;
+    ASSERT_EQ(tunnel[i]["degenerate"].size(), 1u) << i;
+    EXPECT_GT(std::abs(tunnel[i]["degenerate"][0]["direction"][3].get<double>()), 0.99) << tunnel[i]["degenerate"];
+  }
+  for (const json& frame : frames_of("street")) {
+    EXPECT_EQ(frame["status"], "ok") << frame["index"];
+  }
+  EXPECT_LT(json::parse(read_file(folder_ / "out-street" / "summary.json"))["rte_rmse_m"].get<double>(), 0.02);
 }
 
 TEST_F(Doctor, WrongOptionsAreWrongUse) {
