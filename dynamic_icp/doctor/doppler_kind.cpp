@@ -71,8 +71,11 @@ Finding doppler_kind(const Evidence& evidence) {
   } else if (reference != nullptr && speed < kStill_mps && speed < kShareLeft * reference->reference_speed_mps) {
     finding = compensated(evidence, *reference);
   } else {
-    finding.sentence = fmt::format("{} is assumed: {}", expects_compensated(evidence) ? "compensated" : "relative",
-                                   why_unknown(evidence));
+    finding.sentence = fmt::format(
+        "{} is assumed: {}", expects_compensated(evidence) ? "compensated" : "relative",
+        reference == nullptr ? why_unknown(evidence)
+                             : fmt::format("the static scene moves by {:.1f} m/s, the sensor at {:.1f} m/s {}", speed,
+                                           reference->reference_speed_mps, reference_name(evidence, *reference)));
   }
   finding.evidence = {{"doppler_speed_mps", speed}};
   if (reference != nullptr) {

@@ -100,10 +100,11 @@ std::optional<NoDoppler> no_doppler(const Evidence& evidence) {
   }
   const double unit = evidence.units.doppler;  // as stored
   return NoDoppler{
-      fmt::format("of {} values {} are {}, and no velocity explains why they scatter by {:.3g} around {:.3g}: reflectance, "
-                  "intensity or a range?",
-                  total.values, std::min(total.negative, total.positive),
-                  total.positive > total.negative ? "negative" : "positive", scatter / unit, median / unit),
+      fmt::format(
+          "of {} values {} are {}, and no velocity explains why they scatter by {:.3g} around {:.3g}: reflectance, "
+          "intensity or a range?",
+          total.values, std::min(total.negative, total.positive),
+          total.positive > total.negative ? "negative" : "positive", scatter / unit, median / unit),
       {{"values", static_cast<double>(total.values)},
        {"median", median / unit},
        {"scatter", scatter / unit},

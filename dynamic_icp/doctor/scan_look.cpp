@@ -47,15 +47,6 @@ void look_at_columns(const Scan& scan, ScanLook& look) {
   look.fast_mps = quantile(std::move(speeds), kMostShare);
 }
 
-/// Median absolute deviation from the median.
-double scatter_of(std::vector<double> values) {
-  const double median = quantile(values, 0.5);
-  for (double& value : values) {
-    value = std::abs(value - median);
-  }
-  return quantile(std::move(values), 0.5);
-}
-
 DopplerValues doppler_values(const std::vector<double>& doppler, const std::vector<double>& residuals) {
   DopplerValues values;
   values.count = doppler.size();
@@ -79,6 +70,19 @@ double quantile(std::vector<double> values, double share) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(at);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+double scatter_of(std::vector<double> values) {
+  const double median = quantile(values, 0.5);
+  for (double& value : values) {
+    value = std::abs(value - median);
+  }
+  return quantile(std::move(values), 0.5);
+}
+
+double median_error(const std::vector<double>& values) {
+  constexpr double kErrorPerMad = 1.4826 * 1.2533;  // of the median of normal numbers, times the root of their count
+  return values.empty() ? 0.0 : kErrorPerMad * scatter_of(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
 bool ScanLook::has_velocity() const {
