@@ -209,7 +209,7 @@ class ColumnDataset final : public Dataset {
     stamps_ = std::move(stamped.stamps);
     std::vector<std::string>& said = stamped.assumptions;
     const bool are_indices = stamped.are_indices;
-    truth_ = find_truth(folder, stamps_, are_indices, assumptions_);
+    truth_ = search_truth(folder, stamps_, are_indices, assumptions_);
     if (are_indices && !truth_.poses.empty()) {
       std::transform(truth_.poses.begin(), truth_.poses.end(), stamps_.begin(),
                      [](const formats::StampedPose& pose) { return pose.stamp; });
@@ -244,7 +244,7 @@ class ColumnDataset final : public Dataset {
   FieldMap fields_;
   TimeUnit time_unit_;
   DopplerKind doppler_kind_ = DopplerKind::kRelative;
-  FoundTruth truth_;
+  Truth truth_;
   std::vector<std::string> assumptions_;
 };
 

@@ -51,7 +51,7 @@ std::unique_ptr<Dataset> open_hercules(const fs::path& folder, const OpenOptions
   recording.stamps = std::move(scans.stamps);
   recording.assumptions = std::move(scans.assumptions);
   recording.truth =
-      find_truth(std::array{find_part(folder, "PR_GT/Aeva_gt.txt")}, recording.stamps, recording.assumptions);
+      named_truth(std::array{find_part(folder, "PR_GT/Aeva_gt.txt")}, recording.stamps, recording.assumptions);
   if (const fs::path calibration = find_part(folder, "Calibration/IMU_LiDAR.txt"); !calibration.empty()) {
     recording.T_vehicle_sensor = read_imu_lidar(calibration);
   }
