@@ -30,6 +30,7 @@
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
 #include "apps/method_options.hpp"
+#include "apps/scan_selection.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -205,10 +206,7 @@ int run(const BenchmarkOptions& options) {
 void add_run_settings(CLI::App& command, benchmark::RunSettings& run) {
   add_configuration_options(command, run.preset, run.config_file, run.settings, run.threads);
   add_input_options(command, run.input);
-  command.add_option("--start", run.start, "First scan, counted from 0 (default 0)")->type_name("N");
-  command.add_option("--max-frames", run.max_frames, "Most scans of a recording, 1 or more (default: all)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  add_selection_options(command, "process of each recording", run.start, run.max_frames);
 }
 
 }  // namespace

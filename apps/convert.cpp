@@ -96,10 +96,7 @@ void add_convert_command(CLI::App& app, std::function<int()>& selected) {
       ->required()
       ->type_name("DIR");
   add_input_options(*command, options->settings);
-  command->add_option("--start", options->start, "First scan, counted from 0 (default 0)")->type_name("N");
-  command->add_option("--max-frames", options->max_frames, "Most scans to convert, 1 or more (default: all)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  add_selection_options(*command, "convert", options->start, options->max_frames);
   command->add_flag("--force", options->force, "Replace an earlier conversion in DIR");
   command->add_flag("--quiet", options->quiet, "Print errors only");
   command->callback([options, &selected] { selected = [options] { return convert(*options); }; });

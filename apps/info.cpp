@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <limits>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -31,40 +32,56 @@ struct InfoOptions {
   bool json = false;
 };
 
-/// The time from each scan to the next, s.
-std::vector<double> periods_of(const datasets::Dataset& dataset) {
+/// When the scans are.
+struct TimesSeen {
+  std::size_t periods = 0;  ///< from one scan to the next
+  double period_s = 0.0;    ///< median
+  double shortest_s = 0.0;
+  double longest_s = 0.0;
+  std::vector<std::pair<std::size_t, double>> gaps;  ///< the scan after each, and how long it was, s
+};
+
+TimesSeen look_at_times(const datasets::Dataset& dataset) {
   std::vector<double> periods;
   for (std::size_t i = 1; i < dataset.size(); ++i) {
     periods.push_back(seconds_between(dataset.stamp(i - 1), dataset.stamp(i)));
   }
-  return periods;
-}
-
-void print_time(const datasets::Dataset& dataset) {
-  if (dataset.size() == 0) {
-    return;
-  }
-  const std::vector<double> periods = periods_of(dataset);
+  TimesSeen seen;
+  seen.periods = periods.size();
   if (periods.empty()) {
-    fmt::print("time         one scan at {} s\n", format_seconds(dataset.stamp(0)));
-    return;
+    return seen;
   }
   std::vector<double> sorted = periods;
   std::sort(sorted.begin(), sorted.end());
-  const double period = sorted[sorted.size() / 2];
+  seen.period_s = sorted[sorted.size() / 2];
+  seen.shortest_s = sorted.front();
+  seen.longest_s = sorted.back();
+  for (std::size_t i = 0; i < periods.size(); ++i) {
+    if (periods[i] > kGapPeriods * seen.period_s) {
+      seen.gaps.emplace_back(i + 1, periods[i]);
+    }
+  }
+  return seen;
+}
+
+void print_time(const datasets::Dataset& dataset, const TimesSeen& seen) {
+  if (dataset.size() == 0) {
+    return;
+  }
+  if (seen.periods == 0) {
+    fmt::print("time         one scan at {} s\n", format_seconds(dataset.stamp(0)));
+    return;
+  }
   fmt::print("time         {} to {} s, {:.3f} s in all\n", format_seconds(dataset.stamp(0)),
              format_seconds(dataset.stamp(dataset.size() - 1)),
              seconds_between(dataset.stamp(0), dataset.stamp(dataset.size() - 1)));
-  fmt::print("rate         {:.2f} Hz (periods {:.1f} to {:.1f} ms)\n", 1.0 / period, 1e3 * sorted.front(),
-             1e3 * sorted.back());
-  std::size_t gaps = 0;
-  for (std::size_t i = 0; i < periods.size(); ++i) {
-    if (periods[i] > kGapPeriods * period && ++gaps <= kGapsShown) {
-      fmt::print("gap          {:.3f} s before scan {}\n", periods[i], i + 1);
-    }
+  fmt::print("rate         {:.2f} Hz (periods {:.1f} to {:.1f} ms)\n", 1.0 / seen.period_s, 1e3 * seen.shortest_s,
+             1e3 * seen.longest_s);
+  for (std::size_t i = 0; i < std::min(kGapsShown, seen.gaps.size()); ++i) {
+    fmt::print("gap          {:.3f} s before scan {}\n", seen.gaps[i].second, seen.gaps[i].first);
   }
-  if (gaps > kGapsShown) {
-    fmt::print("gap          {} more\n", gaps - kGapsShown);
+  if (seen.gaps.size() > kGapsShown) {
+    fmt::print("gap          {} more\n", seen.gaps.size() - kGapsShown);
   }
 }
 
@@ -80,6 +97,9 @@ struct PointsSeen {
   bool times = false;
   std::vector<std::string> columns;
   std::vector<std::string> warnings;
+
+  /// Whether any point was usable, so that there are ranges.
+  [[nodiscard]] bool any() const { return farthest_m > 0.0; }
 };
 
 PointsSeen look_at_points(const datasets::Dataset& dataset) {
@@ -123,7 +143,7 @@ void print_points(const PointsSeen& seen) {
   fmt::print("points       {} to {} a scan, median {} (of {} scans looked at)\n", seen.sizes.front(), seen.sizes.back(),
              seen.sizes[seen.sizes.size() / 2], seen.scans);
   fmt::print("unusable     {} not finite, {} at the origin\n", seen.dropped.non_finite, seen.dropped.zero_range);
-  if (seen.farthest_m > 0.0) {
+  if (seen.any()) {
     fmt::print("range        {:.1f} to {:.1f} m\n", seen.nearest_m, seen.farthest_m);
     fmt::print("Doppler      {:.1f} to {:.1f} m/s\n", seen.slowest_mps, seen.fastest_mps);
   }
@@ -175,12 +195,43 @@ Json diagnosis_json(const doctor::Diagnosis& diagnosis) {
   return list;
 }
 
-void print_json(const InfoOptions& options, const datasets::Dataset& dataset, const PointsSeen& seen,
-                const doctor::Diagnosis& diagnosis) {
+Json times_json(const TimesSeen& seen) {
+  if (seen.periods == 0) {
+    return nullptr;
+  }
+  Json gaps = Json::array();
+  for (const auto& [scan, length_s] : seen.gaps) {
+    gaps.push_back({{"before_scan", scan}, {"length_s", length_s}});
+  }
+  return {{"period_s", seen.period_s}, {"shortest_s", seen.shortest_s}, {"longest_s", seen.longest_s}, {"gaps", gaps}};
+}
+
+/// Of the scans looked at.
+Json points_json(const PointsSeen& seen) {
+  Json json = {{"scans_looked_at", seen.scans},
+               {"least", seen.sizes.front()},
+               {"median", seen.sizes[seen.sizes.size() / 2]},
+               {"most", seen.sizes.back()},
+               {"not_finite", seen.dropped.non_finite},
+               {"at_the_origin", seen.dropped.zero_range},
+               {"range_m", nullptr},
+               {"doppler_mps", nullptr},
+               {"times", seen.times}};
+  if (seen.any()) {
+    json["range_m"] = {seen.nearest_m, seen.farthest_m};
+    json["doppler_mps"] = {seen.slowest_mps, seen.fastest_mps};
+  }
+  return json;
+}
+
+void print_json(const InfoOptions& options, const datasets::Dataset& dataset, const TimesSeen& times,
+                const PointsSeen& seen, const doctor::Diagnosis& diagnosis) {
   Json json = {{"input", options.input}, {"format", dataset.format()}, {"scans", dataset.size()}};
   if (dataset.size() > 0) {
     json["first_timestamp"] = format_seconds(dataset.stamp(0));
     json["last_timestamp"] = format_seconds(dataset.stamp(dataset.size() - 1));
+    json["time"] = times_json(times);
+    json["points"] = points_json(seen);
     json["points_median"] = seen.sizes[seen.sizes.size() / 2];
     json["point_times"] = seen.times;
   }
@@ -199,16 +250,17 @@ void print_json(const InfoOptions& options, const datasets::Dataset& dataset, co
 
 int info(const InfoOptions& options) {
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
+  const TimesSeen times = look_at_times(*dataset);
   const PointsSeen seen = look_at_points(*dataset);
   const doctor::Diagnosis diagnosis = doctor::diagnose(*dataset, {.applied = options.settings.correction}, Workers());
   if (options.json) {
-    print_json(options, *dataset, seen, diagnosis);
+    print_json(options, *dataset, times, seen, diagnosis);
     return 0;
   }
   fmt::print("input        {}\n", options.input);
   fmt::print("format       {}\n", dataset->format());
   fmt::print("scans        {}\n", dataset->size());
-  print_time(*dataset);
+  print_time(*dataset, times);
   print_points(seen);
   if (dataset->ground_truth().empty()) {
     fmt::print("ground truth none\n");

@@ -18,10 +18,12 @@ namespace {
 constexpr int kDataOrMachineFailed = 1;
 constexpr int kWrongUsage = 2;
 
+constexpr const char* kNotPrinted = "standard output: not all could be written";
+
 /// The status, but what was printed must have arrived: a file that it was sent to may be full.
 int with_output_written(int status) {
   if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw dynamic_icp::DataError("standard output: not all could be written");
+    throw dynamic_icp::DataError(kNotPrinted);
   }
   return status;
 }
@@ -76,6 +78,7 @@ int main(int argc, char** argv) {
   } catch (const std::bad_alloc&) {
     return report("the machine has no memory left", kDataOrMachineFailed);
   } catch (const std::exception& error) {
-    return report(error.what(), kDataOrMachineFailed);
+    // Long texts fail while they are printed, not at the end.
+    return report(std::ferror(stdout) != 0 ? kNotPrinted : error.what(), kDataOrMachineFailed);
   }
 }

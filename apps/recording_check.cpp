@@ -19,7 +19,7 @@ constexpr std::size_t kProbes = 4;
 }  // namespace
 
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
-                               std::size_t begin, std::size_t end, int threads) {
+                               std::size_t begin, std::size_t end, bool needs_doppler, int threads) {
   doctor::DoctorConfig config;
   config.begin = begin;
   config.end = std::min(end, begin + kScans);
@@ -31,10 +31,17 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   check.period_s = diagnosis.period_s;
   check.doppler = fmt::format("{}; {}", diagnosis.of(doctor::Question::kDopplerKind).sentence,
                               diagnosis.of(doctor::Question::kDopplerSign).sentence);
+  if (!diagnosis.has_doppler && needs_doppler && !settings.correction.doppler_kind) {
+    throw DataError(fmt::format(
+        "{}: {}. A method that needs none: --method kiss-icp; by the shape of the scene alone: --doppler-kind "
+        "compensated; it is Doppler all the same: --doppler-kind relative",
+        dataset.scan_file(begin).string(), diagnosis.of(doctor::Question::kDopplerKind).sentence));
+  }
   for (const doctor::Finding& finding : diagnosis.findings) {
     const bool is_sign = finding.question == doctor::Question::kDopplerSign;
     const bool is_kind = finding.question == doctor::Question::kDopplerKind;
-    const bool is_said = (is_sign && settings.doppler_sign_is_said) || (is_kind && settings.correction.doppler_kind);
+    const bool is_said = (is_sign && settings.doppler_sign_is_said) ||
+                         (is_kind && (settings.correction.doppler_kind || !diagnosis.has_doppler));
     if (finding.verdict == doctor::Verdict::kWrong && (is_sign || is_kind) && !is_said) {
       throw DataError(fmt::format(
           "{}: the Doppler is {}. Run with {}; or say that it is not so with {}", dataset.scan_file(begin).string(),

@@ -18,9 +18,9 @@ struct RecordingCheck {
 };
 
 /// Asks the doctor about the first of the scans [begin, end), before a run. Throws DataError where the Doppler has the
-/// wrong sign or is of the other kind than is said: every result would be wrong. What the user said of sign or kind is
-/// believed. `threads` = 0 takes as many as the machine has.
+/// wrong sign or is of the other kind than is said, or where there is none and the method needs it: every result would
+/// be wrong. What the user said of sign or kind is believed. `threads` = 0 takes as many as the machine has.
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
-                               std::size_t begin, std::size_t end, int threads);
+                               std::size_t begin, std::size_t end, bool needs_doppler, int threads);
 
 }  // namespace dynamic_icp::apps

@@ -235,10 +235,42 @@ void print_summary(const results::RunSummary& summary, const Findings& findings,
   fmt::print("written to   {}\n", options.output);
 }
 
+/// What became of the points of a run, to tell why nothing came of it.
+struct Usability {
+  std::size_t frames = 0;
+  std::size_t unusable = 0;  ///< frames with too few points to work with
+  std::size_t points = 0;
+  std::size_t points_used = 0;
+  Scan::Dropped dropped;
+
+  void add(const odometry::Frame& frame) {
+    ++frames;
+    unusable += frame.status == odometry::FrameStatus::kTooFewPoints ? 1 : 0;
+    points += frame.points;
+    points_used += frame.points_used;
+    dropped.non_finite += frame.dropped.non_finite;
+    dropped.zero_range += frame.dropped.zero_range;
+    dropped.out_of_range += frame.dropped.out_of_range;
+  }
+};
+
+/// A trajectory of poses that nobody saw is no result. Throws DataError when not one scan could be used.
+void refuse_without_points(const Usability& seen, const RunOptions& options) {
+  if (seen.unusable < seen.frames) {
+    return;
+  }
+  throw DataError(fmt::format(
+      "{}: none of the {} scans has enough points to work with: of {} points {} have numbers that are not finite, {} are "
+      "at the origin, {} out of range, {} remain after thinning. 'dynamic-icp info' says more",
+      options.input, seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.zero_range,
+      seen.dropped.out_of_range, seen.points_used));
+}
+
 void process_scans(const datasets::Dataset& dataset, const ScanSelection& selection, odometry::Odometry& odometry,
-                   results::RunWriter& writer, Findings& findings) {
+                   results::RunWriter& writer, const RunOptions& options, Findings& findings) {
   Progress progress("odometry", selection.end - selection.begin, findings.warnings.quiet);
   datasets::ReadAhead scans(dataset, selection.begin, selection.end);
+  Usability usability;
   for (std::size_t i = selection.begin; i < selection.end; ++i) {
     const RawScan scan = scans.next();
     if (!scan.warning.empty()) {
@@ -246,12 +278,14 @@ void process_scans(const datasets::Dataset& dataset, const ScanSelection& select
     }
     const odometry::Frame frame = odometry.process(scan);
     writer.add(i, frame);
+    usability.add(frame);
     findings.sweep.add(frame, scan);
     if (findings.map) {
       findings.map->add(frame);
     }
     progress.advance();
   }
+  refuse_without_points(usability, options);
 }
 
 /// A page that cannot be made is no reason to lose the run.
@@ -269,7 +303,8 @@ int run(const RunOptions& options) {
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const ScanSelection selection = select_scans(*dataset, options.start, options.max_frames);
   findings.recording =
-      check_recording(*dataset, options.settings, selection.begin, selection.end, options.method.threads);
+      check_recording(*dataset, options.settings, selection.begin, selection.end,
+                      odometry::needs_doppler(options.method.method), options.method.threads);
   const bool own_truth = options.ground_truth.empty();
   const fs::path truth_file = own_truth ? dataset->ground_truth_file() : fs::path(options.ground_truth);
   const formats::Trajectory truth =
@@ -291,7 +326,7 @@ int run(const RunOptions& options) {
     findings.warnings.add(doubt);
   }
   results::RunWriter writer(output.path(), options.save_labels || options.report);
-  process_scans(*dataset, selection, *odometry, writer, findings);
+  process_scans(*dataset, selection, *odometry, writer, options, findings);
   const results::RunSummary summary = writer.finish(options.method.method, truth, findings.assumptions,
                                                     run_json(options, *dataset, config, truth_file, findings));
   if (options.report) {
@@ -321,10 +356,7 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
       ->add_option("--ground-truth", options->ground_truth,
                    "TUM file to compare with (default: what the recording brings along)")
       ->type_name("FILE");
-  command->add_option("--start", options->start, "First scan, counted from 0 (default 0)")->type_name("N");
-  command->add_option("--max-frames", options->max_frames, "Most scans to process, 1 or more (default: all)")
-      ->type_name("N")
-      ->check(CLI::PositiveNumber);
+  add_selection_options(*command, "process", options->start, options->max_frames);
   command->add_flag("--save-labels", options->save_labels, "Write labels/*.bin: static, object or unused per point");
   CLI::Option* save_map =
       command

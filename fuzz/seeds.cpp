@@ -98,9 +98,23 @@ class Seeds {
         R"("z":3},"rotation":{"w":1,"x":0,"y":0,"z":0}},"point_cloud":{"a":{"point_cloud_raw_path":"p"}},"boxes":[{"id":)"
         R"("b","reference_frame":"a","dimensions":{"x":1,"y":2,"z":3},"pose":{"translation":{"x":1,"y":2,"z":3},)"
         R"("rotation":{"w":1,"x":0,"y":0,"z":0}},"linear_velocity":{"x":1,"y":2,"z":3},"class":"car"}]}]})");
+    write_texts();
   }
 
  private:
+  /// The first byte says which text it is, see texts.cpp.
+  void write_texts() {
+    write("texts",
+          "0GPSTime,easting,northing,altitude,vel_east,vel_north,vel_up,roll,pitch,heading,angvel_z\n"
+          "1735689600000000,600001.4,4800000.2,101.9,9.1,-0.05,-0.03,-0.01,-0.02,0.01,0\n"
+          "1735689600100000,600002.4,4800000.2,101.9,9.1,-0.05,-0.03,-0.01,-0.02,0.01,0\n");
+    write("texts", "11735689600.1\n1735689600.2\n1.7356896003e9\n");
+    const std::string matrix = "0 -1 0 0.5\n1 0 0 0\n0 0 1 -2e-1";
+    write("texts", "2" + matrix + "\n0 0 0 1\n");
+    write("texts", "3# calibration\nTr_lidar_to_imu: 1 0 0 0.5 0 1 0 0 0 0 1 1\n");
+    write("texts", R"(4{"T_V_to_S":{"translation":{"x":1,"y":2,"z":3},"quaternion":{"w":0.6,"x":0,"y":0,"z":0.8}}})");
+  }
+
   fs::path folder_;
   int written_ = 0;
 };

@@ -122,6 +122,97 @@ TEST_F(BadInput, AllMovingOrNoDoppler) {
   EXPECT_EQ(statuses(run(recording)).size(), 4u);
 }
 
+TEST_F(BadInput, ARunWithoutOneUsableScanIsAFailure) {
+  const fs::path recording = copy_of_street(3);
+  std::string at_origin;
+  std::string not_numbers;
+  for (int i = 0; i < 500; ++i) {
+    at_origin += record(0.0F, 0.0F, 0.0F, -3.0F);
+    not_numbers += record(NAN, 1.0F, INFINITY, NAN);
+  }
+  for (const auto& [scan, words] : {std::pair{at_origin, "0 have numbers that are not finite, 1500 are at the origin"},
+                                    std::pair{not_numbers, "of 1500 points 1500 have numbers that are not finite"},
+                                    std::pair{std::string(), "none of the 3 scans has enough points"}}) {
+    for (const char* name : {"00001.bin", "00002.bin", "00003.bin"}) {
+      write_file(recording / "point_clouds" / name, scan);
+    }
+    for (const char* method : {"--preset default", "--preset paper", "--method kiss-icp"}) {
+      expect_failure(run(recording, method), kFailed, words);
+    }
+  }
+}
+
+TEST_F(BadInput, AColumnOfZerosIsNoDoppler) {
+  const fs::path recording = copy_of_street(6);
+  for (const fs::directory_entry& entry : fs::directory_iterator(recording / "point_clouds")) {
+    std::string bytes = read_file(entry.path());
+    for (std::size_t i = 0; i + 16 <= bytes.size(); i += 16) {
+      std::memset(bytes.data() + i + 12, 0, 4);
+    }
+    write_file(entry.path(), bytes);
+  }
+  for (const char* method : {"", "--preset paper", "--method doppler-icp"}) {
+    expect_failure(run(recording, method), kFailed, "are exactly zero");
+    expect_failure(run(recording, method), kFailed, "--doppler-kind compensated");
+  }
+  EXPECT_EQ(run(recording, "--method kiss-icp").status, kDone) << "needs no Doppler";
+  EXPECT_EQ(run(recording, "--force --doppler-kind compensated").status, kDone);
+  // The same scan again and again: the sensor may stand still, and sees no noise.
+  const std::string first = read_file(recording / "point_clouds" / "00001.bin");
+  for (const fs::directory_entry& entry : fs::directory_iterator(recording / "point_clouds")) {
+    write_file(entry.path(), first);
+  }
+  fs::remove(recording / "ref_poses.txt");
+  const Outcome standing = run(recording, "--force");
+  EXPECT_EQ(standing.status, kDone) << standing.text;
+}
+
+TEST_F(BadInput, WhatIsNeitherFileNorFolderIsNamed) {
+  const std::string pipe = (folder_ / "pipe.bin").string();
+  ASSERT_EQ(run_shell("mkfifo '" + pipe + "'").status, 0);
+  const auto expect = [&](const std::string& arguments, int status, const std::string& words) {
+    const Outcome outcome = run_shell("timeout 20 '" DYNAMIC_ICP_PROGRAM "' " + arguments);
+    EXPECT_EQ(outcome.status, status) << arguments << "\n" << outcome.text;
+    EXPECT_NE(outcome.text.find(words), std::string::npos) << arguments << "\n" << outcome.text;
+  };
+  const std::string out = " --output " + (folder_ / "out").string();
+  for (const char* format : {"auto", "dicp", "hercules", "boreas", "aevascenes", "npz", "pcd", "ply", "bin"}) {
+    expect("info " + pipe + " --format " + format, kFailed, "pipe.bin: is a named pipe, expected a regular file");
+  }
+  expect("info /dev/zero", kFailed, "/dev/zero: is a device");
+  expect("evaluate " + pipe + " " + pipe, kFailed, "is a named pipe");
+  expect("register " + pipe + " " + pipe, kFailed, "is a named pipe");
+  expect("run " + street().string() + out + " --config " + pipe, kFailed, "is a named pipe");
+  const fs::path recording = copy_of_street(2);
+  for (const char* name : {"ref_poses.txt", "point_clouds/00002.bin"}) {
+    fs::rename(recording / name, folder_ / "aside");
+    ASSERT_EQ(run_shell("mkfifo '" + (recording / name).string() + "'").status, 0);
+    expect("run --quiet " + recording.string() + out, kFailed, fs::path(name).filename().string() + ": is a named pipe");
+    fs::remove(recording / name);
+    fs::rename(folder_ / "aside", recording / name);
+  }
+  fs::create_symlink(folder_ / "loop", folder_ / "loop");
+  expect("info " + (folder_ / "loop").string(), kFailed, "loop: cannot be opened: ");
+}
+
+TEST_F(BadInput, AScanCutShortIsBlamedNotItsTimes) {
+  const fs::path recording = folder_ / "swept";
+  ASSERT_EQ(run_program("simulate street --frames 2 --quiet --set lidar.columns=100 --set lidar.rows=20 --output " +
+                        recording.string())
+                .status,
+            kDone);
+  const fs::path scan = recording / "point_clouds" / "00002.bin";
+  const fs::path times = recording / "times" / "00002.bin";
+  const std::string whole = read_file(scan);
+  for (const std::size_t bytes : {std::size_t{0}, std::size_t{16 * 50}, 16 * 50 + std::size_t{7}}) {
+    write_file(scan, whole.substr(0, bytes));
+    expect_failure(run(recording), kFailed, scan.string() + ": " + std::to_string(bytes / 16) + " points, expected ");
+  }
+  write_file(scan, whole);
+  write_file(times, read_file(times).substr(0, 4 * 50));
+  expect_failure(run(recording), kFailed, times.string() + ": 50 times for the ");
+}
+
 TEST_F(BadInput, TruncatedScanIsReadWithAWarning) {
   const fs::path recording = copy_of_street(2);
   const fs::path file = recording / "point_clouds" / "00002.bin";
@@ -291,6 +382,14 @@ TEST_F(BadInput, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("run " + in + out + " --method magic", "dynamic-icp");
   expect_usage_error("run " + in + out + " --format vhs", "dicp");
   expect_usage_error("run " + in + out + " --start 500", "0 to 11");
+  expect_usage_error("run " + in + out + " --start -1", "--start is '-1', expected a whole number, 0 or more");
+  expect_usage_error("run " + in + out + " --max-frames 0", "--max-frames is '0', expected a whole number, 1 or more");
+  expect_usage_error("run " + in + out + " --max-frames 1.5", "--max-frames is '1.5'");
+  expect_usage_error("convert " + in + out + " --to npz --start -1", "--start is '-1'");
+  expect_usage_error("benchmark " + in + out + " --max-frames 0", "--max-frames is '0'");
+  expect_usage_error("run " + in + " --output ''", "the folder for the results is ''");
+  expect_usage_error("convert " + in + " --to npz --output ''", "the folder for the results is ''");
+  expect_usage_error("simulate street --frames 2 --output ''", "--output DIR is missing");
   expect_usage_error("run " + in + out + " --threads -1", "threads");
   write_file(folder_ / "bad.yaml", "preprocess:\n  voxel:\n    voxel_size_m: [1, 2]\n");
   expect_usage_error("run " + in + out + " --config " + (folder_ / "bad.yaml").string(), "line 3");

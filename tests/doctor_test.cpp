@@ -1,9 +1,11 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 // What the program says and does about a recording whose numbers are wrong.
+#include <cmath>
 #include <cstring>
 #include <fstream>
 #include <functional>
+#include <sstream>
 
 #include <nlohmann/json.hpp>
 
@@ -50,6 +52,43 @@ TEST_F(Doctor, InfoSaysItAsJson) {
   EXPECT_EQ(turned["diagnosis"][0]["fix"], "--doppler-sign away");
 }
 
+TEST_F(Doctor, TheJsonHoldsWhatTheTextShows) {
+  const json about = json::parse(run_program("info --json " + street().string()).text);
+  EXPECT_NEAR(about["time"]["period_s"].get<double>(), 0.1, 1e-6);
+  EXPECT_TRUE(about["time"]["gaps"].empty());
+  const json& points = about["points"];
+  EXPECT_GT(points["range_m"][0].get<double>(), 0.0);
+  EXPECT_GT(points["range_m"][1].get<double>(), points["range_m"][0].get<double>() + 10.0);
+  EXPECT_LT(points["doppler_mps"][0].get<double>(), -5.0) << "it drives towards what it sees";
+  EXPECT_LE(points["least"].get<int>(), points["median"].get<int>());
+  EXPECT_LE(points["median"].get<int>(), points["most"].get<int>());
+  const std::string text = run_program("info " + street().string()).text;
+  EXPECT_NE(text.find(std::to_string(points["median"].get<int>())), std::string::npos) << text;
+}
+
+TEST_F(Doctor, RunRefusesAReflectanceInPlaceOfTheDoppler) {
+  for (const auto& [name, most] : {std::pair{"unit", 1.0F}, std::pair{"byte", 255.0F}}) {
+    unsigned state = 1;
+    const float scale = most;
+    const fs::path grey = changed(name, [&state, scale](float) {
+      state = state * 1664525U + 1013904223U;
+      const float share = static_cast<float>(state >> 8U) / 16777216.0F;
+      return scale * share * share;  // most surfaces are dark
+    });
+    const Outcome refused = run(grey, std::string("out-") + name);
+    EXPECT_EQ(refused.status, 1);
+    EXPECT_NE(refused.text.find("there is no Doppler: of "), std::string::npos) << refused.text;
+    const json about = json::parse(run_program("info --json " + grey.string()).text);
+    for (const json& finding : about["diagnosis"]) {
+      if (finding["question"] == "columns" || finding["question"] == "doppler_kind") {
+        EXPECT_EQ(finding["verdict"], "wrong") << finding;
+      } else {
+        EXPECT_NE(finding["verdict"], "wrong") << finding;
+      }
+    }
+  }
+}
+
 TEST_F(Doctor, RunRefusesATurnedSignUntilItIsSaid) {
   const fs::path turned = changed("turned", [](float doppler) { return -doppler; });
   const Outcome refused = run(turned, "out");
@@ -94,6 +133,7 @@ TEST_F(Doctor, ARecordedRadarIsWhatItIs) {
                                "time_scale", "stamps", "unusable_points"}) {
     EXPECT_EQ(healthy[question], "ok") << question;
   }
+  EXPECT_EQ(healthy["doppler_bias"], "cannot_tell") << "it sees ahead only: an error looks like speed";
   const Outcome ran = run_program("run " + recording.string() + " --output " + (folder_ / "out").string());
   for (const char* said : {"12.00 Hz", "relative: ", "positive away from the sensor: "}) {
     EXPECT_NE(ran.text.find(said), std::string::npos) << said << "\n" << ran.text;
@@ -101,6 +141,37 @@ TEST_F(Doctor, ARecordedRadarIsWhatItIs) {
   EXPECT_EQ(findings("--doppler-sign towards ")["doppler_sign"], "wrong");
   EXPECT_EQ(findings("--time-scale 1.2 ")["time_scale"], "wrong") << "as if it came at 10 Hz";
   EXPECT_EQ(findings("--point-scale 1000 ")["point_units"], "wrong");
+}
+
+// Without the sensor's own motion in the Doppler nothing shows the way along smooth walls, but the noise of the points:
+// no frame may claim to know it.
+TEST_F(Doctor, CompensatedDopplerInATunnelLeavesTheWayUnknown) {
+  const auto frames_of = [&](const std::string& scene) {
+    const fs::path drive = folder_ / scene;
+    EXPECT_EQ(run_program("simulate " + scene + " --frames 10 --instant --quiet --layout aevascenes --output " +
+                          drive.string())
+                  .status,
+              0);
+    const Outcome ran = run(drive / "pointcloud_compensated", "out-" + scene);
+    EXPECT_EQ(ran.status, 0) << ran.text;
+    std::vector<json> frames;
+    std::istringstream lines(read_file(folder_ / ("out-" + scene) / "frames.jsonl"));
+    for (std::string line; std::getline(lines, line);) {
+      frames.push_back(json::parse(line));
+    }
+    return frames;
+  };
+  const std::vector<json> tunnel = frames_of("tunnel");
+  ASSERT_EQ(tunnel.size(), 10u);
+  for (std::size_t i = 1; i < tunnel.size(); ++i) {
+    EXPECT_EQ(tunnel[i]["status"], "degenerate") << i;
+    ASSERT_EQ(tunnel[i]["degenerate"].size(), 1u) << i;
+    EXPECT_GT(std::abs(tunnel[i]["degenerate"][0]["direction"][3].get<double>()), 0.99) << tunnel[i]["degenerate"];
+  }
+  for (const json& frame : frames_of("street")) {
+    EXPECT_EQ(frame["status"], "ok") << frame["index"];
+  }
+  EXPECT_LT(json::parse(read_file(folder_ / "out-street" / "summary.json"))["rte_rmse_m"].get<double>(), 0.02);
 }
 
 TEST_F(Doctor, WrongOptionsAreWrongUse) {

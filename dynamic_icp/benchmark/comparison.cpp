@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/benchmark/caption.hpp"
 
@@ -34,18 +35,27 @@ std::vector<Number> numbers_of(const BenchmarkResults& results, const std::strin
   return numbers;
 }
 
-/// Per variant the mean over the sequences on which any variant has a number; nothing for one that lacks some of these.
+/// The sequences on which any variant has a number: those that means are over.
+std::vector<std::string> sequences_with_numbers(const BenchmarkResults& results, const std::vector<Variant>& variants,
+                                                const Pick& pick) {
+  std::vector<std::string> sequences;
+  for (const auto& [label, path] : results.info.sequences) {
+    const std::vector<Number> numbers = numbers_of(results, label, variants, pick);
+    if (std::any_of(numbers.begin(), numbers.end(), [](const Number& number) { return number.value.has_value(); })) {
+      sequences.push_back(label);
+    }
+  }
+  return sequences;
+}
+
+/// Per variant the mean over these sequences; nothing for one that lacks some of them.
 std::vector<Number> mean_numbers(const BenchmarkResults& results, const std::vector<Variant>& variants,
                                  const Pick& pick) {
   std::vector<double> sums(variants.size(), 0.0);
   std::vector<bool> complete(variants.size(), true);
-  std::size_t sequences = 0;
-  for (const auto& [label, path] : results.info.sequences) {
+  const std::vector<std::string> sequences = sequences_with_numbers(results, variants, pick);
+  for (const std::string& label : sequences) {
     const std::vector<Number> numbers = numbers_of(results, label, variants, pick);
-    if (std::none_of(numbers.begin(), numbers.end(), [](const Number& number) { return number.value.has_value(); })) {
-      continue;
-    }
-    ++sequences;
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       sums[i] += numbers[i].value.value_or(0.0);
       complete[i] = complete[i] && numbers[i].value;
@@ -53,8 +63,8 @@ std::vector<Number> mean_numbers(const BenchmarkResults& results, const std::vec
   }
   std::vector<Number> means(variants.size());
   for (std::size_t i = 0; i < variants.size(); ++i) {
-    if (complete[i] && sequences > 0) {
-      means[i].value = sums[i] / static_cast<double>(sequences);
+    if (complete[i] && !sequences.empty()) {
+      means[i].value = sums[i] / static_cast<double>(sequences.size());
     }
   }
   return means;
@@ -71,6 +81,16 @@ std::vector<Block> blocks_of(const BenchmarkResults& results, const std::vector<
                       cells_of(mean_numbers(results, variants, rre_of), kErrorStyle)});
   }
   return blocks;
+}
+
+/// Over which sequences the means are: some have no truth, or every run on them failed.
+std::string mean_text(const BenchmarkResults& results, const std::vector<Variant>& variants) {
+  const std::vector<std::string> sequences = sequences_with_numbers(results, variants, rte_of);
+  if (sequences.size() == results.info.sequences.size() || sequences.empty()) {
+    return "over all sequences";
+  }
+  return fmt::format("over {} of the {} sequences ({}; the others have no number)", sequences.size(),
+                     results.info.sequences.size(), fmt::join(sequences, ", "));
 }
 
 void lay_out_by_variant(Table& table, const std::vector<Variant>& variants, const std::vector<Block>& blocks) {
@@ -109,9 +129,9 @@ Table comparison(const BenchmarkResults& results, const std::vector<Variant>& va
   Table table;
   table.caption = fmt::format(
       "{} RTE, RRE: root mean square of the translation and rotation error of the motion from each scan to the next "
-      "against the ground truth. Mean: over the sequences, for methods that have a number on all of them. Best bold, "
-      "second underlined, per sequence. {}",
-      what, setup_text(results));
+      "against the ground truth. Mean: {}, for methods that have a number on all of them. Best bold, second underlined, "
+      "per sequence. {}",
+      what, mean_text(results, variants), setup_text(results));
   if (variants.empty()) {
     return table;
   }

@@ -73,6 +73,20 @@ TEST(Tables, ASequenceWithoutTruthDoesNotSpoilTheMean) {
   without.rre_rmse_deg.reset();
   const Table table = accuracy_table(with({"a", "b"}, {cell("a", "gicp", 0.25), without}));
   EXPECT_EQ(row(table, 0), "GICP | 0.2500 | 0.7500 | - | - | 0.2500 | 0.7500");
+  EXPECT_NE(table.caption.find("Mean: over 1 of the 2 sequences (a; the others have no number)"), std::string::npos)
+      << table.caption;
+}
+
+TEST(Tables, TheCaptionSaysOverWhatTheMeanIsWhereRunsFailed) {
+  const auto caption = [](const std::vector<CellResult>& cells) {
+    return accuracy_table(with({"a", "b", "c"}, cells)).caption;
+  };
+  const CellResult a = cell("a", "gicp", 0.25);
+  const CellResult c = cell("c", "gicp", 0.25);
+  EXPECT_NE(caption({a, failed_cell("b", "gicp"), c}).find("Mean: over 2 of the 3 sequences (a, c; "), std::string::npos);
+  EXPECT_NE(caption({a, failed_cell("b", "gicp"), cell("b", "kiss-icp", 0.1), c}).find("Mean: over all sequences, "),
+            std::string::npos)
+      << "a method that failed has no mean, the others have theirs over all";
 }
 
 TEST(Tables, ManySequencesAreRows) {

@@ -48,6 +48,8 @@ class Converter {
 
   std::vector<std::string> convert() {
     note_what_is_not_of_points();
+    // Read twice: a column has one type in all files, the smallest that holds every number of the recording, and no
+    // recording fits into memory.
     for (std::size_t i = range_.begin; i < range_.end; ++i) {
       types_.add(dataset_.scan(i), dataset_.columns(i));
       advance();

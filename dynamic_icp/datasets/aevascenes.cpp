@@ -11,6 +11,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/datasets/aevascenes_sequence.hpp"
 #include "dynamic_icp/datasets/folder_search.hpp"
+#include "dynamic_icp/datasets/foreign_numbers.hpp"
 #include "dynamic_icp/formats/npz.hpp"
 
 namespace dynamic_icp::datasets {
@@ -27,6 +28,12 @@ constexpr std::array<const char*, 3> kOtherColumns = {"reflectivity", "line_inde
 bool is_sequence(const fs::path& folder) {
   return fs::is_regular_file(folder / kSequenceFile) &&
          (fs::is_directory(folder / kCompensatedFolder) || fs::is_directory(folder / kRawFolder));
+}
+
+/// Points without what says when and where they were measured.
+bool lacks_sequence(const fs::path& folder) {
+  return !fs::exists(folder / kSequenceFile) &&
+         (holds_files(folder / kCompensatedFolder, ".npz") || holds_files(folder / kRawFolder, ".npz"));
 }
 
 /// One member of an archive, (N,) or (N, 1); of any type. Throws DataError for another number of rows.
@@ -53,7 +60,13 @@ class AevaScenesDataset final : public Dataset {
     choose_doppler(found == folder_ ? fs::path() : found.filename());
     const Eigen::Isometry3d T_vehicle_sensor = *this->T_vehicle_sensor();
     for (const AevaScenesFrame& frame : sequence_.frames) {
-      ground_truth_.push_back({frame.stamp, frame.T_world_vehicle * T_vehicle_sensor});
+      if (frame.T_world_vehicle) {
+        ground_truth_.push_back({frame.stamp, *frame.T_world_vehicle * T_vehicle_sensor});
+      }
+    }
+    if (const std::size_t without = sequence_.frames.size() - ground_truth_.size(); without > 0) {
+      assumptions_.push_back(fmt::format("{}: {} of {} frames have no ego_pose: no ground truth for them",
+                                         (folder_ / kSequenceFile).string(), without, sequence_.frames.size()));
     }
   }
 
@@ -62,7 +75,9 @@ class AevaScenesDataset final : public Dataset {
   [[nodiscard]] Stamp stamp(std::size_t index) const override { return sequence_.frames.at(index).stamp; }
   [[nodiscard]] DopplerKind doppler_kind() const override { return doppler_kind_; }
   [[nodiscard]] const formats::Trajectory& ground_truth() const override { return ground_truth_; }
-  [[nodiscard]] fs::path ground_truth_file() const override { return folder_ / kSequenceFile; }
+  [[nodiscard]] fs::path ground_truth_file() const override {
+    return ground_truth_.empty() ? fs::path() : folder_ / kSequenceFile;
+  }
   [[nodiscard]] const std::vector<std::string>& assumptions() const override { return assumptions_; }
 
   [[nodiscard]] fs::path scan_file(std::size_t index) const override {
@@ -81,6 +96,7 @@ class AevaScenesDataset final : public Dataset {
     const std::vector<Cloud> clouds = clouds_of(index);
     for (const Cloud& cloud : clouds) {
       append(cloud, raw);
+      refuse_foreign_numbers(raw, cloud.path);
     }
     // Some without times: those of the others would be of no use.
     raw.times.resize(raw.times.size() == raw.points.size() ? raw.times.size() : 0);
@@ -274,7 +290,13 @@ fs::path find_aevascenes(const fs::path& input) {
   if (holds_points && is_sequence(whole.parent_path())) {
     return whole;
   }
-  return fs::is_directory(input) ? find_folder(input, is_sequence) : fs::path();
+  const fs::path found = fs::is_directory(input) ? find_folder(input, is_sequence) : fs::path();
+  if (found.empty() && lacks_sequence(input)) {
+    throw DataError(fmt::format(
+        "{}: holds points of AevaScenes, expected {} beside {}; name the folder of points to read them without it",
+        input.string(), kSequenceFile, fs::is_directory(input / kRawFolder) ? kRawFolder : kCompensatedFolder));
+  }
+  return found;
 }
 
 std::unique_ptr<Dataset> open_aevascenes(const fs::path& found, const OpenOptions& options) {

@@ -87,7 +87,9 @@ AevaScenesBox box_of(const Json& json, const AevaScenesSequence& sequence, const
 AevaScenesFrame frame_of(const Json& json, const AevaScenesSequence& sequence, const Place& place) {
   AevaScenesFrame frame;
   frame.stamp = stamp_of(json.at("timestamp_ns"), place);
-  frame.T_world_vehicle = pose_of(json.at("ego_pose"), place);
+  if (json.contains("ego_pose") && !json["ego_pose"].is_null()) {
+    frame.T_world_vehicle = pose_of(json["ego_pose"], place);
+  }
   for (const auto& [lidar, cloud] : json.at("point_cloud").items()) {
     AevaScenesPaths paths{text_of(cloud, "point_cloud_compensated_path"), text_of(cloud, "point_cloud_raw_path")};
     // v0.x has one path only; the folder it is in says which Doppler.

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -32,8 +33,8 @@ struct AevaScenesBox {
 
 struct AevaScenesFrame {
   Stamp stamp;
-  Eigen::Isometry3d T_world_vehicle = Eigen::Isometry3d::Identity();
-  std::map<std::string, AevaScenesPaths> clouds;  ///< by LiDAR; one may be missing
+  std::optional<Eigen::Isometry3d> T_world_vehicle;  ///< nothing where the frame has no pose
+  std::map<std::string, AevaScenesPaths> clouds;     ///< by LiDAR; one may be missing
   std::vector<AevaScenesBox> boxes;
 };
 

@@ -7,7 +7,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/recording_by_hand.hpp"
 #include "dynamic_icp/formats/npz.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
@@ -92,29 +92,8 @@ class AevaScenes : public ::testing::Test {
   }
   void write_sequence(const std::string& text) const { formats::write_whole_file(folder_ / "sequence.json", text); }
 
-  [[nodiscard]] std::string message() const {
-    try {
-      const std::unique_ptr<Dataset> dataset = open_dataset(root_);
-      for (std::size_t i = 0; i < dataset->size(); ++i) {
-        (void)dataset->scan(i);
-        (void)dataset->columns(i);
-      }
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "no error";
-  }
-  void expect_message(const std::string& part) const {
-    EXPECT_NE(message().find(part), std::string::npos) << message();
-  }
-  static bool said(const Dataset& dataset, const std::string& part) {
-    for (const std::string& sentence : dataset.assumptions()) {
-      if (sentence.find(part) != std::string::npos) {
-        return true;
-      }
-    }
-    return false;
-  }
+  [[nodiscard]] std::string message() const { return fault_of_reading(root_); }
+  void expect_message(const std::string& part) const { expect_within(message(), part); }
 
   fs::path root_ = fs::temp_directory_path() / ("aevascenes_test-" + std::to_string(::getpid()));
   fs::path folder_ = root_ / kUuid;
@@ -230,6 +209,20 @@ TEST_F(AevaScenes, RootsOfManySequencesListThem) {
   EXPECT_EQ(open_dataset(root_ / "train")->size(), 2u);
 }
 
+TEST_F(AevaScenes, AFrameWithoutAPoseHasNoTruthAndItIsSaid) {
+  const std::string whole = old_sequence();
+  std::string one = whole;
+  one.replace(one.find("\"ego_pose\""), 10, "\"no_pose\"");
+  write_sequence(one);
+  EXPECT_EQ(open_dataset(root_)->ground_truth().size(), 1u);
+  EXPECT_TRUE(said(*open_dataset(root_), "1 of 2 frames have no ego_pose"));
+  write_sequence(replaced(whole, "\"ego_pose\"", "\"no_pose\""));
+  EXPECT_TRUE(open_dataset(root_)->ground_truth().empty());
+  EXPECT_TRUE(open_dataset(root_)->ground_truth_file().empty());
+  fs::remove(folder_ / "sequence.json");
+  expect_within(fault_of_reading(folder_), "expected sequence.json beside pointcloud_compensated");
+}
+
 TEST_F(AevaScenes, WrongSequencesNameThePlace) {
   for (const std::string text : {"", "{", "[]", "{}", R"({"metadata": {}})", R"({"metadata": 7, "frames": []})"}) {
     write_sequence(text);
@@ -242,7 +235,6 @@ TEST_F(AevaScenes, WrongSequencesNameThePlace) {
   };
   with("\"1700000000100000000\"", "\"1.7e18\"", "frame 0: timestamp_ns is \"1.7e18\"");
   with("\"1700000000100000000\"", "1700000000000000000", "two frames have the timestamp_ns 1700000000000000000");
-  with("\"ego_pose\"", "\"ego\"", "frame 0: expected the metadata and frames");
   with("{\"x\": 10,", "{\"x\": \"far\",", "frame 0: ");
   with("\"w\": 0.7071067811865476", "\"w\": 7", "extrinsics of left_lidar: a pose has a quaternion of length 7.0");
   with("\"vehicle_to_lidar_extrinsics\"", "\"extrinsics\"", "metadata: expected");

@@ -87,12 +87,6 @@ const RecordLayout& layout_of(const std::vector<fs::path>& files) {
   return fits == kCandidates.end() ? *kCandidates.front() : **fits;
 }
 
-Eigen::Isometry3d read_matrix(const fs::path& path) {
-  std::string text = formats::read_whole_file(path);
-  std::replace(text.begin(), text.end(), '\n', ' ');
-  return rigid_transform(numbers_in(text, path.string()), path.string());
-}
-
 RecordRecording aeva_recording(const fs::path& folder, const OpenOptions& options) {
   StampedFiles scans = stamped_files(child(folder, "aeva"), ".bin", options.period_s);
   RecordRecording recording;
@@ -113,7 +107,7 @@ RecordRecording aeva_recording(const fs::path& folder, const OpenOptions& option
   const fs::path T_applanix_lidar = child(folder, "calib/T_applanix_lidar.txt");
   const fs::path T_aeva_lidar = child(folder, "calib/T_aeva_lidar.txt");
   if (!T_applanix_lidar.empty() && !T_aeva_lidar.empty()) {
-    recording.T_vehicle_sensor = read_matrix(T_applanix_lidar) * read_matrix(T_aeva_lidar).inverse();
+    recording.T_vehicle_sensor = read_boreas_matrix(T_applanix_lidar) * read_boreas_matrix(T_aeva_lidar).inverse();
   }
   return recording;
 }
@@ -123,20 +117,8 @@ RecordRecording frames_recording(const fs::path& folder) {
   recording.files = numbered_files(child(folder, "frames"), ".bin");
   recording.layout_of = [](const fs::path&, Stamp) -> const RecordLayout& { return formats::kXyzdTime; };
   const fs::path times = child(folder, "timestamps.txt");
-  const auto time_lines = lines_of(times);
-  check_rows(times, time_lines.size(), recording.files.size());
-  for (const auto& [place, line] : time_lines) {
-    const std::vector<std::string_view> words = formats::words_of(line);
-    const std::optional<Stamp> stamp = parse_seconds(words.front());
-    if (words.size() != 1 || !stamp) {
-      throw DataError(fmt::format("{}: is {}, expected one time in seconds", place, formats::quoted_text(line)));
-    }
-    if (!recording.stamps.empty() && *stamp <= recording.stamps.back()) {
-      throw DataError(fmt::format("{}: the time {} comes after {}, expected increasing times", place,
-                                  format_seconds(*stamp), format_seconds(recording.stamps.back())));
-    }
-    recording.stamps.push_back(*stamp);
-  }
+  recording.stamps = read_boreas_times(times);
+  check_rows(times, recording.stamps.size(), recording.files.size());
   const fs::path poses = child(folder, "aeva_poses.txt");
   if (poses.empty()) {
     return recording;
@@ -152,6 +134,29 @@ RecordRecording frames_recording(const fs::path& folder) {
 }
 
 }  // namespace
+
+std::vector<Stamp> read_boreas_times(const fs::path& path) {
+  std::vector<Stamp> stamps;
+  for (const auto& [place, line] : lines_of(path)) {
+    const std::vector<std::string_view> words = formats::words_of(line);
+    const std::optional<Stamp> stamp = parse_seconds(words.front());
+    if (words.size() != 1 || !stamp) {
+      throw DataError(fmt::format("{}: is {}, expected one time in seconds", place, formats::quoted_text(line)));
+    }
+    if (!stamps.empty() && *stamp <= stamps.back()) {
+      throw DataError(fmt::format("{}: the time {} comes after {}, expected increasing times", place,
+                                  format_seconds(*stamp), format_seconds(stamps.back())));
+    }
+    stamps.push_back(*stamp);
+  }
+  return stamps;
+}
+
+Eigen::Isometry3d read_boreas_matrix(const fs::path& path) {
+  std::string text = formats::read_whole_file(path);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return rigid_transform(numbers_in(text, path.string()), path.string());
+}
 
 fs::path find_boreas(const fs::path& input) { return find_above(input, is_boreas); }
 

@@ -31,4 +31,10 @@ std::unique_ptr<Dataset> open_boreas(const std::filesystem::path& folder, const 
 /// DataError naming file and line.
 formats::Trajectory read_boreas_poses(const std::filesystem::path& path);
 
+/// The times of timestamps.txt, strictly increasing. Throws DataError naming file and line.
+std::vector<Stamp> read_boreas_times(const std::filesystem::path& path);
+
+/// The transform in a file of calib/. Throws DataError naming the file.
+Eigen::Isometry3d read_boreas_matrix(const std::filesystem::path& path);
+
 }  // namespace dynamic_icp::datasets

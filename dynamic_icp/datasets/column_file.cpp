@@ -47,8 +47,11 @@ ColumnFile::ColumnFile(ColumnFileKind kind, const std::filesystem::path& path) :
     case ColumnFileKind::kNpz: {
       const formats::NpzFile& npz = file_.emplace<formats::NpzFile>(path);
       for (std::string& name : npz.names()) {
-        if (npz.holds_numbers(name)) {
+        std::string reason = npz.why_no_numbers(name);
+        if (reason.empty()) {
           names_.push_back(std::move(name));
+        } else {
+          unusable_.push_back(std::move(reason));
         }
       }
       break;

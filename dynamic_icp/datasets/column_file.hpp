@@ -32,6 +32,9 @@ class ColumnFile {
   /// The names of the arrays of numbers, in the order of the file.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
 
+  /// Of arrays of the file that hold no numbers, why, in sentences: they are not among the names.
+  [[nodiscard]] const std::vector<std::string>& unusable() const { return unusable_; }
+
   /// The array of that name. Throws DataError where there is none or it is damaged.
   [[nodiscard]] formats::NpyArray read(const std::string& name) const;
 
@@ -48,6 +51,7 @@ class ColumnFile {
 
   std::filesystem::path path_;
   std::vector<std::string> names_;
+  std::vector<std::string> unusable_;
   std::variant<NpyPair, formats::NpzFile, formats::PcdFile, formats::PlyFile> file_;
 };
 

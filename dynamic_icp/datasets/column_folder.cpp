@@ -6,11 +6,13 @@
 #include <map>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/datasets/column_file.hpp"
 #include "dynamic_icp/datasets/field_names.hpp"
 #include "dynamic_icp/datasets/folder_search.hpp"
+#include "dynamic_icp/datasets/foreign_numbers.hpp"
 #include "dynamic_icp/datasets/numbered_files.hpp"
 #include "dynamic_icp/datasets/point_times.hpp"
 #include "dynamic_icp/datasets/scan_stamps.hpp"
@@ -43,6 +45,11 @@ std::string_view format_name(ColumnFileKind kind) {
   return kind == ColumnFileKind::kNpyPair ? "npz" : extension(kind).substr(1);
 }
 
+bool is_npy_pair(const fs::path& points) {
+  return points.extension() == ".npy" && fs::is_regular_file(points) &&
+         fs::is_regular_file(ColumnFile::doppler_file(points));
+}
+
 /// The arrays of one file, each read once.
 class Arrays {
  public:
@@ -59,8 +66,9 @@ class Arrays {
     }
     rows_ = arrays_.size() == 1 ? formats::rows_of(array) : rows_;
     if (formats::rows_of(array) != rows_) {
-      throw DataError(fmt::format("{}: array '{}' has {} rows, expected {} as in the others", path_.string(),
-                                  field.array, formats::rows_of(array), rows_));
+      throw DataError(fmt::format("{}: array '{}' of shape ({}) has {} rows, expected {} as in the others",
+                                  path_.string(), field.array, fmt::join(array.shape, ", "), formats::rows_of(array),
+                                  rows_));
     }
     return array;
   }
@@ -95,8 +103,12 @@ class ColumnDataset final : public Dataset {
     const bool is_folder = fs::is_directory(found);
     const fs::path folder = is_folder ? found : fs::absolute(found).parent_path();
     files_ = is_folder ? scan_files(found) : std::vector<fs::path>{found};
+    if (is_folder && kind_ == ColumnFileKind::kNpyPair) {
+      say_what_has_no_doppler(found);
+    }
     find_stamps(folder, options.period_s);
-    fields_ = map_fields(ColumnFile(kind_, files_.front()).names(), options.fields, files_.front().string());
+    const ColumnFile first(kind_, files_.front());
+    fields_ = map_fields(first.names(), options.fields, files_.front().string(), first.unusable());
     assumptions_.insert(assumptions_.end(), fields_.assumptions.begin(), fields_.assumptions.end());
     find_time_unit(options.period_s);
     if (folder.filename().string().find("compensated") != std::string::npos) {
@@ -125,6 +137,7 @@ class ColumnDataset final : public Dataset {
     raw.warning = file.warning();
     raw.points = arrays.vectors(fields_.point);
     raw.doppler = arrays.values(fields_.doppler);
+    refuse_foreign_numbers(raw, path);
     if (fields_.time) {
       raw.times = times_after(raw.stamp, arrays.get(*fields_.time), time_unit_);
     }
@@ -174,13 +187,29 @@ class ColumnDataset final : public Dataset {
     return files;
   }
 
+  void say_what_has_no_doppler(const fs::path& folder) {
+    std::vector<fs::path> alone;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      const fs::path& path = entry.path();
+      if (path.extension() == ".npy" && !path.filename().string().ends_with(kDopplerEnding) && !is_npy_pair(path)) {
+        alone.push_back(path);
+      }
+    }
+    if (!alone.empty()) {
+      const fs::path& first = *std::min_element(alone.begin(), alone.end());
+      assumptions_.push_back(
+          fmt::format("{}: {} of the *.npy have no *{} beside them and are left out, this is the first", first.string(),
+                      alone.size(), kDopplerEnding));
+    }
+  }
+
   void find_stamps(const fs::path& folder, double period_s) {
     StampedFiles stamped = stamped_files(files_, period_s);
     files_ = std::move(stamped.files);
     stamps_ = std::move(stamped.stamps);
     std::vector<std::string>& said = stamped.assumptions;
     const bool are_indices = stamped.are_indices;
-    truth_ = find_truth(folder, stamps_, are_indices, assumptions_);
+    truth_ = search_truth(folder, stamps_, are_indices, assumptions_);
     if (are_indices && !truth_.poses.empty()) {
       std::transform(truth_.poses.begin(), truth_.poses.end(), stamps_.begin(),
                      [](const formats::StampedPose& pose) { return pose.stamp; });
@@ -215,14 +244,9 @@ class ColumnDataset final : public Dataset {
   FieldMap fields_;
   TimeUnit time_unit_;
   DopplerKind doppler_kind_ = DopplerKind::kRelative;
-  FoundTruth truth_;
+  Truth truth_;
   std::vector<std::string> assumptions_;
 };
-
-bool is_npy_pair(const fs::path& points) {
-  return points.extension() == ".npy" && fs::is_regular_file(points) &&
-         fs::is_regular_file(ColumnFile::doppler_file(points));
-}
 
 bool holds_npy_pairs(const fs::path& folder) {
   std::error_code ignored;

@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/recording_by_hand.hpp"
 #include "dynamic_icp/formats/npz.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
@@ -41,27 +41,9 @@ class ColumnFolder : public ::testing::Test {
     formats::write_npz(folder_ / name, members);
   }
   [[nodiscard]] std::string message(const OpenOptions& options = {}) const {
-    try {
-      const std::unique_ptr<Dataset> dataset = open_dataset(folder_, options);
-      for (std::size_t i = 0; i < dataset->size(); ++i) {
-        (void)dataset->scan(i);
-      }
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "no error";
+    return fault_of_reading(folder_, options);
   }
-  void expect_message(const std::string& part) const {
-    EXPECT_NE(message().find(part), std::string::npos) << message();
-  }
-  static bool said(const Dataset& dataset, const std::string& part) {
-    for (const std::string& sentence : dataset.assumptions()) {
-      if (sentence.find(part) != std::string::npos) {
-        return true;
-      }
-    }
-    return false;
-  }
+  void expect_message(const std::string& part) const { expect_within(message(), part); }
 
   const std::vector<double> kXyz = {1, 2, 3, 4, 5, 6};
   fs::path folder_ = fs::temp_directory_path() / ("column_folder_test-" + std::to_string(::getpid()));
@@ -172,13 +154,28 @@ TEST_F(ColumnFolder, CompensatedByTheNameOfTheFolder) {
 
 TEST_F(ColumnFolder, ColumnsMustBelongTogether) {
   write_npz("1.npz", {array<double>("points", {2, 3}, kXyz), array<float>("doppler", {3}, {1, 2, 3})});
-  expect_message("1.npz: array 'doppler' has 3 rows, expected 2");
+  expect_message("1.npz: array 'doppler' of shape (3) has 3 rows, expected 2");
   write_npz("1.npz", {array<double>("points", {2, 3}, kXyz), array<double>("velocity", {2, 3}, kXyz)});
   expect_message("array 'velocity': has 3 columns, expected one");
   write_npz("1.npz", {array<double>("points", {3, 2}, kXyz), array<float>("doppler", {3}, {1, 2, 3})});
   expect_message("array 'points': has 2 columns, expected at least 3");
   write_npz("1.npz", {array<double>("points", {6}, kXyz)});
   expect_message("no column of Doppler velocities");
+}
+
+TEST_F(ColumnFolder, ArraysThatHoldNoNumbersAreNamedWithWhatTheyAre) {
+  const auto npz_of = [&](const std::string& type, const std::string& shape) {
+    std::string bytes = formats::npz_bytes(
+        std::vector<NamedArray>{array<double>("points", {2, 3}, kXyz), array<float>("doppler", {2}, {1, 2})});
+    bytes.replace(bytes.find("<f8"), 3, type);
+    bytes.replace(bytes.find("(2, 3)"), 6, shape);
+    write("1.npz", bytes);
+  };
+  npz_of("<c8", "(2, 3)");
+  expect_message("1.npz: no column for x");
+  expect_message("there are: doppler; array 'points': has the type '<c8', expected one of f4 f8");
+  npz_of("<f8", "(2,-3)");
+  expect_message("array 'points': expected a whole number that is not negative at byte ");
 }
 
 TEST_F(ColumnFolder, DamagedFilesAreNamed) {

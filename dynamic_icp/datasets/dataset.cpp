@@ -14,6 +14,7 @@
 #include "dynamic_icp/datasets/helipr.hpp"
 #include "dynamic_icp/datasets/hercules.hpp"
 #include "dynamic_icp/datasets/not_a_recording.hpp"
+#include "dynamic_icp/formats/file_kind.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -135,9 +136,15 @@ std::vector<std::string> known_formats() {
 }
 
 std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& options) {
-  if (!fs::exists(input)) {
+  std::error_code fault;
+  const fs::file_status status = fs::status(input, fault);
+  if (status.type() == fs::file_type::not_found) {
     throw DataError(fmt::format("{}: no such file or folder", input.string()));
   }
+  if (fault) {  // a link to itself, a folder that must not be entered
+    throw DataError(fmt::format("{}: cannot be opened: {}", input.string(), fault.message()));
+  }
+  formats::refuse_irregular(input);
   const Match match = options.format == "auto" ? match_any(input) : match_named(input, options.format);
   if (match.layout != nullptr) {
     return open_as(*match.layout, match.folder, options);

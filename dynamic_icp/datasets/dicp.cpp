@@ -10,8 +10,8 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/datasets/folder_search.hpp"
+#include "dynamic_icp/datasets/foreign_numbers.hpp"
 #include "dynamic_icp/datasets/numbered_files.hpp"
-#include "dynamic_icp/datasets/record_guess.hpp"
 #include "dynamic_icp/datasets/scan_stamps.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/point_records.hpp"
@@ -30,11 +30,17 @@ constexpr const char* kScans = "point_clouds";
 bool is_dicp(const fs::path& folder) { return holds_files(folder / kScans, ".bin"); }
 
 /// Seconds after the stamp, one float32 per point. Our own addition to the layout, for scans that take time.
-std::vector<double> read_times(const fs::path& path, std::size_t points) {
+std::vector<double> read_times(const fs::path& path, const RawScan& scan, const fs::path& scan_file) {
+  const std::size_t points = scan.points.size();
   formats::RecordFile file(path, sizeof(float));
   if (file.records() != points || (points > 0 && !file.warning().empty())) {
-    throw DataError(fmt::format("{}: {} times for {} points, expected one float32 per point", path.string(),
-                                file.records(), points));
+    // A scan that was cut has fewer points than it had times; so has one that is empty, or ends within a record.
+    const bool is_cut = !scan.warning.empty() || points < file.records();
+    throw DataError(is_cut ? fmt::format("{}: {} points, expected {} as there are times in {}: the scan is cut short{}",
+                                         scan_file.string(), points, file.records(), path.string(),
+                                         scan.warning.empty() ? "" : fmt::format(" ({})", scan.warning))
+                           : fmt::format("{}: {} times for the {} points of {}, expected one float32 per point",
+                                         path.string(), file.records(), points, scan_file.string()));
   }
   std::vector<double> times;
   times.reserve(points);
@@ -85,7 +91,7 @@ class DicpDataset final : public Dataset {
     refuse_foreign_numbers(raw, files_[index], formats::kXyzd);
     raw.stamp = stamps_[index];
     if (!times_.empty()) {
-      raw.times = read_times(times_ / files_[index].filename(), raw.points.size());
+      raw.times = read_times(times_ / files_[index].filename(), raw, files_[index]);
     }
     return raw;
   }

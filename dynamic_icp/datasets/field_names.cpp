@@ -44,8 +44,8 @@ std::string lower(std::string_view text) {
 class FieldFinder {
  public:
   FieldFinder(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
-              const std::string& origin)
-      : names_(names), wanted_(wanted), origin_(origin) {}
+              const std::string& origin, const std::vector<std::string>& unusable)
+      : names_(names), wanted_(wanted), origin_(origin), unusable_(unusable) {}
 
   FieldMap find() {
     for (const auto& [key, column] : wanted_) {
@@ -70,7 +70,13 @@ class FieldFinder {
     return found == names_.end() ? nullptr : &*found;
   }
 
-  [[nodiscard]] std::string there_are() const { return fmt::format("there are: {}", fmt::join(names_, ", ")); }
+  [[nodiscard]] std::string there_are() const {
+    std::string text = names_.empty() ? "there are none" : fmt::format("there are: {}", fmt::join(names_, ", "));
+    for (const std::string& reason : unusable_) {
+      text += "; " + reason;
+    }
+    return text;
+  }
 
   /// The column that the user names, for instance "range" or "points[3]".
   [[nodiscard]] std::optional<FieldColumn> wanted_column(const std::string& key) const {
@@ -170,6 +176,7 @@ class FieldFinder {
   const std::vector<std::string>& names_;
   const std::map<std::string, std::string>& wanted_;
   const std::string& origin_;
+  const std::vector<std::string>& unusable_;
   FieldMap map_;
 };
 
@@ -184,8 +191,8 @@ bool FieldMap::uses(const std::string& array) const {
 }
 
 FieldMap map_fields(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
-                    const std::string& origin) {
-  return FieldFinder(names, wanted, origin).find();
+                    const std::string& origin, const std::vector<std::string>& unusable) {
+  return FieldFinder(names, wanted, origin, unusable).find();
 }
 
 }  // namespace dynamic_icp::datasets

@@ -44,8 +44,9 @@ struct FieldMap {
 ///
 /// `wanted` goes before that: the column of x, y, z, doppler or time, "points[3]" being the fourth of an array, and the
 /// array of los. Throws UsageError for other keys; DataError naming the columns there are where a wanted one is not
-/// among them or none has a known name (time and line of sight may be missing).
+/// among them or none has a known name (time and line of sight may be missing), and saying of `unusable` arrays why
+/// they are not among the names.
 FieldMap map_fields(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
-                    const std::string& origin);
+                    const std::string& origin, const std::vector<std::string>& unusable = {});
 
 }  // namespace dynamic_icp::datasets

@@ -52,7 +52,7 @@ std::unique_ptr<Dataset> open_helipr(const fs::path& folder, const OpenOptions& 
       "the Doppler is taken as relative, the sensor's own motion in it; this is uncertain: the data set's author says "
       "it was taken out, published work uses it as if not. 'dynamic-icp info' checks it against the motion, "
       "--doppler-kind decides");
-  recording.truth = find_truth(
+  recording.truth = named_truth(
       std::array{find_part(folder, "LiDAR_GT/Aeva_gt.txt"), find_part(folder, "LiDAR_GT/global_Aeva_gt.txt")},
       recording.stamps, recording.assumptions);
   return make_record_dataset(std::move(recording));

@@ -20,7 +20,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The numbers after the key, which takes points of the LiDAR to the IMU.
+}  // namespace
+
 Eigen::Isometry3d read_imu_lidar(const fs::path& path) {
   constexpr std::string_view kKey = "Tr_lidar_to_imu:";
   const std::string text = formats::read_whole_file(path);
@@ -36,8 +37,6 @@ Eigen::Isometry3d read_imu_lidar(const fs::path& path) {
   throw DataError(fmt::format("{}: no line '{}' with 12 numbers", path.string(), kKey));
 }
 
-}  // namespace
-
 fs::path find_hercules(const fs::path& input) {
   const fs::path folder = find_aeva_folder(input);
   return !folder.empty() && is_hercules(folder) ? folder : fs::path();
@@ -52,7 +51,7 @@ std::unique_ptr<Dataset> open_hercules(const fs::path& folder, const OpenOptions
   recording.stamps = std::move(scans.stamps);
   recording.assumptions = std::move(scans.assumptions);
   recording.truth =
-      find_truth(std::array{find_part(folder, "PR_GT/Aeva_gt.txt")}, recording.stamps, recording.assumptions);
+      named_truth(std::array{find_part(folder, "PR_GT/Aeva_gt.txt")}, recording.stamps, recording.assumptions);
   if (const fs::path calibration = find_part(folder, "Calibration/IMU_LiDAR.txt"); !calibration.empty()) {
     recording.T_vehicle_sensor = read_imu_lidar(calibration);
   }

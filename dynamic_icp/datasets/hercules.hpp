@@ -18,4 +18,7 @@ std::filesystem::path find_hercules(const std::filesystem::path& input);
 ///   Calibration/IMU_LiDAR.txt    optional: pose of the sensor in the IMU, which stands for the vehicle
 std::unique_ptr<Dataset> open_hercules(const std::filesystem::path& folder, const OpenOptions& options = {});
 
+/// The pose of the LiDAR in the IMU by Calibration/IMU_LiDAR.txt. Throws DataError naming file and line.
+Eigen::Isometry3d read_imu_lidar(const std::filesystem::path& path);
+
 }  // namespace dynamic_icp::datasets

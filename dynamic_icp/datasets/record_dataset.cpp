@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "dynamic_icp/datasets/record_guess.hpp"
+#include "dynamic_icp/datasets/foreign_numbers.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {

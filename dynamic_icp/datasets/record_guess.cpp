@@ -162,34 +162,4 @@ std::string without_doppler(std::string_view content) {
   return "";
 }
 
-void refuse_foreign_numbers(const RawScan& scan, const fs::path& file, const RecordLayout& layout) {
-  constexpr double kLargest = 1e7;
-  constexpr double kSmallest = 1e-20;
-  const auto is_foreign = [](double value) {
-    return std::abs(value) > kLargest || (value != 0.0 && std::abs(value) < kSmallest);
-  };
-  const std::size_t rows = scan.points.size();
-  std::size_t finite = 0;
-  std::size_t foreign = 0;
-  std::size_t first = 0;
-  for (std::size_t row = 0; row < rows; row += 1 + rows / kSamples) {
-    const Eigen::Vector3d& p = scan.points[row];
-    if (p.allFinite() && std::isfinite(scan.doppler[row])) {
-      ++finite;
-      if (is_foreign(p.x()) || is_foreign(p.y()) || is_foreign(p.z()) || is_foreign(scan.doppler[row])) {
-        first = foreign == 0 ? row : first;
-        ++foreign;
-      }
-    }
-  }
-  if (2 * foreign > finite) {
-    const Eigen::Vector3d& p = scan.points[first];
-    throw DataError(fmt::format(
-        "{}: record {} at byte {} has x, y, z = {:g}, {:g}, {:g} m and Doppler {:g} m/s, as have most: expected "
-        "little-endian records of {} bytes ({})",
-        file.string(), first, first * layout.bytes, p.x(), p.y(), p.z(), scan.doppler[first], layout.bytes,
-        layout.name));
-  }
-}
-
 }  // namespace dynamic_icp::datasets

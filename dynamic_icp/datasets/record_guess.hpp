@@ -26,10 +26,4 @@ const formats::RecordLayout* guess_layout(const std::filesystem::path& file,
 /// neither.
 std::string without_doppler(std::string_view content);
 
-/// Throws DataError naming file and record when most points of a scan are no numbers anybody measured (beyond 10 000
-/// km, or not 0 but below 1e-20): read in the wrong byte order or from records of another size. Points that are not
-/// finite do not count.
-void refuse_foreign_numbers(const RawScan& scan, const std::filesystem::path& file,
-                            const formats::RecordLayout& layout);
-
 }  // namespace dynamic_icp::datasets

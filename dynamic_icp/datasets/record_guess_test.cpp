@@ -63,26 +63,5 @@ TEST(RecordGuess, TimesOfAScanPassInTheirOrder) {
   EXPECT_FALSE(looks_like(scan(0.0F, 0.0F), formats::kXyzdTime)) << "none";
 }
 
-TEST(RecordGuess, ForeignNumbersAreThoseOfMostFinitePoints) {
-  const double nan = std::numeric_limits<double>::quiet_NaN();
-  RawScan scan;
-  scan.points = {{1, 2, 3}, {1e9, 0, 0}, {nan, 0, 0}};
-  scan.doppler = {1, 2, 3};
-  EXPECT_NO_THROW(refuse_foreign_numbers(scan, "a.bin", kXyzd)) << "one of two";
-  scan.points[0].z() = 1e-30;
-  try {
-    refuse_foreign_numbers(scan, "a.bin", kXyzd);
-    FAIL();
-  } catch (const DataError& error) {
-    EXPECT_STREQ(error.what(),
-                 "a.bin: record 0 at byte 0 has x, y, z = 1, 2, 1e-30 m and Doppler 1 m/s, as have most: expected "
-                 "little-endian records of 16 bytes (xyzd)");
-  }
-  scan.points = {{250'000, -3'000, 12}, {0, 0, 0}};
-  scan.doppler = {16'000, 0};
-  EXPECT_NO_THROW(refuse_foreign_numbers(scan, "a.bin", kXyzd)) << "millimetres, for the doctor";
-  EXPECT_NO_THROW(refuse_foreign_numbers({}, "a.bin", kXyzd));
-}
-
 }  // namespace
 }  // namespace dynamic_icp::datasets

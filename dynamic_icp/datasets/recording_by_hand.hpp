@@ -2,12 +2,15 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <bit>
 #include <cstdint>
 #include <filesystem>
 #include <fstream>
 #include <initializer_list>
+#include <memory>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -50,6 +53,35 @@ inline std::string swapped(std::string bytes) {
   return bytes;
 }
 
+/// The message of the DataError that an action throws, else "no error".
+template <class Action>
+std::string fault_of(const Action& action) {
+  try {
+    action();
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+/// What opening a recording and reading all of it says that fails.
+inline std::string fault_of_reading(const std::filesystem::path& recording, const OpenOptions& options = {}) {
+  return fault_of([&] {
+    const std::unique_ptr<Dataset> dataset = open_dataset(recording, options);
+    for (std::size_t i = 0; i < dataset->size(); ++i) {
+      (void)dataset->scan(i);
+      (void)dataset->columns(i);
+    }
+  });
+}
+
+/// Whether one of the assumptions holds these words.
+inline bool said(const Dataset& dataset, const std::string& part) {
+  const std::vector<std::string>& sentences = dataset.assumptions();
+  return std::any_of(sentences.begin(), sentences.end(),
+                     [&](const std::string& sentence) { return sentence.find(part) != std::string::npos; });
+}
+
 class RecordingByHand : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -67,23 +99,13 @@ class RecordingByHand : public ::testing::Test {
 
   /// What opening says that fails.
   [[nodiscard]] std::string fault(const OpenOptions& options = {}) const {
-    try {
-      (void)open_dataset(folder_, options);
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "no error";
+    return fault_of([&] { (void)open_dataset(folder_, options); });
   }
 
   /// What reading this scan says that fails.
   [[nodiscard]] std::string scan_fault(std::size_t index) const {
     const std::unique_ptr<Dataset> dataset = open_dataset(folder_);
-    try {
-      (void)dataset->scan(index);
-    } catch (const DataError& error) {
-      return error.what();
-    }
-    return "no error";
+    return fault_of([&] { (void)dataset->scan(index); });
   }
 
   std::filesystem::path above_ =

@@ -21,9 +21,9 @@ struct StampedFiles {
 
 /// The files of a folder with the given extension (".bin") and the time stamps in their names. The last run of digits
 /// in a name is Unix time of the unit its length tells (dates from 2001 to 2286): 10 digits s, 13 ms, 16 us, 19 ns;
-/// names that end in 10 digits, a point and further digits are seconds; 19 digits may begin with zeros. Up to 9 digits after any zeros in front are the
-/// index of a scan: `period_s` apart, from 0 at the first, with a sentence that says so. Names without a digit and
-/// hidden files are left out.
+/// names that end in 10 digits, a point and further digits are seconds; 19 digits may begin with zeros. Up to 9 digits
+/// after any zeros in front are the index of a scan: `period_s` apart, from 0 at the first, with a sentence that says
+/// so. Names without a digit and hidden files are left out.
 ///
 /// Throws DataError when the folder cannot be read or has no such file, for numbers of other lengths, when names of
 /// several kinds are mixed, and when two files carry the same stamp, naming both.

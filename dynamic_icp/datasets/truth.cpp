@@ -39,8 +39,8 @@ formats::Trajectory near_origin(formats::Trajectory poses) {
   return poses;
 }
 
-Truth find_truth(std::span<const fs::path> files, const std::vector<Stamp>& stamps,
-                 std::vector<std::string>& assumptions) {
+Truth named_truth(std::span<const fs::path> files, const std::vector<Stamp>& stamps,
+                  std::vector<std::string>& assumptions) {
   for (const fs::path& file : files) {
     if (file.empty() || !fs::exists(file)) {
       continue;

@@ -22,13 +22,13 @@ struct Truth {
 /// others as they are. The axes stay.
 formats::Trajectory near_origin(formats::Trajectory poses);
 
-/// The truth in the first of the files, in the order given, that speaks of the time of the scans; files that are
-/// missing
-/// ("") are passed over. Of those that exist but speak of another time, and of lines left out because they repeat, a
-/// sentence is added to `assumptions`. Rows are of the sensor itself, and need not be one per scan. Throws DataError
-/// naming file and line where one cannot be read (formats::read_tum).
-Truth find_truth(std::span<const std::filesystem::path> files, const std::vector<Stamp>& stamps,
-                 std::vector<std::string>& assumptions);
+/// For layouts that say where their ground truth is (truth_search.hpp is for those that do not): the truth in the first
+/// of the files, in the order given, that speaks of the time of the scans; files that are missing ("") are passed over.
+/// Of those that exist but speak of another time, and of lines left out because they repeat, a sentence is added to
+/// `assumptions`. Rows are of the sensor itself, and need not be one per scan. Throws DataError naming file and line
+/// where one cannot be read (formats::read_tum).
+Truth named_truth(std::span<const std::filesystem::path> files, const std::vector<Stamp>& stamps,
+                  std::vector<std::string>& assumptions);
 
 /// The transform that row-major numbers of a 3x4 or 4x4 matrix say. `place` is what messages begin with. Throws
 /// DataError for another count, numbers that are not finite and what is no rotation within 1e-3.

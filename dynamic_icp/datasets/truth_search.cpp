@@ -56,9 +56,9 @@ std::string misfit(const formats::Trajectory& poses, const std::vector<Stamp>& s
 }
 
 /// The trajectories of a folder that fit; why others do not is added to the assumptions.
-std::vector<FoundTruth> fitting_in(const fs::path& folder, const std::vector<Stamp>& stamps, bool stamps_are_indices,
-                                   std::vector<std::string>& assumptions) {
-  std::vector<FoundTruth> fitting;
+std::vector<Truth> fitting_in(const fs::path& folder, const std::vector<Stamp>& stamps, bool stamps_are_indices,
+                              std::vector<std::string>& assumptions) {
+  std::vector<Truth> fitting;
   for (const fs::path& path : candidates_in(folder)) {
     try {
       formats::Trajectory poses = formats::read_tum(path).trajectory;
@@ -77,15 +77,15 @@ std::vector<FoundTruth> fitting_in(const fs::path& folder, const std::vector<Sta
 
 }  // namespace
 
-FoundTruth find_truth(const fs::path& folder, const std::vector<Stamp>& stamps, bool stamps_are_indices,
-                      std::vector<std::string>& assumptions) {
+Truth search_truth(const fs::path& folder, const std::vector<Stamp>& stamps, bool stamps_are_indices,
+                   std::vector<std::string>& assumptions) {
   const fs::path whole = fs::absolute(folder).lexically_normal();  // with a slash at the end its parent is itself
   const fs::path above = whole.has_filename() ? whole.parent_path() : whole.parent_path().parent_path();
   for (const fs::path& place : {folder, above}) {
-    std::vector<FoundTruth> fitting = fitting_in(place, stamps, stamps_are_indices, assumptions);
+    std::vector<Truth> fitting = fitting_in(place, stamps, stamps_are_indices, assumptions);
     if (fitting.size() > 1) {
       std::string names;
-      for (const FoundTruth& truth : fitting) {
+      for (const Truth& truth : fitting) {
         names += " " + truth.file.string();
       }
       assumptions.push_back(fmt::format("no ground truth is taken: several files fit, name one of them:{}", names));

@@ -24,9 +24,9 @@ class TruthSearch : public ::testing::Test {
     }
     formats::write_whole_file(path, text);
   }
-  FoundTruth find(bool indices = false) {
+  Truth find(bool indices = false) {
     assumptions_.clear();
-    return find_truth(folder_, stamps_, indices, assumptions_);
+    return search_truth(folder_, stamps_, indices, assumptions_);
   }
   [[nodiscard]] bool said(const std::string& part) const {
     for (const std::string& sentence : assumptions_) {
@@ -51,7 +51,7 @@ TEST_F(TruthSearch, WithoutFilesThereIsNothingToSay) {
 
 TEST_F(TruthSearch, TakesWhatFitsByTime) {
   write(above_ / "example_gt.txt", 2, 1.05);
-  const FoundTruth truth = find();
+  const Truth truth = find();
   EXPECT_EQ(truth.poses.size(), 2u);
   EXPECT_EQ(truth.file.filename(), "example_gt.txt");
   EXPECT_TRUE(said("ground truth is taken from " + (above_ / "example_gt.txt").string()));
@@ -85,7 +85,7 @@ TEST_F(TruthSearch, OfSeveralNoneIsTaken) {
 
 TEST_F(TruthSearch, ASlashAtTheEndIsNoOtherFolder) {
   write(folder_ / "gt.txt", 4, 1.0);
-  EXPECT_EQ(find_truth(folder_ / "", stamps_, false, assumptions_).poses.size(), 4u);
+  EXPECT_EQ(search_truth(folder_ / "", stamps_, false, assumptions_).poses.size(), 4u);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ TEST(Truth, OnlyLargeCoordinatesAreMoved) {
 TEST(Truth, MissingFilesArePassedOver) {
   std::vector<std::string> assumptions;
   const Truth truth =
-      find_truth(std::array{std::filesystem::path(), std::filesystem::path("/no/such/file")}, {Stamp{0}}, assumptions);
+      named_truth(std::array{std::filesystem::path(), std::filesystem::path("/no/such/file")}, {Stamp{0}}, assumptions);
   EXPECT_TRUE(truth.poses.empty() && truth.file.empty() && assumptions.empty());
 }
 

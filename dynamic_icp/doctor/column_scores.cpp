@@ -24,7 +24,7 @@ constexpr double kMostShare = 0.95;
 
 // A column is called the Doppler only where it is explained this well, and the one in its place this much worse.
 constexpr double kStaticShare = 0.3;  // more than half of the points may be traffic
-constexpr double kGoodResidual_mps = 0.25;
+constexpr double kGoodResidual_mps = 0.15;
 constexpr double kTimesWorse = 2.5;
 
 /// A ray that met nothing, as some sensors write it: zeros fit to any velocity, in whatever order the columns are.

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "dynamic_icp/doctor/no_doppler.hpp"
 #include "dynamic_icp/doctor/questions.hpp"
 
 namespace dynamic_icp::doctor {
@@ -60,6 +61,11 @@ std::optional<int> forward_axis(const View& view, int up) {
   return std::nullopt;
 }
 
+/// Whether another one may be named to be the Doppler.
+bool has_named_columns(const datasets::Dataset& dataset) {
+  return dataset.format() == "npz" || dataset.format() == "pcd" || dataset.format() == "ply";
+}
+
 std::string stored_order(const Evidence& evidence, int up, std::optional<int> forward) {
   std::array<std::string_view, 3> names = {"", "", ""};
   names.at(static_cast<std::size_t>(up)) = "z";
@@ -109,6 +115,11 @@ Finding columns(const Evidence& evidence) {
         "column {} is the Doppler: a velocity explains it to {:.2f} m/s, the last column only to {:.2f}",
         scores.doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.doppler)), scores.residual[3]);
     finding.fix = "--columns " + order;
+  } else if (const std::optional<NoDoppler> none = no_doppler(evidence); none && !none->is_zero) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = "the column taken for the Doppler is none: " + none->sentence;
+    finding.fix = has_named_columns(*evidence.dataset) ? "--field doppler=COLUMN" : "";
+    finding.evidence.insert(finding.evidence.end(), none->evidence.begin(), none->evidence.end());
   } else if (up != 2) {
     finding.verdict = Verdict::kWrong;
     finding.sentence =

@@ -20,10 +20,15 @@ std::vector<std::pair<std::string, double>> comparison_numbers(const Comparison&
 
 std::string why_unknown(const Evidence& evidence) {
   for (const Comparison* comparison : {&evidence.matching, &evidence.truth}) {
-    if (comparison->motions > 0) {
-      return fmt::format("the sensor moves at {:.1f} m/s {}: too slow to tell", comparison->reference_speed_mps,
+    if (comparison->motions == 0) {
+      continue;
+    }
+    if (comparison->reference_speed_mps > Comparison::kMoving_mps) {
+      return fmt::format("only {} of {} motions {} could be compared", comparison->moving, comparison->motions,
                          reference_name(evidence, *comparison));
     }
+    return fmt::format("the sensor moves at {:.1f} m/s {}: too slow to tell", comparison->reference_speed_mps,
+                       reference_name(evidence, *comparison));
   }
   return evidence.dataset->ground_truth().empty()
              ? "there is no ground truth, and no scans that can be matched beyond doubt"

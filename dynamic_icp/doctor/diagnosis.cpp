@@ -5,6 +5,7 @@
 #include <stdexcept>
 
 #include "dynamic_icp/doctor/evidence.hpp"
+#include "dynamic_icp/doctor/no_doppler.hpp"
 #include "dynamic_icp/doctor/questions.hpp"
 
 namespace dynamic_icp::doctor {
@@ -65,6 +66,8 @@ Diagnosis diagnose(const datasets::Dataset& dataset, const DoctorConfig& config,
   Diagnosis diagnosis;
   diagnosis.scans_looked_at = evidence.looks.size();
   diagnosis.period_s = evidence.period_s;
+  const std::optional<NoDoppler> none = no_doppler(evidence);
+  diagnosis.has_doppler = !none || none->may_stand;
   for (const auto ask : {doppler_sign, doppler_kind, doppler_bias, doppler_units, point_units, columns, mounting,
                          point_times, time_scale, stamps, unusable_points}) {
     diagnosis.findings.push_back(ask(evidence));

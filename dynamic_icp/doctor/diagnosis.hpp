@@ -57,7 +57,8 @@ struct Finding {
 struct Diagnosis {
   std::vector<Finding> findings;
   std::size_t scans_looked_at = 0;
-  double period_s = 0.0;  ///< from scan to scan, median; 0 of one scan
+  double period_s = 0.0;    ///< from scan to scan, median; 0 of one scan
+  bool has_doppler = true;  ///< off: what stands for it is zeros or other numbers, see kDopplerKind
 
   [[nodiscard]] const Finding& of(Question question) const;
 };

@@ -206,6 +206,86 @@ TEST(Diagnosis, ASmoothTunnelWithoutGroundTruthTellsNoSign) {
   }
 }
 
+TEST(Diagnosis, WhereNoScansMatchASignMayBeATurnOfTheSensor) {
+  Recording recording;
+  recording.world = synthetic::tunnel();
+  recording.path = synthetic::circle(15.0, 0.0);
+  recording.spoil = [](RawScan& raw, const Vector3d&) {  // back to front, against the ground truth
+    for (Vector3d& point : raw.points) {
+      point = {-point.x(), -point.y(), point.z()};
+    }
+  };
+  const Finding sign = diagnosis_of(recording).of(Question::kDopplerSign);
+  EXPECT_EQ(sign.verdict, Verdict::kWrong) << sign.sentence;
+  EXPECT_NE(sign.sentence.find("or points and Doppler are right and the sensor is turned by 180 degrees"),
+            std::string::npos)
+      << sign.sentence;
+}
+
+TEST(Diagnosis, WhatCannotBeToldIsSaidWithoutContradiction) {
+  Recording standing;
+  standing.path = synthetic::circle(0.0, 0.0);
+  EXPECT_NE(diagnosis_of(standing).of(Question::kDopplerSign).sentence.find("too slow to tell"), std::string::npos);
+  Recording compensated;
+  compensated.spoil = compensate;
+  const std::string sentence = diagnosis_of(compensated).of(Question::kDopplerSign).sentence;
+  EXPECT_EQ(sentence.find("too slow"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("m/s where the sensor moves at"), std::string::npos) << sentence;
+}
+
+TEST(Diagnosis, AColumnOfZerosIsNoDoppler) {
+  const auto kind_of = [](double speed_mps, bool has_truth) {
+    Recording recording;
+    recording.path = synthetic::circle(speed_mps, 0.0);
+    recording.has_truth = has_truth;
+    recording.spoil = [](RawScan& raw, const Vector3d&) { raw.doppler.assign(raw.doppler.size(), 0.0); };
+    const Diagnosis diagnosis = diagnosis_of(recording);
+    const Finding& kind = diagnosis.of(Question::kDopplerKind);
+    EXPECT_EQ(diagnosis.has_doppler, kind.verdict != Verdict::kWrong);
+    return kind;
+  };
+  for (const bool has_truth : {true, false}) {
+    EXPECT_EQ(kind_of(9.0, has_truth).verdict, Verdict::kWrong);
+    EXPECT_EQ(kind_of(9.0, has_truth).fix, "--doppler-kind compensated");
+    EXPECT_EQ(kind_of(0.0, has_truth).verdict, Verdict::kCannotTell) << "without noise it stands still like that";
+  }
+}
+
+TEST(Diagnosis, AReflectanceIsNoDoppler) {
+  for (const double speed_mps : {0.0, 9.0}) {
+    Recording recording;
+    recording.path = synthetic::circle(speed_mps, 0.0);
+    recording.spoil = [](RawScan& raw, const Vector3d&) {
+      for (std::size_t i = 0; i < raw.points.size(); ++i) {
+        raw.doppler[i] = 0.5 + 0.45 * std::sin(12.9898 * static_cast<double>(i));
+      }
+    };
+    const Diagnosis diagnosis = diagnosis_of(recording);
+    EXPECT_FALSE(diagnosis.has_doppler);
+    EXPECT_EQ(diagnosis.of(Question::kColumns).verdict, Verdict::kWrong);
+    EXPECT_EQ(diagnosis.of(Question::kDopplerUnits).verdict, Verdict::kCannotTell);
+  }
+  // All of one sign as well: noise around a constant error, of a sensor that stands still.
+  Recording biased;
+  biased.path = synthetic::circle(0.0, 0.0);
+  biased.sensor.bias_mps = 0.5;
+  EXPECT_TRUE(diagnosis_of(biased).has_doppler);
+}
+
+TEST(Diagnosis, AnAngleIsOnlyToldWhereTheStretchesAgree) {
+  Recording recording;
+  recording.path = synthetic::circle(10.0, 0.0);
+  recording.spoil = [](RawScan& raw, const Vector3d&) {  // another angle after a while
+    const double yaw = seconds_between(synthetic::stamp_at(0.0), raw.stamp) < 1.2 ? 0.7 : -0.2;
+    for (Vector3d& point : raw.points) {
+      point = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * point;
+    }
+  };
+  const Finding mounting = diagnosis_of(recording).of(Question::kMounting);
+  EXPECT_EQ(mounting.verdict, Verdict::kCannotTell) << mounting.sentence;
+  EXPECT_NE(mounting.sentence.find("scatters"), std::string::npos) << mounting.sentence;
+}
+
 TEST(Diagnosis, AConstantErrorIsFound) {
   Recording recording;
   recording.sensor.bias_mps = 0.2;

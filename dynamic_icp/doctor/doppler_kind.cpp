@@ -1,10 +1,11 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include <algorithm>
+#include <optional>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/doctor/comparison_text.hpp"
+#include "dynamic_icp/doctor/no_doppler.hpp"
 #include "dynamic_icp/doctor/questions.hpp"
 
 namespace dynamic_icp::doctor {
@@ -41,10 +42,19 @@ Finding compensated(const Evidence& evidence, const Comparison& reference) {
   return finding;
 }
 
-/// Whether the Doppler is a column of zeros.
-bool has_no_doppler(const Evidence& evidence) {
-  return std::all_of(evidence.looks.begin(), evidence.looks.end(),
-                     [](const ScanLook& look) { return look.fast_mps == 0.0; });
+/// Where nothing is measured nothing moves by it: as good as compensated, as long as no point is asked.
+Finding without_doppler(const Evidence& evidence, const NoDoppler& none) {
+  Finding finding{Question::kDopplerKind, Verdict::kWrong, "there is no Doppler: " + none.sentence};
+  if (none.may_stand) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = none.sentence + ": it stands still, or there is no Doppler";
+  } else if (expects_compensated(evidence) && none.is_zero) {
+    finding.verdict = Verdict::kSuspicious;
+  } else if (none.is_zero) {
+    finding.fix = "--doppler-kind compensated";
+  }
+  finding.evidence = none.evidence;
+  return finding;
 }
 
 }  // namespace
@@ -53,15 +63,19 @@ Finding doppler_kind(const Evidence& evidence) {
   const double speed = evidence.doppler_speed_mps().value_or(0.0);
   const Comparison* reference = evidence.reference();
   Finding finding{Question::kDopplerKind, Verdict::kCannotTell, ""};
-  if (has_no_doppler(evidence)) {
-    finding.sentence = "there is no Doppler: nearly all values are zero";
-  } else if (speed > kMoves_mps) {
+  if (const std::optional<NoDoppler> none = no_doppler(evidence)) {
+    return without_doppler(evidence, *none);
+  }
+  if (speed > kMoves_mps) {
     finding = relative(evidence, speed);
   } else if (reference != nullptr && speed < kStill_mps && speed < kShareLeft * reference->reference_speed_mps) {
     finding = compensated(evidence, *reference);
   } else {
-    finding.sentence = fmt::format("{} is assumed: {}", expects_compensated(evidence) ? "compensated" : "relative",
-                                   why_unknown(evidence));
+    finding.sentence = fmt::format(
+        "{} is assumed: {}", expects_compensated(evidence) ? "compensated" : "relative",
+        reference == nullptr ? why_unknown(evidence)
+                             : fmt::format("the static scene moves by {:.1f} m/s, the sensor at {:.1f} m/s {}", speed,
+                                           reference->reference_speed_mps, reference_name(evidence, *reference)));
   }
   finding.evidence = {{"doppler_speed_mps", speed}};
   if (reference != nullptr) {

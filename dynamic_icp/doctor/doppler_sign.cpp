@@ -44,8 +44,16 @@ Finding without_reference(const Evidence& evidence) {
 
 Finding doppler_sign(const Evidence& evidence) {
   const Comparison* reference = evidence.reference();
-  if (reference == nullptr || reference->doppler_speed_mps < kMoving_mps) {
+  if (reference == nullptr) {
     return without_reference(evidence);
+  }
+  if (reference->doppler_speed_mps < kMoving_mps) {
+    return {
+        Question::kDopplerSign, Verdict::kCannotTell,
+        fmt::format("positive away from the sensor is assumed: the Doppler shows {:.1f} m/s where the sensor moves at "
+                    "{:.1f} m/s {}",
+                    reference->doppler_speed_mps, reference->reference_speed_mps, reference_name(evidence, *reference)),
+        "", comparison_numbers(*reference)};
   }
   Finding finding{Question::kDopplerSign, Verdict::kOk, ""};
   finding.evidence = comparison_numbers(*reference);
@@ -57,6 +65,11 @@ Finding doppler_sign(const Evidence& evidence) {
     finding.sentence =
         fmt::format("positive TOWARDS the sensor: the Doppler moves it by {:.1f} m/s against the way it moves {}",
                     reference->doppler_speed_mps, source);
+    if (reference == &evidence.truth) {
+      finding.sentence +=
+          "; or points and Doppler are right and the sensor is turned by 180 degrees against that of the ground truth: "
+          "no scans could be matched to tell";
+    }
     finding.fix = evidence.applied.doppler_is_towards ? "--doppler-sign away" : "--doppler-sign towards";
   } else {
     finding.verdict = Verdict::kCannotTell;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/doctor/comparison_text.hpp"
+#include "dynamic_icp/doctor/no_doppler.hpp"
 #include "dynamic_icp/doctor/questions.hpp"
 #include "dynamic_icp/doctor/speed_ratio.hpp"
 
@@ -20,7 +21,10 @@ Finding doppler_units(const Evidence& evidence) {
   if (speed) {
     finding.evidence.emplace_back("ratio", speed->ratio);
   }
-  if (evidence.looks.empty() || as_stored == 0.0) {
+  if (const std::optional<NoDoppler> none = no_doppler(evidence); none && !none->is_zero) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = "the last column is no Doppler";
+  } else if (evidence.looks.empty() || as_stored == 0.0) {
     finding.verdict = evidence.looks.empty() ? Verdict::kCannotTell : Verdict::kSuspicious;
     finding.sentence = evidence.looks.empty() ? "there are no scans" : "nearly all Doppler values are zero";
   } else if (speed && !speed->unit.empty()) {

@@ -20,7 +20,6 @@ constexpr double kLeastPeriod_s = 0.005;
 constexpr double kMostPeriod_s = 2.0;
 constexpr std::size_t kColumnScans = 3;
 
-constexpr double kMoving_mps = 1.5;
 constexpr double kFastEnough_mps = 0.5;
 constexpr double kShortWay_m = 0.8;  // errors of some centimetres count too much
 constexpr double kLongWay_m = 2.5;   // beyond, what is seen changes
@@ -131,12 +130,17 @@ std::optional<Motion> motion_by_matching(const Stretch& stretch, const Workers& 
   return motion;
 }
 
+double angle_deg(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
+  return std::atan2(a.cross(b).norm(), a.dot(b)) * 180.0 / std::numbers::pi;
+}
+
 Comparison compare(const std::vector<Probe>& probes, std::optional<Motion> Probe::*which) {
   Comparison comparison;
   std::vector<double> reference_speeds;
   std::vector<double> doppler_speeds;
   std::vector<double> ratios;
   std::vector<double> turn_rates;
+  std::vector<double> turned_deg;
   Eigen::Vector3d doppler_direction = Eigen::Vector3d::Zero();
   Eigen::Vector3d reference_direction = Eigen::Vector3d::Zero();
   for (const Probe& probe : probes) {
@@ -148,10 +152,11 @@ Comparison compare(const std::vector<Probe>& probes, std::optional<Motion> Probe
     reference_speeds.push_back(way.norm() / motion->dt_s);
     doppler_speeds.push_back(motion->doppler_way.norm() / motion->dt_s);
     turn_rates.push_back(rotation_angle(motion->T_from_to.linear()) / motion->dt_s);
-    if (reference_speeds.back() > kMoving_mps) {
+    if (reference_speeds.back() > Comparison::kMoving_mps) {
       ratios.push_back(motion->doppler_way.dot(way) / way.squaredNorm());
       reference_direction += way.normalized();
       doppler_direction += motion->doppler_way.stableNormalized();
+      turned_deg.push_back(angle_deg(way, motion->doppler_way));
     }
   }
   comparison.motions = reference_speeds.size();
@@ -161,14 +166,9 @@ Comparison compare(const std::vector<Probe>& probes, std::optional<Motion> Probe
   comparison.turn_rate_rps = quantile(turn_rates, 0.5);
   if (!ratios.empty()) {
     comparison.ratio = quantile(ratios, 0.5);
-    for (double& ratio : ratios) {
-      ratio = std::abs(ratio - comparison.ratio);
-    }
-    constexpr double kErrorPerMad = 1.4826 * 1.2533;  // of the median of normal numbers, times the root of their count
-    comparison.ratio_error = kErrorPerMad * quantile(ratios, 0.5) / std::sqrt(static_cast<double>(ratios.size()));
-    comparison.turned_deg =
-        std::atan2(reference_direction.cross(doppler_direction).norm(), reference_direction.dot(doppler_direction)) *
-        180.0 / std::numbers::pi;
+    comparison.ratio_error = median_error(ratios);
+    comparison.turned_error_deg = median_error(turned_deg);
+    comparison.turned_deg = angle_deg(reference_direction, doppler_direction);
   }
   return comparison;
 }

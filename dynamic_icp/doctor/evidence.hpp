@@ -24,6 +24,9 @@ struct Motion {
   bool has_doppler = false;                               ///< every fit that `doppler_way` is made of holds
 };
 
+/// As many scans of a stretch are looked at, one after the other in Evidence::looks.
+inline constexpr std::size_t kLooksOfStretch = 4;
+
 /// A stretch of the recording.
 struct Probe {
   std::optional<Motion> by_truth;
@@ -33,14 +36,17 @@ struct Probe {
 
 /// What the motions of all probes by one reference say of the Doppler.
 struct Comparison {
+  static constexpr double kMoving_mps = 1.5;
+
   std::size_t motions = 0;           ///< that have a velocity from the Doppler
-  std::size_t moving = 0;            ///< of those, faster than 1.5 m/s by the reference
+  std::size_t moving = 0;            ///< of those, faster than kMoving_mps by the reference
   double reference_speed_mps = 0.0;  ///< medians over all motions
   double doppler_speed_mps = 0.0;
-  double ratio = 0.0;          ///< Doppler over reference along the reference, median of the moving
-  double ratio_error = 0.0;    ///< standard error of that median
-  double turned_deg = 0.0;     ///< angle from the reference's direction to the Doppler's, of the mean directions
-  double turn_rate_rps = 0.0;  ///< median of the absolute rate of turn
+  double ratio = 0.0;             ///< Doppler over reference along the reference, median of the moving
+  double ratio_error = 0.0;       ///< standard error of that median
+  double turned_deg = 0.0;        ///< angle from the reference's direction to the Doppler's, of the mean directions
+  double turned_error_deg = 0.0;  ///< standard error of the angles of the motions one by one
+  double turn_rate_rps = 0.0;     ///< median of the absolute rate of turn
 
   /// By the ratio: the Doppler moves the sensor as the reference does, or certainly not so.
   [[nodiscard]] bool is_same() const { return std::abs(ratio - 1.0) <= 0.08; }

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -16,6 +17,26 @@ constexpr double kOffAhead_deg = 8.0;
 constexpr double kOffAheadInTurns_deg = 15.0;  // the sensor swings out: it is not where the wheels are
 constexpr double kStraight_rps = 0.06;
 constexpr double kDegree = std::numbers::pi / 180.0;
+constexpr double kDeviations = 3.0;
+constexpr double kWellKnown_deg = 5.0;  // a direction known no better is not told
+
+/// How well the mean direction is known: by the scatter of the stretches, each as one, for scans of a stretch err
+/// alike.
+double direction_error_deg(const Evidence& evidence, const Eigen::Vector3d& mean) {
+  std::vector<double> off;
+  for (std::size_t k = 0; k < evidence.looks.size(); k += kLooksOfStretch) {
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+    for (std::size_t i = k; i < std::min(k + kLooksOfStretch, evidence.looks.size()); ++i) {
+      const ScanLook& look = evidence.looks[i];
+      sum += look.has_velocity() ? look.ego.velocity_sensor : Eigen::Vector3d(Eigen::Vector3d::Zero());
+    }
+    if (sum.norm() > kMoving_mps) {
+      off.push_back(std::acos(std::clamp(std::abs(sum.normalized().dot(mean.normalized())), 0.0, 1.0)) / kDegree);
+    }
+  }
+  constexpr double kErrorPerMedian = 1.4826 * 1.2533;  // as median_error has it
+  return off.empty() ? 180.0 : kErrorPerMedian * quantile(off, 0.5) / std::sqrt(static_cast<double>(off.size()));
+}
 
 /// The mean direction in which the Doppler moves the sensor, its sign put right.
 Eigen::Vector3d mean_direction(const Evidence& evidence) {
@@ -57,9 +78,18 @@ Finding mounting(const Evidence& evidence) {
   if (off_truth) {
     finding.evidence.emplace_back("off_ground_truth_deg", *off_truth);
   }
+  const double error_deg = direction_error_deg(evidence, direction);
+  finding.evidence.emplace_back("direction_error_deg", error_deg);
   const Comparison* reference = evidence.reference();
   const bool is_straight = reference != nullptr && reference->turn_rate_rps < kStraight_rps;
-  if (off_truth && *off_truth > kOffTruth_deg) {
+  if (error_deg > kWellKnown_deg) {
+    finding.sentence = fmt::format(
+        "the direction in which the Doppler moves the sensor scatters too much to tell: {:.0f} degrees off its x axis, "
+        "+- {:.0f}",
+        ahead_deg, error_deg);
+    return finding;
+  }
+  if (off_truth && *off_truth > kOffTruth_deg + kDeviations * evidence.truth.turned_error_deg) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format(
         "points and ground truth have different axes: {:.0f} degrees between the directions in which they move",

@@ -47,6 +47,19 @@ void look_at_columns(const Scan& scan, ScanLook& look) {
   look.fast_mps = quantile(std::move(speeds), kMostShare);
 }
 
+DopplerValues doppler_values(const std::vector<double>& doppler, const std::vector<double>& residuals) {
+  DopplerValues values;
+  values.count = doppler.size();
+  for (const double value : doppler) {
+    values.negative += value < 0.0 ? 1 : 0;
+    values.positive += value > 0.0 ? 1 : 0;
+  }
+  values.median = quantile(doppler, 0.5);
+  values.scatter = scatter_of(doppler);
+  values.scatter_left = scatter_of(residuals);
+  return values;
+}
+
 }  // namespace
 
 double quantile(std::vector<double> values, double share) {
@@ -57,6 +70,19 @@ double quantile(std::vector<double> values, double share) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(at);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+double scatter_of(std::vector<double> values) {
+  const double median = quantile(values, 0.5);
+  for (double& value : values) {
+    value = std::abs(value - median);
+  }
+  return quantile(std::move(values), 0.5);
+}
+
+double median_error(const std::vector<double>& values) {
+  constexpr double kErrorPerMad = 1.4826 * 1.2533;  // of the median of normal numbers, times the root of their count
+  return values.empty() ? 0.0 : kErrorPerMad * scatter_of(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
 bool ScanLook::has_velocity() const {
@@ -76,6 +102,7 @@ ScanLook look_at(std::size_t index, const RawScan& raw, const Workers& workers, 
   look.ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, {}, workers);
   std::vector<double> residuals;
   ego_motion::compensated_doppler(scan, look.ego, workers, residuals);
+  look.values = doppler_values(scan.doppler(), residuals);
   std::vector<std::uint32_t> fitting;
   std::size_t near = 0;
   const double width = std::max(kLeastStill_mps, kStillDeviations * look.ego.inlier_rms_mps);

@@ -14,6 +14,16 @@
 
 namespace dynamic_icp::doctor {
 
+/// The Doppler of the usable points of a scan.
+struct DopplerValues {
+  std::size_t count = 0;
+  std::size_t negative = 0;
+  std::size_t positive = 0;  ///< the others are exactly zero
+  double median = 0.0;
+  double scatter = 0.0;       ///< median absolute deviation from the median
+  double scatter_left = 0.0;  ///< the same after the velocity of the sensor was taken out
+};
+
 /// What one scan shows by itself.
 struct ScanLook {
   std::size_t index = 0;
@@ -23,8 +33,9 @@ struct ScanLook {
   bool has_times = false;
   double first_time_s = 0.0;  ///< of the finite ones
   double last_time_s = 0.0;
-  double far_m = 0.0;                                        ///< 95 % of the points are nearer
-  double fast_mps = 0.0;                                     ///< 95 % of the Doppler are slower
+  double far_m = 0.0;     ///< 95 % of the points are nearer
+  double fast_mps = 0.0;  ///< 95 % of the Doppler are slower
+  DopplerValues values;
   Eigen::Vector3d look_direction = Eigen::Vector3d::Zero();  ///< mean line of sight
   Eigen::Vector3d look_spread = Eigen::Vector3d::Zero();     ///< root mean square of each axis of the lines of sight
   ego_motion::EgoVelocity ego;                               ///< by the Doppler, with its bias
@@ -40,5 +51,11 @@ ScanLook look_at(std::size_t index, const RawScan& raw, const Workers& workers, 
 
 /// The value below which a share of the values lies; 0 of none.
 double quantile(std::vector<double> values, double share);
+
+/// Median absolute deviation from the median; 0 of none.
+double scatter_of(std::vector<double> values);
+
+/// Standard error of the median of independent values, by their scatter; 0 of none.
+double median_error(const std::vector<double>& values);
 
 }  // namespace dynamic_icp::doctor

@@ -59,7 +59,31 @@ bool is_tar(std::string_view head) {
          head[kModeAt] <= '7';
 }
 
+std::string_view name_of(std::filesystem::file_type type) {
+  switch (type) {
+    case std::filesystem::file_type::fifo:
+      return "a named pipe";
+    case std::filesystem::file_type::socket:
+      return "a socket";
+    case std::filesystem::file_type::block:
+    case std::filesystem::file_type::character:
+      return "a device";
+    default:
+      return "no regular file";
+  }
+}
+
 }  // namespace
+
+void refuse_irregular(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
+  if (unknown || type == std::filesystem::file_type::regular || type == std::filesystem::file_type::directory ||
+      type == std::filesystem::file_type::not_found || type == std::filesystem::file_type::none) {
+    return;
+  }
+  throw DataError(fmt::format("{}: is {}, expected a regular file or a folder", path.string(), name_of(type)));
+}
 
 FileKind kind_of(std::string_view head) {
   const auto* const mark =
@@ -74,6 +98,7 @@ FileKind kind_of(std::string_view head) {
 }
 
 FileKind kind_of_file(const std::filesystem::path& path) {
+  refuse_irregular(path);
   std::array<char, kKindBytes> head{};
   errno = 0;
   std::ifstream file(path, std::ios::binary);

@@ -32,6 +32,10 @@ enum class FileKind : std::uint8_t {
 /// As many bytes from the front of a file as it takes to tell.
 constexpr std::size_t kKindBytes = 512;
 
+/// Throws DataError that names the file and what it is where it is neither a file nor a folder: reading a named pipe, a
+/// socket or a device may never end. What is missing or cannot be looked at passes, for the reader to say.
+void refuse_irregular(const std::filesystem::path& path);
+
 /// What a file is whose content, or the first kKindBytes of it, is `head`.
 FileKind kind_of(std::string_view head);
 

@@ -46,7 +46,16 @@ std::string text_of(int code) {
   std::ifstream file(path, std::ios::binary);
   file.read(head.data(), head.size());
   refuse_other_kind(path, std::string_view(head.data(), static_cast<std::size_t>(file.gcount())), FileKind::kZip);
-  throw DataError(fmt::format("{}: cannot be read as a zip archive: {}", path.string(), reason));
+  std::error_code unknown;
+  const std::uintmax_t bytes = std::filesystem::file_size(path, unknown);
+  if (!unknown && bytes == 0) {
+    throw DataError(fmt::format("{}: empty file, expected a zip archive of arrays", path.string()));
+  }
+  if (kind_of(std::string_view(head.data(), head.size())) == FileKind::kZip) {
+    throw DataError(fmt::format("{}: a zip archive without an end: cut short at byte {}, or damaged ({})",
+                                path.string(), bytes, reason));
+  }
+  throw DataError(fmt::format("{}: expected a zip archive of arrays: {}", path.string(), reason));
 }
 
 struct FileCloser {
@@ -122,6 +131,7 @@ class ArchiveBuilder {
 class NpzFile::Archive {
  public:
   explicit Archive(const std::filesystem::path& path) {
+    refuse_irregular(path);
     int code = 0;
     handle_ = zip_open(path.c_str(), ZIP_RDONLY, &code);
     if (handle_ == nullptr) {
@@ -159,15 +169,16 @@ bool NpzFile::contains(std::string_view name) const {
   return zip_name_locate(archive_->handle(), member_name(name).c_str(), 0) >= 0;
 }
 
-bool NpzFile::holds_numbers(std::string_view name) const {
+std::string NpzFile::why_no_numbers(std::string_view name) const {
   const std::unique_ptr<zip_file_t, FileCloser> file(zip_fopen(archive_->handle(), member_name(name).c_str(), 0));
   std::array<char, kChunkBytes> chunk;
   const zip_int64_t got = file ? zip_fread(file.get(), chunk.data(), chunk.size()) : 0;
   try {
-    parse_npy_header(std::string_view(chunk.data(), static_cast<std::size_t>(std::max<zip_int64_t>(got, 0))), name);
-    return true;
-  } catch (const DataError&) {
-    return false;
+    parse_npy_header(std::string_view(chunk.data(), static_cast<std::size_t>(std::max<zip_int64_t>(got, 0))),
+                     fmt::format("array '{}'", name));
+    return "";
+  } catch (const DataError& error) {
+    return error.what();
   }
 }
 

@@ -32,8 +32,9 @@ class NpzFile {
   [[nodiscard]] std::vector<std::string> names() const;
   [[nodiscard]] bool contains(std::string_view name) const;
 
-  /// Whether the member of that name is an array of numbers, by its header: Python objects and tables are not.
-  [[nodiscard]] bool holds_numbers(std::string_view name) const;
+  /// Why the member of that name is no array of numbers, by its header: Python objects and tables are none, nor are
+  /// types that are not read. A sentence that begins with the name; empty where it is one.
+  [[nodiscard]] std::string why_no_numbers(std::string_view name) const;
 
   /// Unpacks one array. Throws DataError naming file and member when there is none of that name, it is damaged, claims
   /// more than kMaxNpzMemberBytes or is not an array of numbers (see parse_npy). The other members stay readable.

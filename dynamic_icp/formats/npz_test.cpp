@@ -108,9 +108,10 @@ TEST_F(Npz, ObjectArraysDoNotDisturbTheOthers) {
             std::string::npos);
   const NpzFile file(path_);
   EXPECT_THROW((void)file.read("semantic_labels"), DataError);
-  EXPECT_FALSE(file.holds_numbers("semantic_labels"));
-  EXPECT_FALSE(file.holds_numbers("no such member"));
-  EXPECT_TRUE(file.holds_numbers("xyz"));
+  EXPECT_EQ(file.why_no_numbers("semantic_labels"),
+            "array 'semantic_labels': holds Python objects, expected an array of numbers");
+  EXPECT_FALSE(file.why_no_numbers("no such member").empty());
+  EXPECT_EQ(file.why_no_numbers("xyz"), "");
   EXPECT_EQ(column_as_integers(file.read("semantic_labels_idx")), (std::vector<std::int64_t>{19, 1}));
 }
 

@@ -83,10 +83,18 @@ fs::path sibling(const fs::path& path, const char* kind) {
   return path.parent_path() / fmt::format(".{}{}{}", path.filename().string(), kind, ::getpid());
 }
 
+/// An empty name would be that of the working directory.
+fs::path named(const fs::path& path) {
+  if (path.empty()) {
+    throw UsageError("the folder for the results is '', expected a name");
+  }
+  return normalised(path);
+}
+
 }  // namespace
 
 OutputFolder::OutputFolder(const fs::path& final_path, const std::string& marker, bool replace)
-    : final_(normalised(final_path)), staging_(sibling(final_, kStaging)), marker_(marker), replace_(replace) {
+    : final_(named(final_path)), staging_(sibling(final_, kStaging)), marker_(marker), replace_(replace) {
   check_replaceable(final_, marker_, replace_);
   remove_leftovers(final_);
   std::error_code fault;

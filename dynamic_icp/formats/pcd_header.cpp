@@ -59,7 +59,7 @@ class HeaderReader {
   };
 
   [[noreturn]] void fail(std::size_t line, std::string_view message) const {
-    throw DataError(fmt::format("{}: line {}: {}", origin_, line, message));
+    throw DataError(fmt::format("{}: line {}: {}", origin_, std::max<std::size_t>(1, line), message));
   }
 
   void read_entries() {

@@ -182,6 +182,9 @@ void PcdFile::unpack() {
     fail(fmt::format("compressed data of {} bytes, expected {} points of {} bytes each", unpacked, header_.points,
                      header_.record_bytes));
   }
+  if (const std::size_t rest = data.size() - kSizes - packed; rest > 0) {
+    warning_ = fmt::format("{}: {} bytes after the compressed data are left out", origin_, rest);
+  }
   bytes_ = unpack_lzf(data.substr(kSizes, packed), unpacked, origin_);
   header_.data_offset = 0;
 }

@@ -44,7 +44,7 @@ class Reader {
 
  private:
   [[noreturn]] void fail(std::string_view message) const {
-    throw DataError(fmt::format("{}: line {}: {}", origin_.string(), line_, message));
+    throw DataError(fmt::format("{}: line {}: {}", origin_.string(), std::max<std::size_t>(1, line_), message));
   }
 
   std::optional<std::string_view> next_line() {

@@ -111,7 +111,7 @@ TEST(Ply, ReadsFiles) {
 TEST(Ply, ErrorsNameLineAndExpectation) {
   const std::string head(kAsciiHead);
   const std::vector<std::pair<std::string, std::vector<std::string>>> faults = {
-      {"", {"line 0", "is no PLY"}},
+      {"", {"line 1", "is no PLY"}},
       {"obj\n", {"line 1", "is no PLY"}},
       {"ply\nformat ascii 2.0\n", {"line 2", "is no PLY"}},
       {"ply\nformat text 1.0\n", {"line 2", "is no PLY"}},

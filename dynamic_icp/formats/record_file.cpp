@@ -23,7 +23,9 @@ constexpr std::size_t kBlockBytes = 64 * 1024;
 }  // namespace
 
 RecordFile::RecordFile(const std::filesystem::path& path, std::size_t record_bytes)
-    : path_(path), record_bytes_(record_bytes), descriptor_(::open(path.c_str(), O_RDONLY | O_CLOEXEC)) {
+    : path_(path), record_bytes_(record_bytes) {
+  refuse_irregular(path);
+  descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   struct stat status {};
   if (descriptor_ < 0 || ::fstat(descriptor_, &status) != 0 || S_ISDIR(status.st_mode)) {
     const int reason = descriptor_ >= 0 && S_ISDIR(status.st_mode) ? EISDIR : errno;

@@ -11,6 +11,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/formats/file_kind.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -89,6 +90,7 @@ void write_whole_file(const std::filesystem::path& path, std::string_view conten
 }
 
 std::string read_whole_file(const std::filesystem::path& path) {
+  refuse_irregular(path);
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.number < 0) {
     throw_error(path, "open");

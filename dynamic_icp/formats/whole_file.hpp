@@ -33,7 +33,7 @@ class OutputFile {
 /// name stays untouched when anything fails.
 void write_whole_file(const std::filesystem::path& path, std::string_view content);
 
-/// The whole content of a file. Throws DataError naming the file and the reason.
+/// The whole content of a regular file. Throws DataError naming the file and the reason.
 std::string read_whole_file(const std::filesystem::path& path);
 
 }  // namespace dynamic_icp::formats

@@ -239,10 +239,14 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
     lose(now, prior, frame);
     return;
   }
-  const ego_motion::EgoVelocity moved = now.is_relative ? now.filtered : found_velocity(now, found);
+  const Eigen::Matrix3d held = held_position(now, found);
+  if (!now.is_relative) {
+    keep_expected_where_nothing_holds(prior, held, found);
+  }
+  const ego_motion::EgoVelocity moved = now.is_relative ? now.filtered : found_velocity(now, found, held);
   const TurnState expected = predict(state_->turn, now.stamp_s - state_->stamp_s, config_.turn);
   const TurnState turn = turn_state(found, expected, now.duration_s, config_.turn);
-  describe(prior, found, turn.covariance.topLeftCorner<3, 3>(), registration::typical_distance(now.still), frame);
+  describe(prior, found, held, turn.covariance.topLeftCorner<3, 3>(), registration::typical_distance(now.still), frame);
 
   state_->usual_match = state_->scans_in_map == 1
                             ? match(found)
@@ -260,7 +264,7 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
   // The map is the mean of its last scans: a position drifts away from it only as long as it remembers.
   const double memory = config_.mapping.memory_scans;
   state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);
-  state_->position_information = position_information(found.geometry_information);
+  state_->position_information = held;
   std::vector<VelocitySample> velocities = velocities_with(now);
   velocities.back().R_map_sensor = found.T_map_sensor.linear() * found.sweep.rotation(now.middle_s);
   state_->velocities = std::move(velocities);
@@ -268,13 +272,14 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
 
 /// What the frame says of an alignment.
 void MapOdometry::describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
-                           const Eigen::Matrix3d& rotation_covariance, double length_m, Frame& frame) const {
+                           const Eigen::Matrix3d& held, const Eigen::Matrix3d& rotation_covariance, double length_m,
+                           Frame& frame) const {
   MotionEvidence evidence;
   evidence.source_rotation_covariance = state_->turn.covariance.topLeftCorner<3, 3>();
   evidence.target_rotation_covariance = rotation_covariance;
   evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
   evidence.source_position_information = state_->position_information;
-  evidence.target_position_information = position_information(found.geometry_information);
+  evidence.target_position_information = held;
   evidence.displacement_turned = prior.displacement_turned;
   registration::Alignment& alignment = frame.alignment;
   alignment.iterations = found.iterations;

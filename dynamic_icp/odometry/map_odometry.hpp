@@ -83,15 +83,20 @@ class MapOdometry final : public Odometry {
   void lose(const Moment& now, const registration::MotionPrior& prior, Frame& frame);
   void extrapolate(double stamp_s, FrameStatus status, Frame& frame) const;
   void describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
-                const Eigen::Matrix3d& rotation_covariance, double length_m, Frame& frame) const;
+                const Eigen::Matrix3d& held, const Eigen::Matrix3d& rotation_covariance, double length_m,
+                Frame& frame) const;
   [[nodiscard]] std::vector<VelocitySample> velocities_with(const Moment& now) const;
   [[nodiscard]] registration::MotionPrior motion_prior(const Moment& now) const;
   [[nodiscard]] ego_motion::EgoVelocity first_velocity(const Moment& now) const;
   void expect_even_motion(const Moment& now, registration::MotionPrior& prior) const;
   [[nodiscard]] registration::MapAlignment align_with_found_velocity(const Moment& now, registration::MotionPrior prior,
                                                                      const registration::MapAlignConfig& config) const;
-  [[nodiscard]] ego_motion::EgoVelocity found_velocity(const Moment& now,
-                                                       const registration::MapAlignment& found) const;
+  [[nodiscard]] Eigen::Matrix3d held_position(const Moment& now, const registration::MapAlignment& found) const;
+  [[nodiscard]] std::vector<Eigen::Vector3d> unheld_directions(const Eigen::Matrix3d& held) const;
+  void keep_expected_where_nothing_holds(const registration::MotionPrior& prior, const Eigen::Matrix3d& held,
+                                         registration::MapAlignment& found) const;
+  [[nodiscard]] ego_motion::EgoVelocity found_velocity(const Moment& now, const registration::MapAlignment& found,
+                                                       const Eigen::Matrix3d& held) const;
   [[nodiscard]] Eigen::Isometry3d motion_to(const registration::MapAlignment& found) const;
   [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
   std::vector<Eigen::Vector3d> add_to_map(const Moment& now);

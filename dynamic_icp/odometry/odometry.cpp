@@ -17,6 +17,8 @@ std::vector<std::string_view> method_names() {
   return {"dynamic-icp", "doppler-icp", "point-to-point", "point-to-plane", "gicp", "kiss-icp"};
 }
 
+bool needs_doppler(std::string_view method) { return method == "dynamic-icp" || method == "doppler-icp"; }
+
 std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config, const Surroundings& surroundings,
                                         int threads) {
   const auto scan_to_scan = [&](ScanToScanMethod kind) {

@@ -39,6 +39,9 @@ struct Surroundings {
 /// dynamic-icp, doppler-icp, point-to-point, point-to-plane, gicp, kiss-icp.
 std::vector<std::string_view> method_names();
 
+/// Whether the method of that name takes the Doppler into account: without any, its results are not its own.
+bool needs_doppler(std::string_view method);
+
 /// The method of that name. `threads` = 0 takes as many as the machine has. Throws UsageError with the known names, or
 /// when the configuration is out of range.
 std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config,

@@ -156,4 +156,11 @@ MapAlignment align_to_map(const Scan& scan, const mapping::PlaneMap& map, const 
   return result;
 }
 
+Eigen::Matrix3d position_information_of_noise(const Scan& scan, const mapping::PlaneMap& map, const MapAlignment& found,
+                                              const MapAlignConfig& config, const Workers& workers) {
+  PlaneFit fit(scan, map, workers);
+  fit.associate(found.T_map_sensor, found.sweep, 1);
+  return fit.position_information_of_noise({config.min_deviation_m, config.model_deviation_m}, {config.kernel, 0.0});
+}
+
 }  // namespace dynamic_icp::registration

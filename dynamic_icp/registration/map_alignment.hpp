@@ -81,6 +81,11 @@ MapAlignment align_to_map(const Scan& scan, const mapping::PlaneMap& map, const 
                           const Eigen::Matrix3d& R_start, double gate_m, const MapAlignConfig& config,
                           const Workers& workers);
 
+/// What the points of an alignment say of the position that is no more than the noise of normals (1/m^2, map axes); to
+/// be taken from `geometry_information` where that must not be believed too readily.
+Eigen::Matrix3d position_information_of_noise(const Scan& scan, const mapping::PlaneMap& map, const MapAlignment& found,
+                                              const MapAlignConfig& config, const Workers& workers);
+
 /// `align_to_map` from the best of several starts that are turned about each axis, as far as the prior leaves open:
 /// for the first pair of scans, and when the way was lost. The starts are compared with a part of the points.
 MapAlignment search_and_align(const Scan& scan, const mapping::PlaneMap& map, const MotionPrior& prior,

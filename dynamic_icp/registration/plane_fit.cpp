@@ -90,6 +90,29 @@ void PlaneFit::fill(PlaneRows& rows, std::size_t begin, std::size_t end, const P
   }
 }
 
+Eigen::Matrix3d PlaneFit::position_information_of_noise(const PlaneNoise& noise, const PlaneWeights& weights) const {
+  const std::size_t count = Workers::block_count(scan_.size(), stride_);
+  const Eigen::Matrix3d zero = Eigen::Matrix3d::Zero();
+  return workers_.sum_blocks(count, kBlock, zero, [&](std::size_t begin, std::size_t end) {
+    Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+    PlaneRows rows;
+    for (; begin < end; begin += kBlock) {
+      const std::size_t last = std::min(end, begin + kBlock);
+      fill(rows, begin, last, noise);
+      std::size_t row = 0;
+      for (std::size_t k = begin; k < last; ++k) {
+        if (const mapping::Patch* const patch = met_[k * stride_]; patch != nullptr) {
+          // The height of a plane under a point d from its mean errs by variance / points * d^T tangential d more than
+          // at the mean: by the normal.
+          const double scale = patch->plane.variance / patch->plane.points;
+          sum += plane_weight(rows, row++, weights) * scale * patch->plane.tangential;
+        }
+      }
+    }
+    return sum;
+  });
+}
+
 std::vector<PatchMean> PlaneFit::patch_means() const {
   std::vector<const mapping::Patch*> met(members_.size(), nullptr);
   std::vector<Eigen::Vector3d> sums(members_.size(), Eigen::Vector3d::Zero());

@@ -33,6 +33,11 @@ class PlaneFit {
   /// The point-to-plane terms at the pose of the last `associate`.
   [[nodiscard]] PlaneSums linearise(const PlaneNoise& noise, const PlaneWeights& weights) const;
 
+  /// What the terms say of the position only because normals err (1/m^2): sum of w Sigma_n, the weight of each point
+  /// times the covariance of the normal under it. Where the surfaces hold nothing, that is all they seem to say.
+  [[nodiscard]] Eigen::Matrix3d position_information_of_noise(const PlaneNoise& noise,
+                                                              const PlaneWeights& weights) const;
+
   /// How far the points on each patch with enough of them lie from its plane on average.
   [[nodiscard]] std::vector<PatchMean> patch_means() const;
 

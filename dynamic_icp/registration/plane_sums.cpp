@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/registration/plane_sums.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "dynamic_icp/base/lane_sums.hpp"
@@ -163,6 +164,13 @@ PlaneSums& PlaneSums::operator+=(const PlaneSums& other) {
   squares += other.squares;
   chi_squares += other.chi_squares;
   return *this;
+}
+
+double plane_weight(const PlaneRows& rows, std::size_t row, const PlaneWeights& weights) {
+  const double expected2 = weights.kernel * weights.kernel * (rows.own[row] + rows.common[row]);
+  const double inside =
+      std::max(0.0, 1.0 - rows.e[row] * rows.e[row] / std::max(expected2, weights.gate_m * weights.gate_m));
+  return inside * inside / (rows.own[row] + rows.members[row] * rows.common[row]);
 }
 
 PlaneSums sum_planes(const PlaneRows& rows, const Eigen::Matrix3d& R_map_sensor, bool has_times,

@@ -48,6 +48,9 @@ struct PlaneWeights {
   double gate_m = 0.0;
 };
 
+/// The weight of one row in these sums.
+double plane_weight(const PlaneRows& rows, std::size_t row, const PlaneWeights& weights);
+
 /// Sums over rows, each with the weight kernel(e) / (own + members common). `R_map_sensor` is R above; without times
 /// tau does not count and the sums of omega and alpha stay zero. The same bits for every instruction set.
 PlaneSums sum_planes(const PlaneRows& rows, const Eigen::Matrix3d& R_map_sensor, bool has_times,
