@@ -168,7 +168,7 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
       ->type_name("NAME");
   command->add_option("--format", options->format, "Files to write: svg, png or both (default svg)")
       ->type_name("NAME")
-      ->check(CLI::IsMember({"svg", "png", "both"}));
+      ->check(CLI::IsMember({"svg", "png", "both"}).description(""));
   command
       ->add_option(
           "--scale", options->scale,

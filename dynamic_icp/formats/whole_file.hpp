@@ -30,7 +30,7 @@ class OutputFile {
 };
 
 /// Writes a file whole or not at all: under a temporary name beside `path`, then renamed. An earlier file of that
-/// name stays untouched when anything fails.
+/// name stays untouched when anything fails. A device or pipe of that name is written into.
 void write_whole_file(const std::filesystem::path& path, std::string_view content);
 
 /// The whole content of a regular file. Throws DataError naming the file and the reason.

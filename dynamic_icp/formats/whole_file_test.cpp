@@ -4,7 +4,9 @@
 
 #include <fstream>
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "dynamic_icp/base/error.hpp"
@@ -47,6 +49,20 @@ TEST_F(WholeFile, FailureNamesTheFileAndLeavesTheEarlierOne) {
   EXPECT_THROW(write_whole_file(folder_ / "missing" / "a", "x"), DataError);
   EXPECT_EQ(read_whole_file(folder_ / "a"), "earlier");
   EXPECT_EQ(entries(), 2u);
+}
+
+TEST_F(WholeFile, ADeviceOrPipeIsWrittenIntoAndStays) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  write_whole_file(pipe, "into the pipe");
+  std::string content(100, '\0');
+  const ssize_t got = ::read(reader, content.data(), content.size());
+  ::close(reader);
+  ASSERT_EQ(got, 13);
+  EXPECT_EQ(content.substr(0, 13), "into the pipe");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_EQ(entries(), 1u);
 }
 
 TEST_F(WholeFile, FullDeviceIsAnError) {
