@@ -26,6 +26,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+constexpr double kLeastScale = 0.25;
+constexpr double kMostScale = 8.0;
+
 struct PlotOptions {
   std::vector<std::string> folders;
   std::string output;
@@ -115,6 +118,9 @@ Pictures pictures_of_runs(const PlotOptions& options, const drawing::Theme& them
 
 int plot(const PlotOptions& options) {
   const drawing::Theme theme = theme_of(options.theme);
+  if (!(options.scale >= kLeastScale && options.scale <= kMostScale)) {
+    throw UsageError(fmt::format("--scale is {}, expected {} to {}", options.scale, kLeastScale, kMostScale));
+  }
   const bool with_png = options.format != "svg";
   if (with_png) {
     require_png();
@@ -170,11 +176,10 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
       ->type_name("NAME")
       ->check(CLI::IsMember({"svg", "png", "both"}).description(""));
   command
-      ->add_option(
-          "--scale", options->scale,
-          fmt::format("Pixels of a PNG file for each px of the SVG one, 0.25 to 8 (default {})", options->scale))
-      ->type_name("F")
-      ->check(CLI::Range(0.25, 8.0));
+      ->add_option("--scale", options->scale,
+                   fmt::format("Pixels of a PNG file for each px of the SVG one, {} to {} (default {})", kLeastScale,
+                               kMostScale, options->scale))
+      ->type_name("F");
   command->callback([options, &selected] { selected = [options] { return plot(*options); }; });
 }
 

@@ -39,15 +39,21 @@ report::ViewerBundle required_viewer() {
   if (!viewer) {
     throw DataError(
         "this program was built without the viewer that draws the page: run scripts/install_viewer.sh in the folder of "
-        "the "
-        "sources (it needs node and npm, and runs 'npm ci' in viewer), then configure and build again");
+        "the sources (it needs node and npm, and runs 'npm ci' in viewer), then configure and build again");
   }
   return *viewer;
 }
 
+constexpr double kSmallestBudget_mb = 0.1;
+constexpr double kLargestBudget_mb = 2000.0;
+
 report::ScanChoice scan_choice(const ReportOptions& options) {
   report::ScanChoice choice;
   if (options.budget_mb) {
+    if (!(*options.budget_mb >= kSmallestBudget_mb && *options.budget_mb <= kLargestBudget_mb)) {
+      throw UsageError(fmt::format("--budget-mb is {}, expected {} to {} MB", *options.budget_mb, kSmallestBudget_mb,
+                                   kLargestBudget_mb));
+    }
     choice.budget_bytes = static_cast<std::size_t>(*options.budget_mb * kBytesPerMb);
   }
   choice.choose_whole = options.frames.empty();
@@ -57,9 +63,19 @@ report::ScanChoice scan_choice(const ReportOptions& options) {
 
 bool is_comparison(const ReportOptions& options) { return options.folders.size() > 1; }
 
+/// Whatever is meant by another name, a page must not take its place: a result of the run above all.
+fs::path named_destination(const fs::path& html) {
+  const std::string ending = html.extension().string();
+  std::error_code unreadable;
+  if (ending != ".html" && ending != ".htm" && !fs::is_other(html, unreadable)) {
+    throw UsageError(fmt::format("--output is '{}', expected a file that ends in .html", html.string()));
+  }
+  return html;
+}
+
 fs::path destination(const ReportOptions& options) {
   if (!options.output.empty()) {
-    return options.output;
+    return named_destination(options.output);
   }
   const fs::path first = options.folders.front();
   return is_comparison(options)
@@ -118,8 +134,7 @@ void add_report_command(CLI::App& app, std::function<int()>& selected) {
           fmt::format("Size that scans and map may have in the page, 0.1 to 2000 MB (default {} MB); scans are "
                       "thinned to it",
                       static_cast<double>(report::ScanChoice().budget_bytes) / kBytesPerMb))
-      ->type_name("MB")
-      ->check(CLI::Range(0.1, 2000.0));
+      ->type_name("MB");
   command
       ->add_option(
           "--frames", options->frames,
@@ -128,7 +143,7 @@ void add_report_command(CLI::App& app, std::function<int()>& selected) {
       ->type_name("LIST");
   command->add_option("--threads", options->threads, "Most threads to use, 0: all processors (default 0)")
       ->type_name("N")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(0, 1024));
   command->callback([options, &selected] { selected = [options] { return write_page(*options); }; });
 }
 

@@ -259,11 +259,12 @@ void refuse_without_points(const Usability& seen, const RunOptions& options) {
   if (seen.unusable < seen.frames) {
     return;
   }
-  throw DataError(fmt::format(
-      "{}: none of the {} scans has enough points to work with: of {} points {} have numbers that are not finite, {} are "
-      "at the origin, {} out of range, {} remain after thinning. 'dynamic-icp info' says more",
-      options.input, seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.zero_range,
-      seen.dropped.out_of_range, seen.points_used));
+  throw DataError(
+      fmt::format("{}: none of the {} scans has enough points to work with: of {} points {} have numbers that are not "
+                  "finite, {} are "
+                  "at the origin, {} out of range, {} remain after thinning. 'dynamic-icp info' says more",
+                  options.input, seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.zero_range,
+                  seen.dropped.out_of_range, seen.points_used));
 }
 
 void process_scans(const datasets::Dataset& dataset, const ScanSelection& selection, odometry::Odometry& odometry,
@@ -288,12 +289,14 @@ void process_scans(const datasets::Dataset& dataset, const ScanSelection& select
   refuse_without_points(usability, options);
 }
 
-/// A page that cannot be made is no reason to lose the run.
-void try_to_report(const fs::path& folder, const RunOptions& options) {
+/// A page that cannot be made is no reason to lose the run. Whether it was made.
+bool try_to_report(const fs::path& folder, const RunOptions& options) {
   try {
     write_report(folder, folder / "report.html", options.method.threads);
+    return true;
   } catch (const std::exception& error) {
     fmt::print(stderr, "dynamic-icp: warning: no report.html: {}\n", error.what());
+    return false;
   }
 }
 
@@ -302,9 +305,8 @@ int run(const RunOptions& options) {
   Findings findings{{{}, options.quiet}, {}, {}, {}, make_map(options)};
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const ScanSelection selection = select_scans(*dataset, options.start, options.max_frames);
-  findings.recording =
-      check_recording(*dataset, options.settings, selection.begin, selection.end,
-                      odometry::needs_doppler(options.method.method), options.method.threads);
+  findings.recording = check_recording(*dataset, options.settings, selection.begin, selection.end,
+                                       odometry::needs_doppler(options.method.method), options.method.threads);
   const bool own_truth = options.ground_truth.empty();
   const fs::path truth_file = own_truth ? dataset->ground_truth_file() : fs::path(options.ground_truth);
   const formats::Trajectory truth =
@@ -329,15 +331,16 @@ int run(const RunOptions& options) {
   process_scans(*dataset, selection, *odometry, writer, options, findings);
   const results::RunSummary summary = writer.finish(options.method.method, truth, findings.assumptions,
                                                     run_json(options, *dataset, config, truth_file, findings));
-  if (options.report) {
-    try_to_report(output.path(), options);
-  }
+  const bool reported = options.report && try_to_report(output.path(), options);
   if (findings.map) {
     findings.map->write(map_file);
   }
   output.commit();
   if (!options.quiet) {
     print_summary(summary, findings, options);
+    if (reported) {
+      fmt::print("report       {}\n", (fs::path(options.output) / "report.html").string());
+    }
   }
   return 0;
 }

@@ -21,4 +21,3 @@ fi
 
 echo "== Running Dynamic-ICP on it"
 build/dynamic-icp run "$drive" --output "$run" --save-labels --report --force
-[[ ! -e $run/report.html ]] || echo "report       $PWD/$run/report.html"

@@ -64,6 +64,12 @@ struct ObjectRow {
   std::optional<Box> box = std::nullopt;
 };
 
+/// How the sensor moves at the stamp of a scan, m/s, sensor frame: by the twist where the run tells it, else the ego
+/// velocity, which of a scan that sweeps is one for all of the sweep.
+inline Eigen::Vector3d velocity_at_stamp(const FrameRow& frame) {
+  return frame.twist && frame.twist->linear.allFinite() ? frame.twist->linear : frame.ego_velocity;
+}
+
 /// A value of summary.json or run.json: null, a switch, a number or a text.
 using Value = std::variant<std::monostate, bool, double, std::string>;
 

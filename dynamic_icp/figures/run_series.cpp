@@ -45,10 +45,12 @@ RunSeries error_series(const Heading& heading, const std::vector<double>& errors
   return series;
 }
 
-/// A value of the registration; a gap at the first scan, which has nothing to be registered to.
+/// A value of the registration; a gap where nothing was registered: at the first scan, and at those that are lost
+/// without a single step.
 std::vector<Series> registration(const RunFiles& run, double FrameRow::*value) {
   return {{"per scan", per_frame(run, [&](const FrameRow& frame) {
-             return frame.reason == "first" ? std::numeric_limits<double>::quiet_NaN() : frame.*value;
+             const bool registered = frame.reason != "first" && (frame.status != "lost" || frame.iterations > 0.0);
+             return registered ? frame.*value : std::numeric_limits<double>::quiet_NaN();
            })}};
 }
 
@@ -62,7 +64,7 @@ RunSeries ego_speed(const RunFiles& run, const std::optional<RunTruth>& truth) {
   if (truth) {
     series.push_back({"ground truth", truth->speed, true});
   }
-  series.push_back({"estimate from Doppler", per_frame(run, [](const FrameRow& f) { return f.ego_velocity.norm(); })});
+  series.push_back({"estimate", per_frame(run, [](const FrameRow& f) { return velocity_at_stamp(f).norm(); })});
   return make_series({"ego_speed", "Ego speed", "speed", "m/s"}, std::move(series));
 }
 

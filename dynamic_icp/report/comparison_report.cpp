@@ -105,17 +105,22 @@ Json table_data(const benchmark::Table& table) {
   }
   Json rows = Json::array();
   Json best = Json::array();
+  Json second = Json::array();
   for (const std::vector<benchmark::TableCell>& row : table.rows) {
     Json texts = Json::array();
-    Json marks = Json::array();
+    Json is_best = Json::array();
+    Json is_second = Json::array();
     for (const benchmark::TableCell& cell : row) {
       texts.push_back(cell.text);
-      marks.push_back(cell.emphasis == benchmark::Emphasis::kBest);
+      is_best.push_back(cell.emphasis == benchmark::Emphasis::kBest);
+      is_second.push_back(cell.emphasis == benchmark::Emphasis::kSecond);
     }
     rows.push_back(texts);
-    best.push_back(marks);
+    best.push_back(is_best);
+    second.push_back(is_second);
   }
-  return {{"title", table.title}, {"caption", table.caption}, {"columns", columns}, {"rows", rows}, {"best", best}};
+  return {{"title", table.title}, {"caption", table.caption}, {"columns", columns}, {"rows", rows},
+          {"best", best},         {"second", second}};
 }
 
 /// What the tables call the method of a cell.

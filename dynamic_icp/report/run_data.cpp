@@ -93,7 +93,7 @@ Json frames_data(const RunFiles& run, const std::vector<std::size_t>& kept) {
     index.push_back(frame.index);
     seconds.push_back(rounded(run.seconds(k), kSecond));
     append(poses, run.trajectory[k].T_world_sensor);
-    append(velocity, frame.ego_velocity, kSpeed);
+    append(velocity, figures::velocity_at_stamp(frame), kSpeed);
     status.push_back(frame.reason == "first" ? frame.reason : frame.status);
     reason.push_back(frame.reason == "converged" || frame.reason == "first" ? "" : frame.reason);
     lost.push_back(directions(frame));

@@ -231,9 +231,9 @@ std::vector<std::uint32_t> rows_to_keep(const ShownScan& scan, std::size_t count
   std::vector<std::uint32_t> rows_of_moving;
   std::vector<std::uint32_t> rows_of_others;
   for (std::uint32_t row = 0; row < scan.size(); ++row) {
-    const bool moves = scan.labels[row] >= kDynamic;
-    (moves ? moving : others).push_back(scan.points[row]);
-    (moves ? rows_of_moving : rows_of_others).push_back(row);
+    const bool on_object = scan.labels[row] >= kFirstObject;  // single points that seem to move are mostly noise
+    (on_object ? moving : others).push_back(scan.points[row]);
+    (on_object ? rows_of_moving : rows_of_others).push_back(row);
   }
   const std::size_t of_moving = std::min(moving.size(), count / 2);
   const std::size_t of_others = std::min(others.size(), count - of_moving);

@@ -50,7 +50,7 @@ struct RunScans {
 RunScans keep_scans(const figures::RunFiles& run, const std::optional<figures::RunTruth>& truth,
                     const datasets::Dataset& recording, const ScanChoice& choice, const Workers& workers);
 
-/// The rows of a scan to keep when there are too many: half of `count` may go to moving points, which are kept before
+/// The rows of a scan to keep when there are too many: half of `count` may go to points on objects, kept before
 /// others; all rows, in an order that compresses well, when there are no more than `count`.
 struct ShownScan;
 std::vector<std::uint32_t> rows_to_keep(const ShownScan& scan, std::size_t count);

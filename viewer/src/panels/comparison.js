@@ -39,7 +39,7 @@ export function bestOf(numbers, better) {
   return numbers.map((value) => value === best);
 }
 
-const cell = (text, best) => element('td', { class: best ? 'best' : null }, best ? element('span', { class: 'star', title: 'best', text: '★' }) : null, text);
+const cell = (text, best, second = false) => element('td', { class: best ? 'best' : second ? 'second' : null }, best ? element('span', { class: 'star', title: 'best', text: '★' }) : null, text);
 
 export function createComparisonSheet(report, store) {
   const sheet = element('div', { class: 'text-sheet' });
@@ -67,11 +67,11 @@ export function createComparisonSheet(report, store) {
 
 /** The tables of a benchmark. */
 export function createTableSheet(report) {
-  return element('div', { class: 'text-sheet' }, ...report.tables.map(({ title, caption, columns, rows, best }) =>
+  return element('div', { class: 'text-sheet' }, ...report.tables.map(({ title, caption, columns, rows, best, second }) =>
     element('section', {}, element('h2', { text: title }),
       element('div', { class: 'scroll' }, element('table', { class: 'numbers' },
         element('thead', {}, element('tr', {}, ...columns.map((text) => element('th', { scope: 'col', text })))),
         element('tbody', {}, ...rows.map((row, r) => element('tr', {}, ...row.map((text, c) =>
-          (c === 0 ? element('th', { scope: 'row', text }) : cell(text, best?.[r]?.[c] ?? false)))))))),
+          (c === 0 ? element('th', { scope: 'row', text }) : cell(text, best?.[r]?.[c] ?? false, second?.[r]?.[c] ?? false)))))))),
       caption ? element('p', { class: 'muted', text: caption }) : null)));
 }
