@@ -3,6 +3,7 @@ import test from 'node:test';
 import { decodeScan } from '../src/bytes.js';
 import { closest, headingInSensor, keptScan, lastNotAbove, troubledRanges } from '../src/runs.js';
 import { fromAnchor, toAnchor } from '../src/scene/camera_rig.js';
+import { placeBoxes } from '../src/scene/labels.js';
 import { pathSegments } from '../src/scene/paths.js';
 import { pointUnder } from '../src/scene/picking.js';
 import { MOST_CROSSES, predictPoints } from '../src/scene/predicted_points.js';
@@ -75,6 +76,16 @@ test('the camera comes along: what is relative to the sensor stays so', () => {
   for (const mode of ['follow', 'top', 'free']) near(toAnchor(mode, anchor, fromAnchor(mode, anchor, [-20, 3, 9])), [-20, 3, 9]);
   near(fromAnchor('follow', { place: [1, 1, 0], yaw: Math.PI / 2 }, [-10, 0, 5]), [1, -9, 5]);
   near(fromAnchor('top', { place: [1, 1, 0], yaw: Math.PI / 2 }, [-10, 0, 5]), [-9, 1, 5]);
+});
+
+test('of labels that would cover each other the nearest stands, a picked one before it, and no other is hidden', () => {
+  const box = (left, distance, rank = 1, top = 0) => ({ left, top, width: 60, height: 16, rank, distance });
+  assert.deepEqual(placeBoxes([box(0, 30), box(40, 10), box(200, 80)]), [false, true, true]);
+  assert.deepEqual(placeBoxes([box(0, 30, 0), box(40, 10), box(200, 80)]), [true, false, true]);
+  // The middle one is hidden by the nearest, so the far one that only the middle one would cover stands.
+  assert.deepEqual(placeBoxes([box(0, 10), box(40, 20), box(80, 30)]), [true, false, true]);
+  assert.deepEqual(placeBoxes([box(0, 10), box(0, 20, 1, 10), box(0, 30, 1, 30)]), [true, false, true]);
+  assert.deepEqual(placeBoxes([]), []);
 });
 
 test('the point under the pointer is the near one of those it hits', () => {

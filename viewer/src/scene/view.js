@@ -128,9 +128,9 @@ export function createView(report, store) {
     const { clientWidth: width, clientHeight: height } = holder;
     if (width === 0 || height === 0) return;
     renderer.render(scene, rig.camera);
-    const { layers } = store.state;
+    const { layers, picked } = store.state;
     labels.draw([
-      ...(layers.has('ids') ? objects.labels(current.objects) : []),
+      ...(layers.has('ids') ? objects.labels(current.objects, picked?.object) : []),
       ...(layers.has('rings') ? rings.labels() : []),
     ], objects.object.matrix, rig.camera, width, height);
     holder.dataset.frame = current.frame;
@@ -308,6 +308,7 @@ export function createView(report, store) {
     });
     store.watch(['colour', 'limit', 'limits', 'theme', 'systemTheme'], () => { colourPoints(); draw(); });
     store.watch(['group', 'run', 'hidden', 'theme', 'systemTheme'], () => { showRuns(); drawObjectsIfAny(); draw(); });
+    store.watch(['picked'], draw);
     store.watch(['run', 'layers'], showMap);
     store.watch(['layers', 'run'], showLayers);
     store.watch(['size'], ({ size }) => {
