@@ -1,7 +1,7 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { decodeScan } from '../src/bytes.js';
-import { closest, headingInSensor, keptScan, lastNotAbove, troubledRanges } from '../src/runs.js';
+import { closest, facingOf, headingInSensor, keptScan, lastNotAbove, troubledRanges } from '../src/runs.js';
 import { fromAnchor, toAnchor } from '../src/scene/camera_rig.js';
 import { placeBoxes } from '../src/scene/labels.js';
 import { pathSegments } from '../src/scene/paths.js';
@@ -108,10 +108,30 @@ test('frames find their kept scan and the frames that need attention', () => {
   assert.deepEqual([-5, 0.9, 1.1, 3.1, 77].map((value) => closest([0, 2, 4], value)), [0, 0, 1, 2, 2]);
 });
 
-test('the way the sensor drives is known from its velocity, and is ahead when it stands', () => {
+/** Points on an arc about the sensor, degrees; the farther the more to its end. */
+const arc = (from, to) => Float32Array.from(Array.from({ length: 121 }, (_, k) => {
+  const angle = ((from + ((to - from) * k) / 121) * Math.PI) / 180;
+  return [(5 + k) * Math.cos(angle), (5 + k) * Math.sin(angle), -1];
+}).flat());
+
+test('the points of a scan face their middle direction; those all around face none', () => {
+  assert.ok(Math.abs(facingOf(arc(-60, 60))) < 0.02);
+  assert.ok(Math.abs(facingOf(arc(30, 150)) - Math.PI / 2) < 0.02);
+  assert.equal(facingOf(arc(0, 360)), null);
+  assert.equal(facingOf(new Float32Array(0)), null);
+  assert.equal(facingOf(new Float32Array(9)), null);
+});
+
+test('the sensor looks where it drives if it drives into its points, else at its points, else ahead', () => {
   const run = (velocity) => ({ frames: { index: [0, 1], ego_velocity: [...velocity, ...velocity] } });
-  assert.ok(Math.abs(headingInSensor(run([0, 5, 0])) - Math.PI / 2) < 1e-9);
-  assert.equal(headingInSensor(run([0, 0.1, 0])), 0);
+  const heading = (velocity, facing) => headingInSensor(run(velocity), facing);
+  assert.ok(Math.abs(heading([0, 5, 0], null) - Math.PI / 2) < 1e-9);
+  assert.ok(Math.abs(heading([5, 5, 0], 0.1) - Math.PI / 4) < 1e-9);
+  assert.equal(heading([0, 0.1, 0], null), 0);
+  assert.equal(heading([-1, 0, 0], 0.1), 0.1); // a run that lost itself
+  assert.equal(heading([1, 1, 0], 0.1), 0.1);
+  assert.equal(heading([-8, 0, 0], 0.1), 0.1);
+  assert.equal(heading([null, null, null], null), 0);
 });
 
 test('the cache reads a scan once and forgets the one not used for longest', async () => {
