@@ -63,16 +63,42 @@ export function troubledRanges(run) {
   return ranges;
 }
 
-/** The way the sensor looks while it drives, as an angle (rad) about its z axis: the mean direction of its velocity. */
-export function headingInSensor(run) {
+const DRIVING = 2; // m/s; a slower mean motion may be the error of a run that lost itself
+const ALL_AROUND = 0.3; // mean of the unit directions, 0 to 1: below, no side has more points than another
+
+/**
+ * Where the points of a scan are, as an angle (rad) about the sensor's z axis; null where they are all around it.
+ * Every point counts by its direction alone: a far wall to one side does not turn it.
+ */
+export function facingOf(positions) {
+  let x = 0;
+  let y = 0;
+  let count = 0;
+  for (let i = 0; i + 2 < positions.length; i += 3) {
+    const range = Math.hypot(positions[i], positions[i + 1]);
+    if (!(range > 0)) continue;
+    x += positions[i] / range;
+    y += positions[i + 1] / range;
+    ++count;
+  }
+  return count > 0 && Math.hypot(x, y) > ALL_AROUND * count ? Math.atan2(y, x) : null;
+}
+
+/**
+ * The way the sensor looks, as an angle (rad) about its z axis: the mean direction of its velocity while it drives into
+ * what it sees, else where its points are, else ahead.
+ * @param {number|null} facing of its points
+ */
+export function headingInSensor(run, facing) {
   let x = 0;
   let y = 0;
   for (let frame = 0; frame < frameCount(run); ++frame) {
     x += run.frames.ego_velocity[3 * frame] ?? 0;
     y += run.frames.ego_velocity[3 * frame + 1] ?? 0;
   }
-  // A sensor that stands, or drives as much back as forth, has no such way.
-  return Math.hypot(x, y) > 0.5 * frameCount(run) ? Math.atan2(y, x) : 0;
+  const drives = Math.hypot(x, y) > DRIVING * frameCount(run);
+  const agrees = facing === null || x * Math.cos(facing) + y * Math.sin(facing) >= 0;
+  return drives && agrees ? Math.atan2(y, x) : facing ?? 0;
 }
 
 /** An object row of the page by names. */

@@ -1,29 +1,40 @@
 // The state in the fragment of the address, so that a link shows what its sender saw.
 //   #frame=12&colour=doppler&layers=boxes,ids&camera=free&eye=1,2,3,4,5,6
+import { COLOUR_LIMIT, colourings } from './colour/colourings.js';
+import { layers } from './layers.js';
+import { CAMERAS, SIZE } from './panels/toolbar.js';
+import { SPEEDS } from './player.js';
 
-const numberList = (text) => text.split(',').map(Number);
-const isNumbers = (list, length) => list.length === length && list.every(Number.isFinite);
+const FARTHEST = 1e6; // m, of a camera from what it goes with
+
+const numberList = (text) => text.split(',').map((entry) => (entry.trim() === '' ? NaN : Number(entry)));
+const isEye = (list) => list.length === 6 && list.every((value) => Math.abs(value) <= FARTHEST);
 
 const wholeNumber = {
   write: String,
   read: (text) => (/^\d{1,9}$/.test(text) ? Number(text) : undefined),
 };
-const number = {
+const numberWithin = ({ least, most }) => ({
   write: (value) => String(Number(value.toPrecision(4))),
-  read: (text) => (text !== '' && Number.isFinite(Number(text)) ? Number(text) : undefined),
-};
+  read: (text) => (text !== '' && Number(text) >= least && Number(text) <= most ? Number(text) : undefined),
+});
+const oneOf = (known) => ({ write: String, read: (text) => known.find((value) => String(value) === text) });
 const word = { write: String, read: (text) => (/^[a-z-]{1,30}$/.test(text) ? text : undefined) };
-const words = {
+/** Unknown entries are left out; where nothing known is left, nothing was said. No text at all is the empty set. */
+const someOf = (known) => ({
   write: (set) => [...set].join(','),
-  read: (text) => new Set(text.split(',').filter((entry) => /^[a-z-]{1,30}$/.test(entry))),
-};
+  read: (text) => {
+    const found = text.split(',').filter((entry) => known.includes(entry));
+    return found.length || text === '' ? new Set(found) : undefined;
+  },
+});
 const wholeNumbers = {
   write: (set) => [...set].join(','),
   read: (text) => new Set(text.split(',').filter((entry) => /^\d{1,6}$/.test(entry)).map(Number)),
 };
 const eye = {
   write: (list) => list.map((value) => Number(value.toFixed(3))).join(','),
-  read: (text) => (isNumbers(numberList(text), 6) ? numberList(text) : undefined),
+  read: (text) => (isEye(numberList(text)) ? numberList(text) : undefined),
 };
 
 /** What is kept in the fragment: key -> how. */
@@ -31,21 +42,21 @@ const kept = {
   group: wholeNumber,
   run: wholeNumber,
   frame: wholeNumber,
-  colour: word,
-  limit: number,
-  layers: words,
-  camera: word,
+  colour: oneOf(colourings.map(({ id }) => id)),
+  limit: numberWithin(COLOUR_LIMIT),
+  layers: someOf(layers.map(({ id }) => id)),
+  camera: oneOf(CAMERAS.map(({ id }) => id)),
   eye,
-  size: number,
-  speed: number,
-  tab: word,
+  size: numberWithin(SIZE),
+  speed: oneOf(SPEEDS),
+  tab: word, // sheets differ from page to page: tabs.js shows the first for one it has not
   hidden: wholeNumbers,
-  theme: word,
+  theme: oneOf(['light', 'dark']),
 };
 
 export const keptKeys = Object.keys(kept);
 
-/** @param {string} fragment with or without '#'. What cannot be read is left out. */
+/** @param {string} fragment with or without '#'. What cannot be read, is unknown or out of range is left out. */
 export function readFragment(fragment) {
   const state = {};
   for (const [key, text] of new URLSearchParams(fragment.replace(/^#/, ''))) {

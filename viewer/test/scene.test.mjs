@@ -1,8 +1,9 @@
 import assert from 'node:assert/strict';
 import test from 'node:test';
 import { decodeScan } from '../src/bytes.js';
-import { closest, headingInSensor, keptScan, lastNotAbove, troubledRanges } from '../src/runs.js';
+import { closest, facingOf, headingInSensor, keptScan, lastNotAbove, troubledRanges } from '../src/runs.js';
 import { fromAnchor, toAnchor } from '../src/scene/camera_rig.js';
+import { placeBoxes } from '../src/scene/labels.js';
 import { pathSegments } from '../src/scene/paths.js';
 import { pointUnder } from '../src/scene/picking.js';
 import { MOST_CROSSES, predictPoints } from '../src/scene/predicted_points.js';
@@ -77,6 +78,16 @@ test('the camera comes along: what is relative to the sensor stays so', () => {
   near(fromAnchor('top', { place: [1, 1, 0], yaw: Math.PI / 2 }, [-10, 0, 5]), [-9, 1, 5]);
 });
 
+test('of labels that would cover each other the nearest stands, a picked one before it, and no other is hidden', () => {
+  const box = (left, distance, rank = 1, top = 0) => ({ left, top, width: 60, height: 16, rank, distance });
+  assert.deepEqual(placeBoxes([box(0, 30), box(40, 10), box(200, 80)]), [false, true, true]);
+  assert.deepEqual(placeBoxes([box(0, 30, 0), box(40, 10), box(200, 80)]), [true, false, true]);
+  // The middle one is hidden by the nearest, so the far one that only the middle one would cover stands.
+  assert.deepEqual(placeBoxes([box(0, 10), box(40, 20), box(80, 30)]), [true, false, true]);
+  assert.deepEqual(placeBoxes([box(0, 10), box(0, 20, 1, 10), box(0, 30, 1, 30)]), [true, false, true]);
+  assert.deepEqual(placeBoxes([]), []);
+});
+
 test('the point under the pointer is the near one of those it hits', () => {
   // Looking along z with w = z: x and y are halved at twice the distance.
   const matrix = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 1, 0, 0, 0, 0];
@@ -97,10 +108,30 @@ test('frames find their kept scan and the frames that need attention', () => {
   assert.deepEqual([-5, 0.9, 1.1, 3.1, 77].map((value) => closest([0, 2, 4], value)), [0, 0, 1, 2, 2]);
 });
 
-test('the way the sensor drives is known from its velocity, and is ahead when it stands', () => {
+/** Points on an arc about the sensor, degrees; the farther the more to its end. */
+const arc = (from, to) => Float32Array.from(Array.from({ length: 121 }, (_, k) => {
+  const angle = ((from + ((to - from) * k) / 121) * Math.PI) / 180;
+  return [(5 + k) * Math.cos(angle), (5 + k) * Math.sin(angle), -1];
+}).flat());
+
+test('the points of a scan face their middle direction; those all around face none', () => {
+  assert.ok(Math.abs(facingOf(arc(-60, 60))) < 0.02);
+  assert.ok(Math.abs(facingOf(arc(30, 150)) - Math.PI / 2) < 0.02);
+  assert.equal(facingOf(arc(0, 360)), null);
+  assert.equal(facingOf(new Float32Array(0)), null);
+  assert.equal(facingOf(new Float32Array(9)), null);
+});
+
+test('the sensor looks where it drives if it drives into its points, else at its points, else ahead', () => {
   const run = (velocity) => ({ frames: { index: [0, 1], ego_velocity: [...velocity, ...velocity] } });
-  assert.ok(Math.abs(headingInSensor(run([0, 5, 0])) - Math.PI / 2) < 1e-9);
-  assert.equal(headingInSensor(run([0, 0.1, 0])), 0);
+  const heading = (velocity, facing) => headingInSensor(run(velocity), facing);
+  assert.ok(Math.abs(heading([0, 5, 0], null) - Math.PI / 2) < 1e-9);
+  assert.ok(Math.abs(heading([5, 5, 0], 0.1) - Math.PI / 4) < 1e-9);
+  assert.equal(heading([0, 0.1, 0], null), 0);
+  assert.equal(heading([-1, 0, 0], 0.1), 0.1); // a run that lost itself
+  assert.equal(heading([1, 1, 0], 0.1), 0.1);
+  assert.equal(heading([-8, 0, 0], 0.1), 0.1);
+  assert.equal(heading([null, null, null], null), 0);
 });
 
 test('the cache reads a scan once and forgets the one not used for longest', async () => {

@@ -30,6 +30,14 @@ test('nonsense in a link is left out', () => {
   assert.deepEqual(readFragment('#layers=boxes,<script>,ids').layers, new Set(['boxes', 'ids']));
 });
 
+test('what no control of the page can show falls back to what is usual', () => {
+  assert.deepEqual(readFragment('#colour=zzz&camera=quark&layers=,,&limit=-4'), {});
+  assert.deepEqual(readFragment('#layers=quark&limit=0&size=0.1&speed=3&theme=pink&colour=toString&eye=,,,,,'), {});
+  assert.deepEqual(readFragment('#limit=1e9&size=400&speed=-1&eye=1e300,0,0,0,0,0&layers=quark,map&theme=dark'),
+    { layers: new Set(['map']), theme: 'dark' });
+  assert.deepEqual(readFragment('#limit=0.01&size=8&speed=0.1'), { limit: 0.01, size: 8, speed: 0.1 });
+});
+
 const run = (frames, scans = null) => ({ frames: { index: Array.from({ length: frames }, (_, k) => 10 + 2 * k) }, scans });
 const report = { runs: [run(5), run(9, {}), run(3)], groups: [{ name: 'a', runs: [0, 1] }, { name: 'b', runs: [2] }] };
 

@@ -7,9 +7,9 @@ import { lastNotAbove, speedOf } from '../runs.js';
  */
 export const colourings = [
   { id: 'compensated', source: 0, key: '1', name: 'Doppler, own motion out', unit: 'm/s', map: 'diverging',
-    meaning: 'What is left of the Doppler velocity without the sensor’s own motion: grey stands, blue comes closer, orange goes away' },
+    meaning: 'What is left of the Doppler velocity without the sensor’s own motion: the middle of the bar stands, left of it comes closer, right of it goes away' },
   { id: 'doppler', source: 1, key: '2', name: 'Doppler as measured', unit: 'm/s', map: 'diverging',
-    meaning: 'Doppler velocity as measured: blue comes closer, orange goes away' },
+    meaning: 'Doppler velocity as measured: left of the middle of the bar comes closer, right of it goes away' },
   { id: 'kind', source: 2, key: '3', name: 'Static, moving, object', unit: '', map: 'categories',
     meaning: 'What the odometry took a point for; every object has its colour' },
   { id: 'residual', source: 3, key: '4', name: 'Residual', unit: 'm', map: 'sequential',
@@ -21,6 +21,7 @@ export const colourings = [
 export const colouring = (id) => colourings.find((entry) => entry.id === id) ?? colourings[0];
 
 const LIMITS = [0.01, 0.02, 0.05, 0.1, 0.2, 0.5, 1, 2, 5, 10, 20, 30, 50, 100];
+export const COLOUR_LIMIT = { least: LIMITS[0], most: LIMITS.at(-1) };
 
 /** The next rounder limit above (`steps` = 1) or below (-1). */
 export function nextLimit(limit, steps) {

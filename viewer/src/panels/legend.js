@@ -31,7 +31,8 @@ function scaleBar(store, chosen, ground) {
   return element('div', { class: 'legend-scale' },
     button('−', 'Narrower range of colours ([)', () => changeLimit(store, -1)),
     element('div', { class: 'legend-axis' }, bar,
-      element('div', { class: 'legend-ticks' }, ...ends.map((value) => element('span', { text: signed(value) })))),
+      element('div', { class: 'legend-ticks' }, ...ends.map((value) => element('span', { text: signed(value) }))),
+      chosen.id === 'compensated' ? element('div', { class: 'legend-hint', text: 'closer ← stands → away' }) : null),
     button('+', 'Wider range of colours (])', () => changeLimit(store, 1)));
 }
 
@@ -51,7 +52,6 @@ export function createLegend(report, store) {
           entry(marks.unused, 'not used'), element('span', { class: 'legend-entry', text: 'objects: a colour each' })));
       } else {
         parts.push(scaleBar(store, chosen, ground));
-        if (chosen.id === 'compensated') parts.push(element('div', { class: 'legend-hint', text: 'closer ← stands → away' }));
         if (chosen.id === 'residual') parts.push(element('div', { class: 'legend-entries' }, entry(marks.unknown, 'no surface near')));
       }
       if (state.layers.has('predicted')) {

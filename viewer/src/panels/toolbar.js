@@ -4,7 +4,7 @@ import { button, chooser, element } from '../dom.js';
 import { layersOf, toggled } from '../layers.js';
 import { runAt } from '../session.js';
 
-const CAMERAS = [
+export const CAMERAS = [
   { id: 'follow', name: 'Follow', help: 'Camera behind the sensor, goes and turns with it (F)' },
   { id: 'free', name: 'Free', help: 'Camera stays where it is put (V)' },
   { id: 'top', name: 'Top', help: 'Seen from above, goes with the sensor (C)' },

@@ -37,10 +37,11 @@ export function createObjects() {
       boxes.show(edges, edgeColours);
       arrows.show(shafts, shaftColours);
     },
-    /** Labels over the boxes: texts and places in the sensor frame. */
-    labels: (objects) => objects.map((object) => ({
+    /** Labels over the boxes: texts and places in the sensor frame. The picked object's goes before all others. */
+    labels: (objects, pickedId) => objects.map((object) => ({
       text: `${object.id} · ${shortNumber(Math.hypot(...object.velocity), 2)} m/s`,
       place: [object.centre[0], object.centre[1], object.centre[2] + 0.5 * object.extent[2] + 0.4],
+      rank: object.id === pickedId ? 0 : 1,
     })),
   };
 }

@@ -62,7 +62,7 @@ export function createRings() {
       const grey = rgb(colour).map((value) => value / 255);
       lines.show(ends, ends.filter((_, k) => k % 6 === 0).flatMap(() => grey));
     },
-    labels: () => RING_RADII.map((radius) => ({ text: `${radius} m`, place: [0, -radius, height], kind: 'ring' })),
+    labels: () => RING_RADII.map((radius) => ({ text: `${radius} m`, place: [0, -radius, height], rank: 2, kind: 'ring' })),
   };
 }
 

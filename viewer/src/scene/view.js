@@ -5,7 +5,7 @@ import { colouring, quantile } from '../colour/colourings.js';
 import { markColours } from '../colour/maps.js';
 import { element } from '../dom.js';
 import { readMap, readScan } from '../page_data.js';
-import { frameCount, headingInSensor, keptScan, objectOf, originOf, poseOf } from '../runs.js';
+import { facingOf, frameCount, headingInSensor, keptScan, objectOf, originOf, poseOf } from '../runs.js';
 import { createScanCache } from '../scan_cache.js';
 import { groupAt, runAt, runsShown, sameScan } from '../session.js';
 import { cssColour, groundOf } from '../theme.js';
@@ -100,7 +100,7 @@ export function createView(report, store) {
   const largest = report.runs.reduce((most, run) => (run.scans?.points ?? []).reduce((a, b) => Math.max(a, b), most), 1);
   const cache = createScanCache(readScan, Math.min(KEPT_SCANS[1], Math.max(KEPT_SCANS[0], Math.floor(KEPT_POINTS / largest))));
   let origin = [0, 0, 0];
-  let heading = 0;
+  const headings = new Map(); // rad, of each run looked at
   let ground = 'light';
   let groundHeight = -1.8;
   let current = { ticket: 0, frame: 0, place: null, scan: null, objects: [], scanObjects: [], run: null };
@@ -128,9 +128,9 @@ export function createView(report, store) {
     const { clientWidth: width, clientHeight: height } = holder;
     if (width === 0 || height === 0) return;
     renderer.render(scene, rig.camera);
-    const { layers } = store.state;
+    const { layers, picked } = store.state;
     labels.draw([
-      ...(layers.has('ids') ? objects.labels(current.objects) : []),
+      ...(layers.has('ids') ? objects.labels(current.objects, picked?.object) : []),
       ...(layers.has('rings') ? rings.labels() : []),
     ], objects.object.matrix, rig.camera, width, height);
     holder.dataset.frame = current.frame;
@@ -186,6 +186,16 @@ export function createView(report, store) {
     for (const object of atScan) object.matrix.copy(pose ? poseMatrix(pose, origin) : new Matrix4());
   }
 
+  /** By the first kept scan of a run, whichever frame is looked at, so that links keep their meaning. */
+  async function headingOf(runIndex) {
+    if (!headings.has(runIndex)) {
+      const run = report.runs[runIndex];
+      const first = run.scans?.frames.length && canInflate() ? await cache.get(runIndex, 0).catch(() => null) : null;
+      headings.set(runIndex, headingInSensor(run, first && facingOf(first.positions)));
+    }
+    return headings.get(runIndex);
+  }
+
   async function showFrame() {
     const ticket = ++tickets;
     const { run: runIndex, frame, playing } = store.state;
@@ -204,6 +214,7 @@ export function createView(report, store) {
         for (let k = 1; k <= READ_AHEAD && place + k < run.scans.frames.length; ++k) cache.get(runIndex, place + k).catch(() => {});
       }
     }
+    const heading = await headingOf(runIndex);
     // Something newer may be drawn already; something older may not stand in the way of what follows.
     if (ticket < current.ticket || runIndex !== store.state.run) return;
     const isNewScan = scan !== current.scan || run !== current.run;
@@ -227,7 +238,6 @@ export function createView(report, store) {
     const group = groupAt(report, store.state);
     const run = runAt(report, store.state);
     origin = originOf(report.runs[group.runs[0]] ?? run);
-    heading = headingInSensor(run);
     const reference = run.truth ? run : shown.map((entry) => entry.run).find((other) => other.truth) ?? null;
     paths.show(shown, reference, cssColour('--ink'), origin);
     rig.setBounds(boundsOf(shown.map((entry) => entry.run), origin));
@@ -308,6 +318,7 @@ export function createView(report, store) {
     });
     store.watch(['colour', 'limit', 'limits', 'theme', 'systemTheme'], () => { colourPoints(); draw(); });
     store.watch(['group', 'run', 'hidden', 'theme', 'systemTheme'], () => { showRuns(); drawObjectsIfAny(); draw(); });
+    store.watch(['picked'], draw);
     store.watch(['run', 'layers'], showMap);
     store.watch(['layers', 'run'], showLayers);
     store.watch(['size'], ({ size }) => {
