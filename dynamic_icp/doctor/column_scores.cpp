@@ -101,8 +101,9 @@ ColumnScores score_columns(std::span<const RawScan> scans, const Workers& worker
     scores.residual.at(static_cast<std::size_t>(column)) = quantile(std::move(residuals), 0.5);
   }
   const auto best = std::min_element(scores.residual.begin(), scores.residual.end());
-  if (*best < kGoodResidual_mps && scores.residual[3] > kTimesWorse * *best) {
-    scores.doppler = static_cast<int>(best - scores.residual.begin());
+  if (scores.residual[3] > kTimesWorse * *best) {
+    scores.likely_doppler = static_cast<int>(best - scores.residual.begin());
+    scores.doppler = *best < kGoodResidual_mps ? scores.likely_doppler : 3;
   }
   return scores;
 }

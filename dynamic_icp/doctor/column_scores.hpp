@@ -22,7 +22,8 @@ struct ColumnScores {
   /// a Doppler scatters by centimetres per second, moving or standing, with the sensor's motion in it or not; a
   /// coordinate scatters by metres.
   std::array<double, 4> residual = {0.0, 0.0, 0.0, 0.0};
-  int doppler = 3;  ///< the column that is the Doppler beyond doubt, else the last one
+  int doppler = 3;         ///< the column that is the Doppler beyond doubt, else the last one
+  int likely_doppler = 3;  ///< the one that is explained much better than the last one, if not well; else the last one
 };
 
 /// From the largest coordinates and Doppler of some scans. Nobody measures points beyond a kilometre by LiDAR, or

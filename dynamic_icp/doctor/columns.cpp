@@ -120,6 +120,14 @@ Finding columns(const Evidence& evidence) {
     finding.sentence = "the column taken for the Doppler is none: " + none->sentence;
     finding.fix = has_named_columns(*evidence.dataset) ? "--field doppler=COLUMN" : "";
     finding.evidence.insert(finding.evidence.end(), none->evidence.begin(), none->evidence.end());
+  } else if (scores.likely_doppler != 3) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence = fmt::format(
+        "column {} may be the Doppler: a velocity explains it to {:.2f} m/s and the last column to {:.2f}, neither "
+        "well; "
+        "if so, --columns says what is where",
+        scores.likely_doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.likely_doppler)),
+        scores.residual[3]);
   } else if (up != 2) {
     finding.verdict = Verdict::kWrong;
     finding.sentence =
