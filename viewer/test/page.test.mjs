@@ -289,6 +289,10 @@ for (const [width, height] of [[1280, 800], [820, 1180], [390, 844], [360, 640]]
         }
         const box = await page.locator('canvas.scene').boundingBox();
         assert.ok(box.width > 0.55 * Math.min(width, 1000) && box.height > 200);
+        await page.click('.menu summary');
+        const menu = await page.locator('.menu-body').boundingBox();
+        assert.ok(menu.x >= 0 && menu.x + menu.width <= width, `menu from ${menu.x}, ${menu.width} wide`);
+        await page.click('.menu summary');
         const ground = await page.evaluate(() => getComputedStyle(document.body).backgroundColor);
         assert.equal(ground, colorScheme === 'dark' ? 'rgb(10, 13, 19)' : 'rgb(238, 240, 244)');
         const counts = await colours(page);
