@@ -18,6 +18,7 @@ constexpr double kFlat = 0.35;
 constexpr double kLooksAhead = 0.4;  // length of the mean line of sight
 constexpr double kAlongAxis = 0.9;   // cosine
 constexpr double kMoving_mps = 1.0;
+constexpr double kUnexplained_mps = 0.25;
 
 struct View {
   Eigen::Vector3d spread = Eigen::Vector3d::Zero();
@@ -138,6 +139,13 @@ Finding columns(const Evidence& evidence) {
     finding.sentence =
         "the sensor looks and moves along y: x and y may have changed places, or the axes are not x ahead, y left";
     finding.fix = "--columns " + order;
+  } else if (scores.residual[3] > kUnexplained_mps) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = fmt::format(
+        "a velocity explains no column well, the last one to {:.2f} m/s: most of what is seen moves, or the columns "
+        "are "
+        "in another order",
+        scores.residual[3]);
   } else {
     finding.sentence = "x, y, z, Doppler";
   }
