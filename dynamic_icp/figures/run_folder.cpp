@@ -300,6 +300,10 @@ void check_count(const fs::path& file, const char* what, std::size_t count, std:
   }
 }
 
+fs::path labels_file(const RunFiles& run, std::size_t frame) {
+  return run.folder / "labels" / fmt::format("{:05}.bin", run.frames[frame].index + 1);
+}
+
 }  // namespace
 
 std::string text_of(const Settings& settings, std::string_view key) {
@@ -354,8 +358,12 @@ RunFiles read_run(const fs::path& folder) {
   return run;
 }
 
+bool lacks_labels(const RunFiles& run, std::size_t frame) {
+  return fs::exists(run.folder / "labels") && !fs::exists(labels_file(run, frame));
+}
+
 std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::size_t frame, std::size_t points) {
-  const fs::path path = run.folder / "labels" / fmt::format("{:05}.bin", run.frames[frame].index + 1);
+  const fs::path path = labels_file(run, frame);
   if (!fs::exists(path)) {
     return std::nullopt;
   }

@@ -99,6 +99,9 @@ struct RunFiles {
 /// many scans there are.
 RunFiles read_run(const std::filesystem::path& folder);
 
+/// Whether the run wrote labels (`--save-labels`) but not, or no more, those of this frame.
+bool lacks_labels(const RunFiles& run, std::size_t frame);
+
 /// labels/*.bin of a frame (with `--save-labels`): per point of the scan as read -1 not used, 0 static, > 0 the
 /// id of its object. Empty optional when there is no such file; DataError when its length is not `points`.
 std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::size_t frame, std::size_t points);

@@ -189,6 +189,9 @@ TEST(RunReport, RecordingThatChangedIsANote) {
 TEST(RunReport, LabelsThatDoNotFitAreANote) {
   const figures::TestFolder folder;
   WallDrive().write(folder);
+  std::filesystem::remove(folder.path() / "run/labels/00002.bin");
+  const ReadPage without = read_page(html_of(folder));
+  EXPECT_NE(without.report["notes"][0].get<std::string>().find("labels/ lacks 1 of"), std::string::npos);
   folder.write("run/labels/00002.bin", "xyz");
   const ReadPage page = read_page(html_of(folder));
   EXPECT_TRUE(page.report["runs"][0]["scans"].is_null());

@@ -188,13 +188,21 @@ std::vector<std::string> notes_of(const RunFiles& run, const RunScans& kept, con
   double of = 0.0;
   double bytes = 0.0;
   std::vector<std::size_t> whole;
+  std::size_t unlabelled = 0;
   for (const KeptScan& scan : kept.scans) {
+    unlabelled += figures::lacks_labels(run, scan.frame) ? 1 : 0;
     points += static_cast<double>(scan.points);
     of += static_cast<double>(scan.of);
     bytes += static_cast<double>(scan.blob.size());
     if (scan.whole) {
       whole.push_back(run.frames[scan.frame].index);
     }
+  }
+  if (unlabelled > 0) {
+    notes.push_back(
+        fmt::format("labels/ lacks {} of the {} scans shown: their points count as moving by their Doppler, and as "
+                    "an object's when they lie where it is.",
+                    unlabelled, kept.scans.size()));
   }
   constexpr std::size_t kNamed = 20;
   if (whole.size() < kept.scans.size()) {
