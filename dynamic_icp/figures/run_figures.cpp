@@ -10,7 +10,6 @@
 
 #include "dynamic_icp/figures/run_series.hpp"
 #include "dynamic_icp/figures/scan_plot.hpp"
-#include "dynamic_icp/figures/scan_view.hpp"
 #include "dynamic_icp/figures/series_plot.hpp"
 #include "dynamic_icp/figures/trajectory_plot.hpp"
 
@@ -78,21 +77,6 @@ std::vector<double> placed(const std::vector<double>& values, const RunFiles& ru
     all.push_back(found == of_scan.end() ? std::numeric_limits<double>::quiet_NaN() : found->second);
   }
   return all;
-}
-
-/// Whether some lines lie so far below others that only a logarithmic axis shows them all.
-bool lie_far_apart(const std::vector<Series>& lines) {
-  constexpr double kFar = 20.0;
-  std::vector<double> medians;
-  for (const Series& line : lines) {
-    std::vector<double> positive = line.values;
-    std::erase_if(positive, [](double value) { return !(value > 0.0) || !std::isfinite(value); });
-    if (!positive.empty()) {
-      medians.push_back(quantile(std::move(positive), 0.5));
-    }
-  }
-  const auto [least, most] = std::minmax_element(medians.begin(), medians.end());
-  return !medians.empty() && *most > kFar * *least;
 }
 
 /// One line a run of the series called `id`: its first line that is no ground truth.

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "dynamic_icp/drawing/axes.hpp"
+#include "dynamic_icp/figures/scan_view.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -15,6 +16,14 @@ constexpr double kLeft = 74.0;  // px around the drawing areas
 constexpr double kRight = 18.0;
 constexpr double kHead = 40.0;  // title; the legend comes below
 constexpr double kFoot = 50.0;  // ticks and label of the time axis
+
+constexpr double kTowering = 20.0;  // times as large: on a linear axis the rest lies on its foot
+
+/// Those that a logarithmic axis can show.
+std::vector<double> positive_values(std::vector<double> values) {
+  std::erase_if(values, [](double value) { return !(value > 0.0) || !std::isfinite(value); });
+  return values;
+}
 
 std::vector<double> values_of(const Panel& panel) {
   std::vector<double> all;
@@ -157,15 +166,21 @@ drawing::Svg series_plot(const std::vector<double>& times, const std::vector<Pan
 }
 
 bool spans_decades(const std::vector<double>& values) {
-  std::vector<double> positive = values;
-  std::erase_if(positive, [](double value) { return !(value > 0.0) || !std::isfinite(value); });
-  if (positive.size() < 3) {
-    return false;
+  const std::vector<double> positive = positive_values(values);
+  constexpr std::size_t kFewest = 3;
+  return positive.size() >= kFewest &&
+         *std::max_element(positive.begin(), positive.end()) > kTowering * quantile(positive, 0.5);
+}
+
+bool lie_far_apart(const std::vector<Series>& lines) {
+  std::vector<double> medians;
+  for (const Series& line : lines) {
+    if (const std::vector<double> positive = positive_values(line.values); !positive.empty()) {
+      medians.push_back(quantile(positive, 0.5));
+    }
   }
-  const auto middle = positive.begin() + static_cast<std::ptrdiff_t>(positive.size() / 2);
-  std::nth_element(positive.begin(), middle, positive.end());
-  constexpr double kTowering = 20.0;
-  return *std::max_element(positive.begin(), positive.end()) > kTowering * *middle;
+  const auto [least, most] = std::minmax_element(medians.begin(), medians.end());
+  return !medians.empty() && *most > kTowering * *least;
 }
 
 }  // namespace dynamic_icp::figures

@@ -39,4 +39,7 @@ drawing::Svg series_plot(const std::vector<double>& times, const std::vector<Pan
 /// Whether a few values tower over the rest, so that only a logarithmic axis shows both.
 bool spans_decades(const std::vector<double>& values);
 
+/// Whether some lines lie so far below others that only a logarithmic axis shows them all.
+bool lie_far_apart(const std::vector<Series>& lines);
+
 }  // namespace dynamic_icp::figures

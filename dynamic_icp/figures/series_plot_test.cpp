@@ -90,5 +90,12 @@ TEST(SeriesPlot, DecadesAreSpannedByAFewTowers) {
   EXPECT_FALSE(spans_decades({0.0, kNaN, 400.0}));
 }
 
+TEST(SeriesPlot, LinesLieFarApartByTheirMedians) {
+  EXPECT_FALSE(lie_far_apart({}));
+  EXPECT_FALSE(lie_far_apart({{"a", {1.0, 2.0, 500.0}}, {"b", {3.0, kNaN, 4.0}}})) << "one tower is no far line";
+  EXPECT_TRUE(lie_far_apart({{"a", {0.01, 0.02, 0.0}}, {"b", {1.0, 1.0, 1.0}}}));
+  EXPECT_FALSE(lie_far_apart({{"a", {0.0, kNaN}}, {"b", {1.0, 1.0}}})) << "no axis shows the first";
+}
+
 }  // namespace
 }  // namespace dynamic_icp::figures

@@ -234,20 +234,20 @@ std::vector<std::uint32_t> rows_to_keep(const ShownScan& scan, std::size_t count
   if (scan.size() <= count) {
     return spread_rows(scan.points, count);
   }
-  std::vector<Eigen::Vector3d> moving;
+  std::vector<Eigen::Vector3d> on_objects;
   std::vector<Eigen::Vector3d> others;
-  std::vector<std::uint32_t> rows_of_moving;
+  std::vector<std::uint32_t> rows_on_objects;
   std::vector<std::uint32_t> rows_of_others;
   for (std::uint32_t row = 0; row < scan.size(); ++row) {
-    const bool on_object = scan.labels[row] >= kFirstObject;  // single points that seem to move are mostly noise
-    (on_object ? moving : others).push_back(scan.points[row]);
-    (on_object ? rows_of_moving : rows_of_others).push_back(row);
+    const bool is_on_object = scan.labels[row] >= kFirstObject;  // single points that seem to move are mostly noise
+    (is_on_object ? on_objects : others).push_back(scan.points[row]);
+    (is_on_object ? rows_on_objects : rows_of_others).push_back(row);
   }
-  const std::size_t of_moving = std::min(moving.size(), count / 2);
-  const std::size_t of_others = std::min(others.size(), count - of_moving);
+  const std::size_t of_objects = std::min(on_objects.size(), count / 2);
+  const std::size_t of_others = std::min(others.size(), count - of_objects);
   std::vector<std::uint32_t> chosen;
-  for (const std::uint32_t k : spread_rows(moving, count - of_others)) {
-    chosen.push_back(rows_of_moving[k]);
+  for (const std::uint32_t k : spread_rows(on_objects, count - of_others)) {
+    chosen.push_back(rows_on_objects[k]);
   }
   for (const std::uint32_t k : spread_rows(others, of_others)) {
     chosen.push_back(rows_of_others[k]);

@@ -14,6 +14,8 @@
 
 namespace dynamic_icp::report {
 
+struct ShownScan;
+
 /// How much of a recording goes into a page.
 struct ScanChoice {
   std::size_t budget_bytes = 40'000'000;  ///< for scans and map, as they stand in the page
@@ -52,7 +54,6 @@ RunScans keep_scans(const figures::RunFiles& run, const std::optional<figures::R
 
 /// The rows of a scan to keep when there are too many: half of `count` may go to points on objects, kept before
 /// others; all rows, in an order that compresses well, when there are no more than `count`.
-struct ShownScan;
 std::vector<std::uint32_t> rows_to_keep(const ShownScan& scan, std::size_t count);
 
 }  // namespace dynamic_icp::report

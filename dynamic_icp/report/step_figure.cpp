@@ -14,6 +14,7 @@
 #include "dynamic_icp/drawing/axes.hpp"
 #include "dynamic_icp/drawing/colour_map.hpp"
 #include "dynamic_icp/figures/ground_view.hpp"
+#include "dynamic_icp/figures/object_marks.hpp"
 #include "dynamic_icp/figures/run_context.hpp"
 #include "dynamic_icp/report/point_thinning.hpp"
 
@@ -22,6 +23,7 @@ namespace {
 
 using drawing::Pixel;
 using figures::GroundView;
+using figures::kArrowSeconds;
 using figures::ObjectRow;
 using figures::Region;
 using figures::RunFiles;
@@ -31,7 +33,6 @@ constexpr double kMargin = 20.0;
 constexpr double kHead = 48.0;  // above each panel: title and legend
 constexpr double kLowerHeight = 330.0;
 constexpr std::size_t kMostDots = 5000;  // of a panel
-constexpr double kArrowSeconds = 1.0;
 
 constexpr std::size_t kMovingColour = 1;  // in the order of the theme: also "raw" and "target"
 constexpr std::size_t kGoodColour = 2;    // "predicted", "source after alignment"
