@@ -111,8 +111,7 @@ PointsSeen look_at_points(const datasets::Dataset& dataset) {
     Scan::Dropped here;
     const Scan scan = Scan::from_raw(raw, &here);
     seen.sizes.push_back(raw.points.size());
-    seen.dropped.non_finite += here.non_finite;
-    seen.dropped.zero_range += here.zero_range;
+    seen.dropped += here;
     seen.times = seen.times || scan.has_times();
     for (std::size_t i = 0; i < scan.size(); ++i) {
       seen.nearest_m = std::min(seen.nearest_m, scan.points()[i].norm());
@@ -142,7 +141,8 @@ void print_points(const PointsSeen& seen) {
   }
   fmt::print("points       {} to {} a scan, median {} (of {} scans looked at)\n", seen.sizes.front(), seen.sizes.back(),
              seen.sizes[seen.sizes.size() / 2], seen.scans);
-  fmt::print("unusable     {} not finite, {} at the origin\n", seen.dropped.non_finite, seen.dropped.zero_range);
+  fmt::print("unusable     {} not finite, {} implausible, {} at the origin\n", seen.dropped.non_finite,
+             seen.dropped.implausible, seen.dropped.zero_range);
   if (seen.any()) {
     fmt::print("range        {:.1f} to {:.1f} m\n", seen.nearest_m, seen.farthest_m);
     fmt::print("Doppler      {:.1f} to {:.1f} m/s\n", seen.slowest_mps, seen.fastest_mps);
@@ -213,6 +213,7 @@ Json points_json(const PointsSeen& seen) {
                {"median", seen.sizes[seen.sizes.size() / 2]},
                {"most", seen.sizes.back()},
                {"not_finite", seen.dropped.non_finite},
+               {"implausible", seen.dropped.implausible},
                {"at_the_origin", seen.dropped.zero_range},
                {"range_m", nullptr},
                {"doppler_mps", nullptr},

@@ -248,9 +248,7 @@ struct Usability {
     unusable += frame.status == odometry::FrameStatus::kTooFewPoints ? 1 : 0;
     points += frame.points;
     points_used += frame.points_used;
-    dropped.non_finite += frame.dropped.non_finite;
-    dropped.zero_range += frame.dropped.zero_range;
-    dropped.out_of_range += frame.dropped.out_of_range;
+    dropped += frame.dropped;
   }
 };
 
@@ -261,10 +259,10 @@ void refuse_without_points(const Usability& seen, const RunOptions& options) {
   }
   throw DataError(
       fmt::format("{}: none of the {} scans has enough points to work with: of {} points {} have numbers that are not "
-                  "finite, {} are "
-                  "at the origin, {} out of range, {} remain after thinning. 'dynamic-icp info' says more",
-                  options.input, seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.zero_range,
-                  seen.dropped.out_of_range, seen.points_used));
+                  "finite, {} have numbers that no sensor measures, {} are at the origin, {} out of range, {} remain "
+                  "after thinning. 'dynamic-icp info' says more",
+                  options.input, seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.implausible,
+                  seen.dropped.zero_range, seen.dropped.out_of_range, seen.points_used));
 }
 
 void process_scans(const datasets::Dataset& dataset, const ScanSelection& selection, odometry::Odometry& odometry,

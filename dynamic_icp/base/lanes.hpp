@@ -16,8 +16,9 @@ inline constexpr std::size_t kLanes = 4;
 using Lanes = double __attribute__((vector_size(32)));
 using LaneMask = long long __attribute__((vector_size(32)));
 
-/// Lanes at any address of a double.
-using LanesInMemory = double __attribute__((vector_size(32), aligned(8), may_alias));
+/// Lanes at any address of a double. A typedef, because clang ignores the alignment of an alias-declaration.
+typedef double LanesInMemory __attribute__((vector_size(32), aligned(8), may_alias));
+static_assert(alignof(LanesInMemory) == alignof(double), "lanes are loaded from addresses of single numbers");
 
 DYNAMIC_ICP_INLINE void load(Lanes& lanes, const double* from) {
   lanes = *reinterpret_cast<const LanesInMemory*>(from);

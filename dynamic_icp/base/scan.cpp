@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <string>
 
+#include "dynamic_icp/base/scan_limits.hpp"
+
 namespace dynamic_icp {
 namespace {
 
@@ -24,7 +26,7 @@ void check_lengths(const RawScan& raw) {
 
 constexpr std::size_t kBlock = 4096;
 
-enum class Verdict { kKept, kNonFinite, kZeroRange, kOutOfRange };
+enum class Verdict { kKept, kNonFinite, kImplausible, kZeroRange, kOutOfRange };
 
 /// What becomes of one record.
 struct Record {
@@ -35,16 +37,28 @@ struct Record {
 /// Its square is neither so small nor so large that digits are lost; false for NaN.
 bool is_ordinary(double squared_length) { return squared_length > 1e-24 && squared_length < 1e300; }
 
-Record judge(const RawScan& raw, std::size_t i, const Scan::RangeLimits& limits) {
+/// Its length; stableNorm, because directions beyond 1e154 must not turn into an infinite length unnoticed.
+double length_of(const Eigen::Vector3d& line_of_sight) {
+  const double squared = line_of_sight.squaredNorm();
+  return is_ordinary(squared) ? std::sqrt(squared) : line_of_sight.stableNorm();
+}
+
+/// What a record that exceeds some limit is counted as.
+Verdict beyond_limits(const RawScan& raw, std::size_t i, double length) {
+  const bool finite = raw.points[i].allFinite() && std::isfinite(raw.doppler[i]) && std::isfinite(length) &&
+                      (raw.times.empty() || std::isfinite(raw.times[i]));
+  return finite ? Verdict::kImplausible : Verdict::kNonFinite;
+}
+
+Record judge(const RawScan& raw, std::size_t i, const Scan::RangeLimits& limits, const TimeWindow& window) {
   const Eigen::Vector3d& point = raw.points[i];
   const Eigen::Vector3d& line_of_sight = raw.directions.empty() ? point : raw.directions[i];
-  const double squared = line_of_sight.squaredNorm();
-  // stableNorm: coordinates beyond 1e154 must not turn into an infinite length unnoticed.
-  const double length = is_ordinary(squared) ? std::sqrt(squared) : line_of_sight.stableNorm();
-  const bool finite = point.allFinite() && std::isfinite(raw.doppler[i]) && std::isfinite(length) &&
-                      (raw.times.empty() || std::isfinite(raw.times[i]));
-  if (!finite) {
-    return {Verdict::kNonFinite, line_of_sight};
+  const double length = length_of(line_of_sight);
+  const bool plausible = std::abs(point.x()) <= kMaxCoordinate_m && std::abs(point.y()) <= kMaxCoordinate_m &&
+                         std::abs(point.z()) <= kMaxCoordinate_m && std::abs(raw.doppler[i]) <= kMaxDoppler_mps &&
+                         std::isfinite(length) && (raw.times.empty() || window.contains(raw.times[i]));
+  if (!plausible) {
+    return {beyond_limits(raw, i, length), line_of_sight};
   }
   if (length < 1e-12 || point.isZero(0.0)) {
     return {Verdict::kZeroRange, line_of_sight};
@@ -66,6 +80,7 @@ Scan Scan::from_raw(const RawScan& raw, const RangeLimits& limits, const Workers
 
 void Scan::take_over(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
   check_lengths(raw);
+  const TimeWindow window = plausible_times(raw.times);
   const std::size_t n = raw.points.size();
   stamp_ = raw.stamp;
   doppler_kind_ = raw.doppler_kind;
@@ -76,9 +91,10 @@ void Scan::take_over(const RawScan& raw, const RangeLimits& limits, const Worker
     Dropped& count = counts[block];
     std::size_t row = begin;
     for (std::size_t i = begin; i < end; ++i) {
-      const Record record = judge(raw, i, limits);
+      const Record record = judge(raw, i, limits, window);
       if (record.verdict != Verdict::kKept) {
         count.non_finite += record.verdict == Verdict::kNonFinite ? 1 : 0;
+        count.implausible += record.verdict == Verdict::kImplausible ? 1 : 0;
         count.zero_range += record.verdict == Verdict::kZeroRange ? 1 : 0;
         count.out_of_range += record.verdict == Verdict::kOutOfRange ? 1 : 0;
         continue;
@@ -98,18 +114,23 @@ void Scan::take_over(const RawScan& raw, const RangeLimits& limits, const Worker
   for (std::size_t block = 0; block < counts.size(); ++block) {
     const Dropped& count = counts[block];
     const std::size_t begin = block * kBlock;
-    const std::size_t kept =
-        std::min(n, begin + kBlock) - begin - count.non_finite - count.zero_range - count.out_of_range;
+    const std::size_t kept = std::min(n, begin + kBlock) - begin - count.total();
     move_rows(begin, rows, kept);
     rows += kept;
-    sum.non_finite += count.non_finite;
-    sum.zero_range += count.zero_range;
-    sum.out_of_range += count.out_of_range;
+    sum += count;
   }
   resize(rows, !raw.times.empty());
   if (dropped != nullptr) {
     *dropped = sum;
   }
+}
+
+Scan::Dropped& Scan::Dropped::operator+=(const Dropped& other) {
+  non_finite += other.non_finite;
+  implausible += other.implausible;
+  zero_range += other.zero_range;
+  out_of_range += other.out_of_range;
+  return *this;
 }
 
 void Scan::resize(std::size_t rows, bool with_times) {
@@ -135,6 +156,16 @@ void Scan::move_rows(std::size_t from, std::size_t to, std::size_t count) {
     }
     move(records_);
   }
+}
+
+Scan Scan::transformed(const Eigen::Isometry3d& T_target_this) const {
+  Scan result = *this;
+  for (std::size_t row = 0; row < size(); ++row) {
+    const Eigen::Vector3d direction = T_target_this.linear() * directions_[row];
+    result.points_[row] = T_target_this * points_[row];
+    result.directions_[row] = direction / length_of(direction);
+  }
+  return result;
 }
 
 Scan Scan::select(std::span<const std::uint32_t> rows) const {

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "dynamic_icp/base/parallel.hpp"
 #include "dynamic_icp/base/stamp.hpp"
@@ -30,7 +31,7 @@ struct RawScan {
   std::vector<double> times;                ///< s after `stamp`, per point; empty where the data has none
   std::vector<Eigen::Vector3d> directions;  ///< lines of sight where they are not points/|points|; else empty
   DopplerKind doppler_kind = DopplerKind::kRelative;
-  std::string warning;                      ///< what the reader found odd but could live with; empty: nothing
+  std::string warning;  ///< what the reader found odd but could live with; empty: nothing
 };
 
 /// The set P_t of the paper, Eq. (1): points p_i, lines of sight u_i and Doppler velocities s_i of one scan, with the
@@ -40,14 +41,19 @@ struct RawScan {
 /// stage can separate a point from its measurement. Moving a point (`displace`) leaves line of sight and Doppler as
 /// they were measured, which is what the method needs of predicted points.
 ///
-/// Guarantees: every value is finite; |u_i| = 1; all columns have `size()` rows (`times` may be empty instead).
+/// Guarantees: every value is finite and within the limits of scan_limits.hpp; |u_i| = 1; all columns have `size()`
+/// rows (`times` may be empty instead).
 class Scan {
  public:
   /// Why records of a RawScan did not become rows of the Scan.
   struct Dropped {
     std::size_t non_finite = 0;    ///< NaN or infinity in a coordinate, the Doppler, the time or the direction
+    std::size_t implausible = 0;   ///< finite, but beyond what a measurement can be (scan_limits.hpp)
     std::size_t zero_range = 0;    ///< at the sensor's origin: no line of sight
     std::size_t out_of_range = 0;  ///< nearer or farther than the limits
+
+    [[nodiscard]] std::size_t total() const { return non_finite + implausible + zero_range + out_of_range; }
+    Dropped& operator+=(const Dropped& other);
   };
 
   /// The distances from the sensor's origin that points may have, m; both belong to it.
@@ -58,8 +64,8 @@ class Scan {
 
   Scan() = default;
 
-  /// Takes over the records that are finite and away from the origin and counts the others in `dropped` (if given).
-  /// Throws std::invalid_argument when the columns differ in length.
+  /// Takes over the records that are finite, plausible and away from the origin and counts the others in `dropped` (if
+  /// given). Throws std::invalid_argument when the columns differ in length.
   static Scan from_raw(const RawScan& raw, Dropped* dropped = nullptr);
 
   /// The same for what is within the limits, by several threads.
@@ -83,6 +89,9 @@ class Scan {
 
   /// The rows named by `rows`, in that order.
   [[nodiscard]] Scan select(std::span<const std::uint32_t> rows) const;
+
+  /// The same rows seen from another frame: points and lines of sight moved by T_target_this, Doppler and times kept.
+  [[nodiscard]] Scan transformed(const Eigen::Isometry3d& T_target_this) const;
 
   /// Moves the point of one row by `displacement` (m, sensor frame).
   void displace(std::size_t row, const Eigen::Vector3d& displacement) { points_[row] += displacement; }

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/base/scan_limits.hpp"
+
 namespace dynamic_icp {
 namespace {
 
@@ -58,6 +60,41 @@ TEST(Scan, DropsNonFiniteTimes) {
   const Scan scan = Scan::from_raw(raw);
   EXPECT_EQ(scan.records(), (std::vector<std::uint32_t>{0, 2}));
   EXPECT_EQ(scan.times(), (std::vector<double>{0.0, 0.02}));
+}
+
+TEST(Scan, DropsAndCountsWhatNoSensorMeasures) {
+  RawScan raw;
+  for (int i = 0; i < 100; ++i) {
+    raw.points.emplace_back(10.0, i, 1.0);
+    raw.doppler.push_back(1.0);
+    raw.times.push_back(1e-3 * i);
+  }
+  raw.points[10].x() = 1e200;
+  raw.points[11].z() = -2.0 * kMaxCoordinate_m;
+  raw.doppler[20] = 1e155;
+  raw.doppler[21] = -2.0 * kMaxDoppler_mps;
+  raw.times[30] = 1e30;
+  raw.times[31] = 10.0;  // such a sweep may be, but not with all other points in its first tenth of a second
+  raw.times[32] = kNan;
+  Scan::Dropped dropped;
+  const Scan scan = Scan::from_raw(raw, &dropped);
+  EXPECT_EQ(dropped.implausible, 6u);
+  EXPECT_EQ(dropped.non_finite, 1u);
+  EXPECT_EQ(scan.size(), 93u);
+  EXPECT_EQ(dropped.total(), 7u);
+}
+
+TEST(Scan, TransformedMovesPointsAndTurnsLinesOfSight) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = Eigen::AngleAxisd(0.5 * EIGEN_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T.translation() = Eigen::Vector3d(0.0, 0.0, 7.0);
+  const Scan scan = Scan::from_raw(three_points());
+  const Scan moved = scan.transformed(T);
+  EXPECT_TRUE(moved.points()[0].isApprox(Eigen::Vector3d(-4.0, 3.0, 7.0), 1e-14));
+  EXPECT_TRUE(moved.directions()[0].isApprox(Eigen::Vector3d(-0.8, 0.6, 0.0), 1e-14));
+  EXPECT_EQ(moved.doppler(), scan.doppler());
+  EXPECT_EQ(moved.times(), scan.times());
+  EXPECT_EQ(moved.records(), scan.records());
 }
 
 TEST(Scan, SelectKeepsRowsTogether) {

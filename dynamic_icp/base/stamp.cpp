@@ -66,7 +66,12 @@ std::optional<Decimal> split_decimal(std::string_view text) {
 }  // namespace
 
 double seconds_between(Stamp earlier, Stamp later) {
-  return static_cast<double>(later.ns - earlier.ns) / static_cast<double>(kNanosecondsPerSecond);
+  // Unsigned: the difference of two stamps may need one bit more than a stamp.
+  const bool in_order = later >= earlier;
+  const auto from = static_cast<std::uint64_t>((in_order ? earlier : later).ns);
+  const auto to = static_cast<std::uint64_t>((in_order ? later : earlier).ns);
+  const double seconds = static_cast<double>(to - from) / static_cast<double>(kNanosecondsPerSecond);
+  return in_order ? seconds : -seconds;
 }
 
 std::optional<Stamp> parse_seconds(std::string_view text) {

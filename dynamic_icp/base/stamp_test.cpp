@@ -64,6 +64,10 @@ TEST(Stamp, FormatsSoThatParsingGivesTheSameStamp) {
 TEST(Stamp, DifferencesAreFormedInIntegers) {
   EXPECT_EQ(seconds_between({1724479779384729506}, {1724479779384729507}), 1e-9);
   EXPECT_EQ(seconds_between({2'000'000'000}, {500'000'000}), -1.5);
+  constexpr std::int64_t kFirst = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kLast = std::numeric_limits<std::int64_t>::max();
+  EXPECT_NEAR(seconds_between({kFirst}, {kLast}), 1.8446744073709552e10, 1.0);
+  EXPECT_NEAR(seconds_between({kLast}, {kFirst}), -1.8446744073709552e10, 1.0);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "dynamic_icp/base/scan_limits.hpp"
 #include "dynamic_icp/ego_motion/doppler_fit.hpp"
 #include "dynamic_icp/ego_motion/doppler_rows.hpp"
 #include "dynamic_icp/ego_motion/velocity_modes.hpp"
@@ -286,6 +287,12 @@ EgoVelocity nothing_but_prior(std::size_t points, const EgoPrior& prior, const C
   return result;
 }
 
+/// False when rows that hardly determine the motion have carried it away from anything that moves.
+bool is_plausible(const EgoVelocity& ego) {
+  return ego.velocity_sensor.norm() <= kMaxDoppler_mps && ego.acceleration_sensor.norm() <= kMaxAcceleration_mps2 &&
+         ego.joint_covariance.allFinite();
+}
+
 }  // namespace
 
 ConfigFields fields(ConsensusRegressionConfig& config) {
@@ -315,7 +322,8 @@ EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const Con
 
 EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, const ConsensusRegressionConfig& config,
                               const Workers& workers) {
-  EgoVelocity result = nothing_but_prior(rows.size(), prior, config);
+  const EgoVelocity expected = nothing_but_prior(rows.size(), prior, config);
+  EgoVelocity result = expected;
   if (rows.size() < kLeastPoints) {
     return result;
   }
@@ -346,6 +354,11 @@ EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, co
   result.inliers = fit.sums.inliers;
   if (result.inliers > 0) {
     result.inlier_rms_mps = std::sqrt(fit.sums.inlier_squared / static_cast<double>(result.inliers));
+  }
+  if (!is_plausible(result)) {
+    result = expected;
+    result.reference_time_s = rows.reference_time_s;
+    result.status = EgoVelocityStatus::kAmbiguous;
   }
   return result;
 }

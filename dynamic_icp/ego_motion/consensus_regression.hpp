@@ -54,9 +54,9 @@ struct EgoPrior {
 ///
 /// v is taken from the prior (or zero) only along directions that the lines of sight leave open; their covariance is
 /// the prior's then, or that of (30 m/s)^2. Status: kConverged; kDegenerate with open directions; kAmbiguous when two
-/// modes have similar votes, or when no velocity has enough votes: the velocity is the prior then and all directions
-/// are open; kTooFewPoints below three points; kIterationLimit. All values are finite for finite priors. The result is
-/// the same for any number of threads.
+/// modes have similar votes, when no velocity has enough votes, or when the fit leaves what any vehicle can do: the
+/// velocity is the prior then and all directions are open; kTooFewPoints below three points; kIterationLimit. All
+/// values are finite for finite priors. The result is the same for any number of threads.
 EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const ConsensusRegressionConfig& config,
                               const Workers& workers);
 

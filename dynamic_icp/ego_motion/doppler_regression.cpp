@@ -6,6 +6,7 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "dynamic_icp/base/scan_limits.hpp"
 #include "dynamic_icp/estimation/robust_kernel.hpp"
 
 namespace dynamic_icp::ego_motion {
@@ -90,6 +91,22 @@ void finish(EgoVelocity& result, const Sums& sums, std::size_t n) {
   }
 }
 
+/// False when lines of sight that hardly determine the velocity have carried it away from anything that moves.
+bool is_plausible(const EgoVelocity& ego) {
+  return ego.velocity_sensor.norm() <= kMaxDoppler_mps && ego.covariance.allFinite();
+}
+
+/// The prior, where the scan does not determine a velocity.
+EgoVelocity undetermined(const Eigen::Vector3d& prior_sensor, std::size_t points, int iterations) {
+  EgoVelocity result;
+  result.status = EgoVelocityStatus::kDegenerate;
+  result.velocity_sensor = prior_sensor;
+  result.unobservable.setIdentity();
+  result.points = points;
+  result.iterations = iterations;
+  return result;
+}
+
 }  // namespace
 
 ConfigFields fields(DopplerRegressionConfig& config) {
@@ -131,7 +148,7 @@ EgoVelocity estimate_velocity(const Scan& scan, const Eigen::Vector3d& prior_sen
     result.status = EgoVelocityStatus::kDegenerate;
   }
   finish(result, sums, scan.size());
-  return result;
+  return is_plausible(result) ? result : undetermined(prior_sensor, scan.size(), result.iterations);
 }
 
 }  // namespace dynamic_icp::ego_motion

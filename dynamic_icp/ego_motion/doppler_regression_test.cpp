@@ -124,6 +124,22 @@ TEST(DopplerRegression, TooFewPointsGiveThePriorAndSaySo) {
   EXPECT_EQ(EgoVelocity{}.status, EgoVelocityStatus::kNotRun);
 }
 
+// Lines of sight half a thousandth apart determine nothing across them, and the Doppler contradicts itself.
+TEST(DopplerRegression, AVelocityBeyondAnyVehicleIsNotObserved) {
+  RawScan raw;
+  for (int i = 0; i < 100; ++i) {
+    raw.points.emplace_back(100.0, 0.05 * (i % 2), 0.05 * (i / 2 % 2));
+    raw.doppler.push_back(i % 2 == 0 ? 10.0 : -10.0);
+  }
+  DopplerRegressionConfig config;
+  config.huber_delta_mps = 100.0;
+  const Eigen::Vector3d prior(1.0, 2.0, 3.0);
+  const EgoVelocity ego = estimate_velocity(Scan::from_raw(raw), prior, config, Workers(1));
+  EXPECT_EQ(ego.status, EgoVelocityStatus::kDegenerate);
+  EXPECT_EQ(ego.velocity_sensor, prior);
+  EXPECT_TRUE(ego.unobservable.isIdentity());
+}
+
 TEST(DopplerRegression, NoDopplerAtAllMeansStandingStill) {
   RawScan raw;
   for (const Vector3d& point : {Vector3d(1, 0, 0), Vector3d(0, 1, 0), Vector3d(0, 0, 1), Vector3d(1, 1, 1)}) {

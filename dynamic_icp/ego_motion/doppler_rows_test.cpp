@@ -77,9 +77,10 @@ TEST(DopplerRows, SmallRoomsGetSmallCells) {
 
 TEST(DopplerRows, PointsAtAnyDistanceHaveACell) {
   RawScan raw;
-  raw.points = {{1e15, 0, 0}, {-1e15, 1, 0}, {0, 0, 1e-9}};
+  raw.points = {{1e5, 0, 0}, {-1e5, 1, 0}, {0, 0, 1e-9}};
   raw.doppler = {1, 2, 3};
-  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1));
+  // Ten million cells away, where only 2^20 have a key of their own.
+  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 0.01, Workers(1));
   EXPECT_EQ(rows.size(), 3u);
   EXPECT_EQ(rows.sectors, 3u);
 }

@@ -76,16 +76,14 @@ Frame DynamicIcp::process(const RawScan& raw) {
   const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
-  if (scan.size() < static_cast<std::size_t>(config_.min_points)) {
-    continue_motion(frame, FrameStatus::kTooFewPoints);
-    return frame;
-  }
-  if (!last_) {
-    frame.status = FrameStatus::kFirst;
-  } else if (seconds_between(last_->scan.stamp(), raw.stamp) > config_.max_gap_s) {
-    continue_motion(frame, FrameStatus::kTimeGap);
-  } else {
+  const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_);
+  if (found == FrameStatus::kNotRun) {
     align_to_last(scan, frame, clock);  // Eq. (9)-(14)
+  } else {
+    continue_motion(frame, found);
+  }
+  if (is_skipped(found)) {
+    return frame;
   }
 
   const bool is_relative = scan.doppler_kind() == DopplerKind::kRelative;
@@ -127,7 +125,7 @@ void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock
                         ? registration::align(source, target, predicted_motion(frame.stamp), config_.registration,
                                               workers_)  // Eq. (12)-(14)
                         : align_without_doppler(source, target, frame.stamp);
-  const FrameStatus status = frame_status(frame.alignment.status);
+  const FrameStatus status = frame_status(frame.alignment, dt_s);
   set_motion(frame, status, last_->T_world_sensor,
              is_aligned(status) ? frame.alignment.T_target_source : predicted_motion(frame.stamp));
   clock.finish(Stage::kRegistration);
@@ -150,6 +148,10 @@ registration::Alignment DynamicIcp::align_without_doppler(const Scan& source, co
   return registration::align(source, target, T_start, config, workers_);
 }
 
+std::optional<double> DynamicIcp::interval_s(Stamp stamp) const {
+  return last_ ? std::optional(seconds_between(last_->scan.stamp(), stamp)) : std::nullopt;
+}
+
 void DynamicIcp::continue_motion(Frame& frame, FrameStatus status) const {
   frame.status = status;
   if (last_) {
@@ -161,10 +163,10 @@ void DynamicIcp::continue_motion(Frame& frame, FrameStatus status) const {
 /// compensated Doppler the last motion.
 Eigen::Isometry3d DynamicIcp::predicted_motion(Stamp stamp) const {
   if (last_->scan.doppler_kind() == DopplerKind::kCompensated && last_->twist) {
-    return exp_se3(seconds_between(last_->scan.stamp(), stamp) * *last_->twist);
+    return exp_se3(prediction_time_s(last_->scan.stamp(), stamp) * *last_->twist);
   }
   Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
-  T_target_source.translation() = -last_->velocity_sensor * seconds_between(last_->scan.stamp(), stamp);
+  T_target_source.translation() = -last_->velocity_sensor * prediction_time_s(last_->scan.stamp(), stamp);
   return T_target_source;
 }
 

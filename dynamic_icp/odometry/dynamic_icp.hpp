@@ -41,6 +41,7 @@ class DynamicIcp final : public Odometry {
   struct Reference;
 
   void align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const;
+  [[nodiscard]] std::optional<double> interval_s(Stamp stamp) const;
   void continue_motion(Frame& frame, FrameStatus status) const;
   [[nodiscard]] registration::Alignment align_without_doppler(const Scan& source, const registration::Target& target,
                                                               Stamp stamp) const;

@@ -22,6 +22,10 @@ std::string_view to_string(FrameStatus status) {
       return "too_few_points";
     case FrameStatus::kTimeGap:
       return "time_gap";
+    case FrameStatus::kTooSoon:
+      return "too_soon";
+    case FrameStatus::kDiverged:
+      return "diverged";
     case FrameStatus::kLost:
       return "lost";
   }
@@ -40,6 +44,8 @@ std::string_view verdict(FrameStatus status) {
     case FrameStatus::kTooFewCorrespondences:
     case FrameStatus::kTooFewPoints:
     case FrameStatus::kTimeGap:
+    case FrameStatus::kTooSoon:
+    case FrameStatus::kDiverged:
     case FrameStatus::kLost:
       break;
   }

@@ -30,6 +30,8 @@ enum class FrameStatus {
   kDegenerate,
   kTooFewPoints,  ///< not aligned: (almost) empty scan, the predicted motion is kept
   kTimeGap,       ///< not aligned: too long after the last scan, the predicted motion is kept
+  kTooSoon,       ///< not aligned: less than kMinScanInterval_s after the last usable scan, which stays the reference
+  kDiverged,      ///< not aligned: the alignment left what any vehicle can do, the predicted motion is kept
   kLost,          ///< nothing fits the local map: the predicted motion is kept, the map begins anew
 };
 

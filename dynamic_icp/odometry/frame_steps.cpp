@@ -2,9 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/odometry/frame_steps.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/base/scan_limits.hpp"
 
 namespace dynamic_icp::odometry {
 
@@ -31,6 +34,35 @@ Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Worker
   return scan;
 }
 
+FrameStatus obstacle(std::size_t points, std::optional<double> interval_s, const Config& config) {
+  if (points < static_cast<std::size_t>(config.min_points)) {
+    return FrameStatus::kTooFewPoints;
+  }
+  if (!interval_s) {
+    return FrameStatus::kFirst;
+  }
+  if (*interval_s < kMinScanInterval_s) {
+    return FrameStatus::kTooSoon;
+  }
+  return *interval_s > config.max_gap_s ? FrameStatus::kTimeGap : FrameStatus::kNotRun;
+}
+
+bool is_skipped(FrameStatus obstacle) {
+  return obstacle == FrameStatus::kTooFewPoints || obstacle == FrameStatus::kTooSoon;
+}
+
+double prediction_time_s(Stamp from, Stamp to) { return std::min(seconds_between(from, to), kMaxPrediction_s); }
+
+bool is_plausible_motion(const Eigen::Isometry3d& T_target_source, double dt_s) {
+  return T_target_source.linear().allFinite() && T_target_source.translation().norm() <= kMaxDoppler_mps * dt_s;
+}
+
+FrameStatus frame_status(const registration::Alignment& alignment, double dt_s) {
+  const FrameStatus status = frame_status(alignment.status);
+  const bool has_diverged = is_aligned(status) && !is_plausible_motion(alignment.T_target_source, dt_s);
+  return has_diverged ? FrameStatus::kDiverged : status;
+}
+
 FrameStatus frame_status(registration::AlignStatus status) {
   switch (status) {
     case registration::AlignStatus::kConverged:
@@ -41,6 +73,8 @@ FrameStatus frame_status(registration::AlignStatus status) {
       return FrameStatus::kTooFewCorrespondences;
     case registration::AlignStatus::kDegenerate:
       return FrameStatus::kDegenerate;
+    case registration::AlignStatus::kDiverged:
+      return FrameStatus::kDiverged;
     case registration::AlignStatus::kNotRun:
       break;
   }
@@ -55,7 +89,7 @@ void set_motion(Frame& frame, FrameStatus status, const Eigen::Isometry3d& T_wor
 }
 
 void tell_velocity_from_motion(Frame& frame, double dt_s) {
-  if (is_aligned(frame.status)) {
+  if (is_aligned(frame.status) && dt_s >= kMinScanInterval_s) {
     frame.ego.status = ego_motion::EgoVelocityStatus::kFromMotion;
     frame.ego.velocity_sensor = -frame.T_target_source.translation() / dt_s;
   }

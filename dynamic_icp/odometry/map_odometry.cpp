@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include "dynamic_icp/base/scan_limits.hpp"
 #include "dynamic_icp/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/ego_motion/velocity_filter.hpp"
@@ -58,7 +59,8 @@ double match(const registration::MapAlignment& found) {
 
 /// Whether the alignment is worth nothing, given the usual share of points that agree.
 bool is_lost(const registration::MapAlignment& found, double least_match) {
-  return match(found) < least_match || found.matched < kLeastAgreement * static_cast<double>(found.on_planes);
+  return found.diverged || match(found) < least_match ||
+         found.matched < kLeastAgreement * static_cast<double>(found.on_planes);
 }
 
 /// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
@@ -103,18 +105,20 @@ Frame MapOdometry::process(const RawScan& raw) {
   frame.points_used = thinned.size();
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
-  if (thinned.size() < static_cast<std::size_t>(config_.min_points)) {
-    frame.status = FrameStatus::kTooFewPoints;
+  Moment now;
+  now.stamp_s = seconds_between(first_stamp_.value_or(raw.stamp), raw.stamp);
+  const std::optional<double> interval_s = state_ ? std::optional(now.stamp_s - state_->stamp_s) : std::nullopt;
+  const FrameStatus found = obstacle(thinned.size(), interval_s, config_);
+  frame.status = found;
+  if (is_skipped(found)) {
     if (state_) {
-      extrapolate(seconds_between(*first_stamp_, raw.stamp), FrameStatus::kTooFewPoints, frame);
+      extrapolate(now.stamp_s, found, frame);
     }
     return frame;
   }
   if (!first_stamp_) {
     first_stamp_ = raw.stamp;
   }
-  Moment now;
-  now.stamp_s = seconds_between(*first_stamp_, raw.stamp);
   now.middle_s = rows.reference_time_s;
   now.duration_s = rows.duration_s;
   now.is_relative = whole.doppler_kind() == DopplerKind::kRelative;
@@ -128,11 +132,10 @@ Frame MapOdometry::process(const RawScan& raw) {
   now.still = whole.select(still_rows(thinned, memory_.is_moving));
   clock.finish(Stage::kEgoMotion);
 
-  if (!state_) {
-    frame.status = FrameStatus::kFirst;
+  if (found == FrameStatus::kFirst) {
     begin(now, Eigen::Isometry3d::Identity());
-  } else if (now.stamp_s - state_->stamp_s > config_.max_gap_s) {
-    extrapolate(now.stamp_s, FrameStatus::kTimeGap, frame);
+  } else if (found == FrameStatus::kTimeGap) {
+    extrapolate(now.stamp_s, found, frame);
     begin(now, frame.T_world_sensor);
   } else {
     if (!now.is_relative && state_->scans_in_map == 1) {
@@ -164,8 +167,10 @@ ego_motion::EgoVelocity MapOdometry::estimate_ego(const Scan& scan, const ego_mo
     return ego;
   }
   const ego_motion::EgoPrior prior =
-      state_ ? ego_motion::predict(state_->filtered, stamp_s + rows.reference_time_s - state_->velocities.back().time_s,
-                                   config.drift)
+      state_ ? ego_motion::predict(
+                   state_->filtered,
+                   std::min(stamp_s + rows.reference_time_s - state_->velocities.back().time_s, kMaxPrediction_s),
+                   config.drift)
              : ego_motion::first_prior(config.drift);
   return ego_motion::estimate_velocity(rows, prior, config.consensus, workers_);
 }
@@ -235,7 +240,7 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
   if (is_lost(found, least_match)) {
     found = registration::search_and_align(now.still, map_, prior, config, workers_);
   }
-  if (is_lost(found, least_match)) {
+  if (is_lost(found, least_match) || !is_plausible_motion(motion_to(found), now.stamp_s - state_->stamp_s)) {
     lose(now, prior, frame);
     return;
   }

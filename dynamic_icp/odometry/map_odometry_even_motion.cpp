@@ -1,7 +1,10 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+
 #include <Eigen/Eigenvalues>
 
+#include "dynamic_icp/base/scan_limits.hpp"
 #include "dynamic_icp/odometry/compensated_motion.hpp"
 #include "dynamic_icp/odometry/frame_steps.hpp"
 #include "dynamic_icp/odometry/map_odometry.hpp"
@@ -56,7 +59,7 @@ registration::MapAlignment MapOdometry::align_with_found_velocity(const Moment& 
 
 /// A scan that cannot be used, or one after a long gap: the last motion goes on.
 void MapOdometry::extrapolate(double stamp_s, FrameStatus status, Frame& frame) const {
-  const double dt_s = stamp_s - state_->stamp_s;
+  const double dt_s = std::min(stamp_s - state_->stamp_s, kMaxPrediction_s);
   Vector6d twist;
   twist << state_->turn.omega, state_->filtered.velocity_sensor;
   const Eigen::Isometry3d T_target_source = exp_se3(-dt_s * twist);

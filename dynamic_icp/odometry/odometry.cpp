@@ -19,8 +19,29 @@ std::vector<std::string_view> method_names() {
 
 bool needs_doppler(std::string_view method) { return method == "dynamic-icp" || method == "doppler-icp"; }
 
+namespace {
+
+constexpr double kMaxLeverArm_m = 1000.0;
+constexpr double kOrthogonal = 1e-6;
+
+/// A rigid motion of a length that a vehicle has.
+void check_mounting(const Eigen::Isometry3d& T_vehicle_sensor) {
+  const Eigen::Matrix3d R = T_vehicle_sensor.linear();
+  const bool is_rotation = (R.transpose() * R - Eigen::Matrix3d::Identity()).norm() <= kOrthogonal;
+  if (!is_rotation || !(T_vehicle_sensor.translation().norm() <= kMaxLeverArm_m)) {
+    throw UsageError(fmt::format(
+        "the mounting of the sensor (T_vehicle_sensor) must be a rotation and a translation of at most {} m",
+        kMaxLeverArm_m));
+  }
+}
+
+}  // namespace
+
 std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config, const Surroundings& surroundings,
                                         int threads) {
+  if (surroundings.T_vehicle_sensor) {
+    check_mounting(*surroundings.T_vehicle_sensor);
+  }
   const auto scan_to_scan = [&](ScanToScanMethod kind) {
     return std::make_unique<ScanToScanIcp>(kind, config, surroundings, threads);
   };

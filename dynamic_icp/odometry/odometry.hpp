@@ -21,8 +21,10 @@ class Odometry {
  public:
   virtual ~Odometry() = default;
 
-  /// Takes the next scan. Throws DataError when its stamp is not later than that of the scan before; the state is
-  /// unchanged then. A scan that cannot be aligned is no error: its frame says so.
+  /// Takes the next scan. Throws DataError when its stamp is not later than that of the scan before, and
+  /// std::invalid_argument when its columns differ in length; the state is unchanged then. No number in a scan makes it
+  /// throw: what cannot be a measurement is dropped and counted, and all numbers of the frame are finite. A scan that
+  /// cannot be aligned is no error: its frame says so.
   virtual Frame process(const RawScan& raw) = 0;
 
   /// What the method had to take for granted because it was not told, for all outputs; usually nothing.
@@ -43,7 +45,7 @@ std::vector<std::string_view> method_names();
 bool needs_doppler(std::string_view method);
 
 /// The method of that name. `threads` = 0 takes as many as the machine has. Throws UsageError with the known names, or
-/// when the configuration is out of range.
+/// when the configuration or the mounting is out of range.
 std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config,
                                         const Surroundings& surroundings = {}, int threads = 0);
 

@@ -11,20 +11,6 @@
 namespace dynamic_icp::odometry {
 namespace {
 
-/// The scan in the frame of the vehicle, lines of sight turned with it; the same rows.
-Scan in_vehicle(const Scan& scan, const Eigen::Isometry3d& T_vehicle_sensor) {
-  RawScan raw;
-  raw.stamp = scan.stamp();
-  raw.doppler = scan.doppler();
-  raw.times = scan.times();
-  raw.doppler_kind = scan.doppler_kind();
-  for (std::size_t row = 0; row < scan.size(); ++row) {
-    raw.points.emplace_back(T_vehicle_sensor * scan.points()[row]);
-    raw.directions.emplace_back(T_vehicle_sensor.linear() * scan.directions()[row]);
-  }
-  return Scan::from_raw(raw);
-}
-
 /// Moves a twist [omega; rho] to another frame.
 Matrix6d adjoint(const Eigen::Isometry3d& T) {
   Matrix6d result = Matrix6d::Zero();
@@ -93,8 +79,9 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
   const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
-  if (scan.size() < static_cast<std::size_t>(config_.min_points)) {
-    continue_motion(frame, FrameStatus::kTooFewPoints);
+  const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_);
+  if (is_skipped(found)) {
+    continue_motion(frame, found);
     return frame;
   }
   for (const std::uint32_t record : scan.records()) {
@@ -102,25 +89,23 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
   }
 
   auto now = std::make_unique<Reference>();
-  now->scan = T_vehicle_sensor_ ? in_vehicle(scan, *T_vehicle_sensor_) : scan;
+  now->scan = T_vehicle_sensor_ ? scan.transformed(*T_vehicle_sensor_) : scan;
   const spatial::KdTree tree(now->scan.points(), workers_);
   if (method_ != ScanToScanMethod::kPointToPoint) {
     now->normals = preprocess::estimate_normals(now->scan.points(), tree, config_.preprocess.normals, workers_);
   }
   clock.finish(Stage::kNormals);
 
-  if (!last_) {
-    frame.status = FrameStatus::kFirst;
-  } else if (seconds_between(last_->scan.stamp(), raw.stamp) > config_.max_gap_s) {
-    continue_motion(frame, FrameStatus::kTimeGap);
-  } else {
+  if (found == FrameStatus::kNotRun) {
     align_to_last(*now, tree, frame);
+  } else {
+    continue_motion(frame, found);
   }
   clock.finish(Stage::kRegistration);
 
   now->T_world_sensor = frame.T_world_sensor;
   if (last_) {
-    const double dt_s = seconds_between(last_->scan.stamp(), raw.stamp);
+    const double dt_s = *interval_s(raw.stamp);
     now->twist = log_se3(frame.T_target_source) / dt_s;
     tell_velocity_from_motion(frame, dt_s);
   }
@@ -142,9 +127,13 @@ void ScanToScanIcp::align_to_last(const Reference& now, const spatial::KdTree& t
   if (T_vehicle_sensor_) {
     tell_in_sensor_frame(frame.alignment, *T_vehicle_sensor_);
   }
-  const FrameStatus status = frame_status(frame.alignment.status);
+  const FrameStatus status = frame_status(frame.alignment, dt_s);
   set_motion(frame, status, last_->T_world_sensor,
              is_aligned(status) ? frame.alignment.T_target_source : predicted_motion(frame.stamp));
+}
+
+std::optional<double> ScanToScanIcp::interval_s(Stamp stamp) const {
+  return last_ ? std::optional(seconds_between(last_->scan.stamp(), stamp)) : std::nullopt;
 }
 
 void ScanToScanIcp::continue_motion(Frame& frame, FrameStatus status) const {
@@ -158,7 +147,7 @@ Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
   if (!config_.icp.constant_velocity_start) {
     return Eigen::Isometry3d::Identity();
   }
-  return exp_se3(seconds_between(last_->scan.stamp(), stamp) * last_->twist);
+  return exp_se3(prediction_time_s(last_->scan.stamp(), stamp) * last_->twist);
 }
 
 registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {

@@ -3,7 +3,8 @@
 #include "dynamic_icp/odometry/sweep_report.hpp"
 
 #include <algorithm>
-#include <cmath>
+
+#include "dynamic_icp/base/scan_limits.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
@@ -17,10 +18,11 @@ bool uses_declared_times(const RawScan& raw, const preprocess::SweepConfig& conf
 SweepReport sweep_in_data(const RawScan& raw) {
   SweepReport report;
   report.times = raw.times.empty() ? SweepTimes::kNone : SweepTimes::kInData;
+  const TimeWindow window = plausible_times(raw.times);
   std::optional<double> low;
   std::optional<double> high;
   for (const double time_s : raw.times) {
-    if (std::isfinite(time_s)) {
+    if (window.contains(time_s)) {
       low = std::min(low.value_or(time_s), time_s);
       high = std::max(high.value_or(time_s), time_s);
     }

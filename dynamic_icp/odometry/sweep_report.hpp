@@ -19,7 +19,7 @@ struct SweepReport {
   bool undone = false;               ///< whether the method takes the motion during the scan out of it
 };
 
-/// What the scan itself says; nothing is done about it yet. Times that are not finite do not count.
+/// What the scan itself says; nothing is done about it yet. Times that cannot be those of the scan do not count.
 SweepReport sweep_in_data(const RawScan& raw);
 
 /// What a method finds and does that undoes sweeps as configured.

@@ -14,6 +14,8 @@ std::string_view to_string(AlignStatus status) {
       return "iteration_limit";
     case AlignStatus::kTooFewCorrespondences:
       return "too_few_correspondences";
+    case AlignStatus::kDiverged:
+      return "diverged";
     case AlignStatus::kDegenerate:
       return "degenerate";
   }

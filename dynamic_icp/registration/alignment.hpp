@@ -18,6 +18,7 @@ enum class AlignStatus {
   kIterationLimit,
   kTooFewCorrespondences,
   kDegenerate,  ///< some directions are not constrained at all: see Alignment::degenerate
+  kDiverged,    ///< a step was not finite or left the reach of any scan; the pose is the one before it
 };
 
 std::string_view to_string(AlignStatus status);

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <utility>
 
 #include "dynamic_icp/spatial/space_order.hpp"
@@ -27,6 +26,8 @@ constexpr double kReachOverGate = 1.75;
 
 // Far more than the rounding of the distances compared, far less than any distance that matters.
 constexpr double kRounding_m = 1e-9;
+
+constexpr unsigned kAllLanes = (1U << kLanes) - 1;
 
 /// Rotation and translation as numbers.
 struct Pose {
@@ -122,19 +123,19 @@ CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& tar
       workers_(workers),
       place_of_(source.size()),
       groups_((source.size() + kLanes - 1) / kLanes),
+      lanes_of_last_group_(kAllLanes >> (kLanes * groups_.size() - source.size())),
       known_(source.size()) {
   const std::vector<std::uint32_t> order = spatial::space_order(source.points(), kCell_m);
   for (std::uint32_t place = 0; place < kLanes * groups_.size(); ++place) {
     SourceRows& group = groups_[place / kLanes];
     const std::size_t lane = place % kLanes;
-    const bool exists = place < source.size();
-    if (exists) {
+    if (place < source.size()) {
       const std::uint32_t row = order[place];
       place_of_[row] = place;
       put(group.point, lane, source.points()[row]);
       put(group.ray, lane, source.doppler()[row] * source.directions()[row]);
     }
-    group.squared_validity[lane] = exists ? -1.0 : std::numeric_limits<double>::infinity();
+    group.squared_validity[lane] = -1.0;
     group.squared_gate[lane] = -1.0;
     group.partner[lane] = SourceRows::kNone;
   }
@@ -146,7 +147,8 @@ void CorrespondenceSearch::locate(const Eigen::Isometry3d& T_target_source, std:
   std::size_t count = 0;
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     for (std::size_t g = begin; g < end; ++g) {
-      const unsigned lanes = move(groups_[g], pose);
+      const bool is_last = g + 1 == groups_.size();
+      const unsigned lanes = move(groups_[g], pose) & (is_last ? lanes_of_last_group_ : kAllLanes);
       for (unsigned lane = 0; lanes != 0 && lane < kLanes; ++lane) {
         unknown[count] = static_cast<std::uint32_t>(kLanes * g + lane);
         count += lanes >> lane & 1U;

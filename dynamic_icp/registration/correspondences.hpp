@@ -98,7 +98,8 @@ class CorrespondenceSearch {
   const Workers& workers_;
   std::vector<std::uint32_t> place_of_;  ///< by row of the source: its place in the groups, four to a group
   std::vector<SourceRows> groups_;
-  std::vector<Known> known_;  ///< by place
+  unsigned lanes_of_last_group_;  ///< a bit for each lane of the last group that holds a point
+  std::vector<Known> known_;      ///< by place
 };
 
 }  // namespace dynamic_icp::registration

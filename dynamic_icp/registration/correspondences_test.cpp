@@ -3,6 +3,7 @@
 #include "dynamic_icp/registration/correspondences.hpp"
 
 #include <cmath>
+#include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -136,6 +137,24 @@ TEST(Correspondences, OfEmptyScansAreEmptyNotUndefined) {
     EXPECT_TRUE(found.pairs.empty());
     EXPECT_EQ(found.fitness, 0.0);
     EXPECT_EQ(found.inlier_rmse, 0.0);
+  }
+}
+
+// The last group of four has lanes without a point, whatever the pose: none of them may be looked up.
+TEST(Correspondences, APoseThatIsNotFinitePairsNothing) {
+  const double kBad[] = {std::nan(""), std::numeric_limits<double>::infinity(), 1e300};
+  for (const std::size_t size : {1u, 2u, 3u, 4u, 5u, 4095u}) {
+    const Scan source = scan_of(std::vector<Vector3d>(size, Vector3d(1.0, 2.0, 3.0)));
+    const TargetParts parts({{1, 2, 3}, {4, 5, 6}});
+    const Workers workers(1);
+    CorrespondenceSearch search(source, parts.target(), 1.0, true, workers);
+    EXPECT_EQ(search.find(Eigen::Isometry3d::Identity()).pairs.size(), size);
+    for (const double bad : kBad) {
+      Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+      T.translation().x() = bad;
+      EXPECT_TRUE(search.find(T).pairs.empty()) << size << " points at " << bad;
+    }
+    EXPECT_EQ(search.find(Eigen::Isometry3d::Identity()).pairs.size(), size);
   }
 }
 

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <utility>
 
+#include "dynamic_icp/base/scan_limits.hpp"
+
 namespace dynamic_icp::registration {
 namespace {
 
@@ -16,6 +18,11 @@ bool enough(const Fit& fit, const StopRule& stop) {
 bool stable(const Fit& before, const Fit& after, double tolerance) {
   return std::abs(after.fitness - before.fitness) < tolerance &&
          std::abs(after.inlier_rmse - before.inlier_rmse) < tolerance;
+}
+
+/// Whether points of both scans can lie near each other at this pose; false when it is not finite.
+bool is_in_reach(const Eigen::Isometry3d& T) {
+  return T.linear().allFinite() && T.translation().norm() <= 2.0 * kMaxCoordinate_m;
 }
 
 /// Keeps the rotation orthogonal after many small steps.
@@ -69,7 +76,12 @@ Alignment minimise(Problem& problem, const Eigen::Isometry3d& T_initial, double 
       result.degenerate = std::move(step.degenerate);
       break;
     }
-    result.T_target_source = exp_se3(step.xi) * result.T_target_source;
+    const Eigen::Isometry3d T_next = exp_se3(step.xi) * result.T_target_source;
+    if (!is_in_reach(T_next)) {
+      result.status = AlignStatus::kDiverged;
+      break;
+    }
+    result.T_target_source = T_next;
     ++result.iterations;
     // The pairs at the new pose decide about stopping and are those of the next step.
     const Fit updated = problem.associate(result.T_target_source);

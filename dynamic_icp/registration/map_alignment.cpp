@@ -9,6 +9,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
+#include "dynamic_icp/base/scan_limits.hpp"
 #include "dynamic_icp/registration/gauss_newton.hpp"
 #include "dynamic_icp/registration/patch_scatter.hpp"
 #include "dynamic_icp/registration/plane_fit.hpp"
@@ -83,6 +84,7 @@ void describe(MapAlignment& result, const PlaneFit& fit, const PlaneSums& sums, 
   prior.add(result, H, b);
   result.covariance = H.ldlt().solve(Matrix12d::Identity());
   result.covariance = (0.5 * (result.covariance + result.covariance.transpose())).eval();
+  result.diverged = result.diverged || !result.covariance.allFinite();
   result.on_planes = fit.on_planes();
   result.matched = sums.weights;
   result.rms_m = sums.weights > 0.0 ? std::sqrt(sums.squares / sums.weights) : 0.0;
@@ -139,6 +141,10 @@ MapAlignment align_to_map(const Scan& scan, const mapping::PlaneMap& map, const 
     Vector12d b = sums.b;
     prior_terms.add(result, H, b);
     const Vector12d step = -H.ldlt().solve(b);
+    if (!(step.norm() <= kMaxCoordinate_m)) {  // also when it is not finite
+      result.diverged = true;
+      break;
+    }
     move(result, step);
     ++result.iterations;
     result.converged = !is_wide && step.head<3>().norm() < config.rotation_step_rad &&

@@ -53,6 +53,7 @@ struct MapAlignment {
   Matrix12d covariance = Matrix12d::Identity();
   Matrix6d geometry_information = Matrix6d::Zero();  ///< what the points alone say of [rotation; position]
   bool converged = false;
+  bool diverged = false;  ///< a step was not finite or left the reach of any scan; the rest is that of the step before
   int iterations = 0;
   std::size_t points = 0;     ///< of the scan
   std::size_t on_planes = 0;  ///< with a patch of the map

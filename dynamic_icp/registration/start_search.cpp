@@ -39,7 +39,7 @@ std::vector<Eigen::Matrix3d> starts_around(const MotionPrior& prior) {
   std::vector<Eigen::Matrix3d> starts = {prior.R_map_sensor};
   for (int axis = 0; axis < 3; ++axis) {
     const double deviation = std::sqrt(prior.covariance(axis, axis));
-    const int steps = std::min(kMostSteps, static_cast<int>(kReach * deviation / kStep_rad));
+    const int steps = static_cast<int>(std::min<double>(kMostSteps, kReach * deviation / kStep_rad));
     for (int k = -steps; k <= steps; ++k) {
       if (k != 0) {
         starts.emplace_back(exp_so3(k * kStep_rad * Eigen::Vector3d::Unit(axis)) * prior.R_map_sensor);

@@ -143,6 +143,7 @@ std::string frame_line(std::size_t index, const Frame& frame) {
                      {"points_used", frame.points_used},
                      {"points_dropped",
                       {{"non_finite", frame.dropped.non_finite},
+                       {"implausible", frame.dropped.implausible},
                        {"zero_range", frame.dropped.zero_range},
                        {"out_of_range", frame.dropped.out_of_range}}},
                      {"ego_velocity", vector_json(frame.ego.velocity_sensor)},

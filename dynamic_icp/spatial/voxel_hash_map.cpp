@@ -59,7 +59,7 @@ void VoxelHashMap::add(std::span<const Eigen::Vector3d> points) {
   for (const Eigen::Vector3d& point : points) {
     const std::optional<Cell> cell = cell_of(point);
     if (!cell) {
-      throw std::invalid_argument("a point lies 2^30 voxels or more from the origin of the map");
+      continue;
     }
     const std::uint32_t row = voxel_at(*cell);
     Voxel& voxel = voxels_[row];

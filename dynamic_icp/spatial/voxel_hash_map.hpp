@@ -25,8 +25,8 @@ class VoxelHashMap {
   /// Throws std::invalid_argument unless both are above zero.
   VoxelHashMap(double voxel_size_m, int max_points_per_voxel);
 
-  /// Adds the points in their order; those whose voxel is full are left out. Coordinates must be finite and below 2^30
-  /// voxels in magnitude; throws std::invalid_argument otherwise.
+  /// Adds the points in their order; those whose voxel is full are left out, as are those that lie 2^30 voxels or more
+  /// from the origin along an axis or are not finite.
   void add(std::span<const Eigen::Vector3d> points);
 
   /// Removes each voxel whose first point is farther than `max_distance_m` from `position`, with all its points.
