@@ -30,7 +30,7 @@ class BenchmarkFolder {
 /// Whether the benchmark's own files have that name, so that no folder of runs can.
 bool is_own_name(std::string_view name);
 
-/// What is wrong with a name that a folder of runs is to have, as in "the name holds a slash"; empty: nothing.
+/// What is wrong with a name that a folder of runs is to have, as in "holds a slash"; empty: nothing.
 std::string unfit_name(std::string_view name);
 
 /// UTF-8 text with '_' for every control character: none reaches a terminal or breaks a table.

@@ -102,7 +102,10 @@ std::string content_checksum(const fs::path& path, const fs::path& except) {
     return checksum.text();
   }
   std::vector<fs::path> files;
-  std::set<fs::path> seen = {fs::weakly_canonical(except, ignored)};
+  std::set<fs::path> seen;
+  if (!except.empty()) {
+    seen.insert(fs::weakly_canonical(except, ignored));
+  }
   collect_files(path, seen, files);
   for (const fs::path& file : files) {
     checksum.add(file.lexically_relative(path).string());

@@ -88,10 +88,11 @@ void append_input(Sequences& into, const fs::path& path, const datasets::InputSe
   }
 }
 
-/// The folder of the recording where the input is that of its scans alone.
+/// The folder of the recording where the input is that of its scans alone: more of it lies beside them.
 fs::path whole_recording(const fs::path& path) {
-  const bool scans_themselves = path.filename() == "point_clouds" && path.has_parent_path();
-  return scans_themselves ? path.parent_path() : path;
+  const fs::path name = path.filename();
+  const bool scans_themselves = name == "point_clouds" || name == "pointcloud_raw" || name == "pointcloud_compensated";
+  return scans_themselves && path.has_parent_path() ? path.parent_path() : path;
 }
 
 /// A name that no terminal and no table takes for a command.

@@ -54,7 +54,7 @@ class Reader {
 
   std::optional<std::string_view> next_line() {
     const std::optional<std::string_view> line = take_line(rest_);
-    line_ += line ? 1 : 0;
+    line_ += line ? 1U : 0U;
     return line;
   }
 
@@ -289,7 +289,7 @@ class Reader {
 
   std::string_view rest_;
   const std::filesystem::path& origin_;
-  int line_ = 0;  // of the header and of ascii data
+  std::size_t line_ = 0;  // of the header and of ascii data
   Encoding encoding_ = Encoding::kAscii;
   PlyFile file_;
   std::vector<std::vector<PlyType>> count_types_;  // of the lengths of lists, for each element's columns
