@@ -168,7 +168,7 @@ void NpzFile::refuse_bomb() const {
       continue;  // will not be unpacked
     }
     if (status.size > room) {
-      throw DataError(fmt::format("{}: its arrays claim more than {} bytes together, expected at most so many",
+      throw DataError(fmt::format("{}: its arrays claim more than {} bytes together: no scan is that large",
                                   path_.string(), kMaxNpzBytes));
     }
     room -= status.size;
