@@ -140,6 +140,51 @@ TEST_F(Benchmark, AChangedRecordingRunsAgain) {
   EXPECT_EQ(run_times()["street/dynamic-icp"], before.at("street/dynamic-icp"));
 }
 
+TEST_F(Benchmark, AChangeWithinAScanInTheMiddleIsSeen) {
+  ASSERT_EQ(benchmark(kOurs + "--ablations none --quiet").status, 0);
+  const auto before = run_times();
+  const fs::path scan = data() / "jam" / "point_clouds" / "00003.bin";
+  std::string content = read_file(scan);
+  content[content.size() / 2] = static_cast<char>(content[content.size() / 2] ^ 1);
+  const fs::file_time_type time = fs::last_write_time(scan);
+  write_file(scan, content);
+  fs::last_write_time(scan, time);
+  ASSERT_EQ(benchmark(kOurs + "--ablations none --quiet").status, 0);
+  EXPECT_NE(run_times()["jam/dynamic-icp"], before.at("jam/dynamic-icp"));
+  EXPECT_EQ(run_times()["street/dynamic-icp"], before.at("street/dynamic-icp"));
+}
+
+TEST_F(Benchmark, ADamagedRecordingIsAnErrorAndNotTakenApart) {
+  const fs::path rec = data() / "jam";
+  const fs::path poses = rec / "ref_poses.txt";
+  fs::create_directories(rec / "parts");
+  fs::copy_file(rec / "point_clouds" / "00001.bin", rec / "parts" / "00001.bin");  // would do as a recording
+  write_file(poses, read_file(poses) + "bad\n");
+  const Outcome outcome = run_program("benchmark " + rec.string() + " --output " + out().string());
+  EXPECT_EQ(outcome.status, 1) << outcome.text;
+  EXPECT_NE(outcome.text.find(poses.string() + ": line "), std::string::npos) << outcome.text;
+  EXPECT_FALSE(fs::exists(out()));
+}
+
+TEST_F(Benchmark, NamesOfAManifestStayInTheFolder) {
+  for (const std::string name : {"'..'", "tables", "results.json", R"("\e[31m")"}) {
+    write_file(folder_ / "list.yaml",
+               "description: d\nformat: dicp\nsequences:\n  - {name: " + name + ", folders: [jam]}\n");
+    const Outcome outcome = run_program("benchmark --manifest " + (folder_ / "list.yaml").string() + " --root " +
+                                        data().string() + " --output " + out().string());
+    EXPECT_EQ(outcome.status, 2) << name << outcome.text;
+    EXPECT_NE(outcome.text.find("list.yaml: line 4: "), std::string::npos) << outcome.text;
+    EXPECT_FALSE(fs::exists(out())) << name;
+  }
+}
+
+TEST_F(Benchmark, RunsWhereTheSignalOfEndedChildrenIsIgnored) {
+  const Outcome outcome =
+      run_shell(std::string("env --ignore-signal=CHLD '") + DYNAMIC_ICP_PROGRAM + "' benchmark " + data().string() +
+                " --output " + out().string() + " --quiet --ablations none " + kOurs);
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+}
+
 TEST_F(Benchmark, ABrokenScanFailsItsCellsOnly) {
   write_file(data() / "jam" / "point_clouds" / "00004.bin", "version https://git-lfs.github.com/spec/v1\n");
   for (const char* when : {"first", "again"}) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/benchmark/benchmark_folder.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
 #include <cstring>
 #include <string>
@@ -20,6 +22,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLockName = "benchmark.lock";
+constexpr std::array<std::string_view, 6> kOwnNames = {"tables",  "tables.md",   "results.json",
+                                                       kLockName, "report.html", "comparison.html"};
+constexpr std::size_t kLongestName = 200;  // file systems take 255, some of which go to endings
 
 void check_usable(const fs::path& path) {
   std::error_code fault;
@@ -60,6 +65,39 @@ BenchmarkFolder::BenchmarkFolder(const fs::path& path) : path_(fs::absolute(path
 }
 
 BenchmarkFolder::~BenchmarkFolder() { ::close(lock_); }
+
+bool is_own_name(std::string_view name) {
+  return std::find(kOwnNames.begin(), kOwnNames.end(), name) != kOwnNames.end();
+}
+
+std::string unfit_name(std::string_view name) {
+  if (name.find_first_of("/\\") != std::string_view::npos) {
+    return "holds a slash";
+  }
+  if (name.empty() || name.front() == '.') {
+    return name.empty() ? "is empty" : "begins with a dot";
+  }
+  if (without_control_characters(name) != name) {
+    return "holds a control character";
+  }
+  if (name.size() > kLongestName) {
+    return fmt::format("is longer than {} bytes", kLongestName);
+  }
+  return is_own_name(name) ? "is that of a file of the benchmark itself" : "";
+}
+
+std::string without_control_characters(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    const bool of_two_bytes = byte == 0xC2U && next >= 0x80U && next < 0xA0U;  // U+0080 to U+009F
+    const bool is_control = byte < 0x20U || byte == 0x7FU || of_two_bytes;
+    result += is_control ? '_' : text[i];
+    i += of_two_bytes ? 1 : 0;
+  }
+  return result;
+}
 
 void remove_partial_files(const fs::path& folder) {
   std::error_code fault;

@@ -3,6 +3,8 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
+#include <string_view>
 
 namespace dynamic_icp::benchmark {
 
@@ -24,6 +26,15 @@ class BenchmarkFolder {
   std::filesystem::path path_;
   int lock_ = -1;
 };
+
+/// Whether the benchmark's own files have that name, so that no folder of runs can.
+bool is_own_name(std::string_view name);
+
+/// What is wrong with a name that a folder of runs is to have, as in "holds a slash"; empty: nothing.
+std::string unfit_name(std::string_view name);
+
+/// UTF-8 text with '_' for every control character: none reaches a terminal or breaks a table.
+std::string without_control_characters(std::string_view text);
 
 /// Removes files in `folder` that a killed process left half-written. Only for folders that no other process writes to.
 void remove_partial_files(const std::filesystem::path& folder);

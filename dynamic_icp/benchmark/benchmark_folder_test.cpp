@@ -44,5 +44,15 @@ TEST_F(BenchmarkFolderTest, LosesFilesThatWereLeftHalfWritten) {
   EXPECT_TRUE(fs::exists(path / "results.json"));
 }
 
+TEST_F(BenchmarkFolderTest, NamesOfFoldersOfRuns) {
+  for (const char* name : {"street", "Straße 1", "-", "tables_2", "01.day"}) {
+    EXPECT_EQ(unfit_name(name), "") << name;
+  }
+  for (const char* name : {"", ".", "..", "a/b", "a\\b", "tables", "benchmark.lock", "a\tb", "\x7f", "\xc2\x9b"}) {
+    EXPECT_NE(unfit_name(name), "") << name;
+  }
+  EXPECT_EQ(without_control_characters("a\n\x1b[1m \xc2\x9bß"), "a__[1m _ß");
+}
+
 }  // namespace
 }  // namespace dynamic_icp::benchmark

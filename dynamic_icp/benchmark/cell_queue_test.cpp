@@ -3,6 +3,7 @@
 #include "dynamic_icp/benchmark/cell_queue.hpp"
 
 #include <algorithm>
+#include <csignal>
 #include <iterator>
 
 #include "dynamic_icp/benchmark/cell_run.hpp"
@@ -72,6 +73,13 @@ echo '{"index": 0, "objects": []}' > "$2/objects.jsonl"
 };
 
 TEST_F(CellQueueTest, NothingToDoIsDone) { EXPECT_TRUE(run({}).empty()); }
+
+TEST_F(CellQueueTest, ChildrenAreWaitedForAlsoWhereTheSignalWasIgnored) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  const CellResult result = run({plan("talks")})[0];
+  std::signal(SIGCHLD, before);
+  EXPECT_TRUE(result.finished) << result.failure;
+}
 
 TEST_F(CellQueueTest, AResultIsWhatTheRunLeft) {
   const CellResult result = run({plan("talks")})[0];

@@ -25,7 +25,7 @@ constexpr std::size_t kLongestFailure = 1000;
 
 Json read_json(const fs::path& path) {
   try {
-    return Json::parse(formats::read_whole_file(path));
+    return Json::parse(formats::read_text_file(path));
   } catch (const Json::exception& error) {
     throw DataError(fmt::format("{}: not a complete JSON document: {}", path.string(), error.what()));
   }

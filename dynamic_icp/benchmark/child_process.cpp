@@ -63,6 +63,8 @@ pid_t start_child(const std::filesystem::path& program, const std::vector<std::s
   std::vector<std::string> words = {program.string()};
   words.insert(words.end(), arguments.begin(), arguments.end());
   const std::vector<char*> pointers = pointers_to(words);
+  // Whoever started us may have left it ignored: then children leave no status behind to wait for.
+  std::signal(SIGCHLD, SIG_DFL);
   const pid_t parent = ::getpid();
   const pid_t child = ::fork();
   if (child < 0) {

@@ -11,8 +11,8 @@
 namespace dynamic_icp::benchmark {
 
 /// Starts a program with these arguments, its messages (standard error) going to a file, its standard output nowhere.
-/// The child ends when this process ends, however that happens. Throws DataError when no process can be started; a
-/// program that cannot be executed ends with status 127.
+/// SIGCHLD gets its default action. The child ends when this process ends, however that happens. Throws DataError when
+/// no process can be started; a program that cannot be executed ends with status 127.
 pid_t start_child(const std::filesystem::path& program, const std::vector<std::string>& arguments,
                   const std::filesystem::path& messages);
 

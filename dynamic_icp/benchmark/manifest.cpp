@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/benchmark/benchmark_folder.hpp"
 #include "dynamic_icp/formats/yaml_map.hpp"
 
 namespace dynamic_icp::benchmark {
@@ -94,8 +95,13 @@ Manifest read_manifest(const fs::path& path) {
   std::set<std::string> names;
   for (const formats::YamlMap& map : file.list("sequences")) {
     ManifestEntry entry{map.text("name"), map.texts("folders")};
-    if (entry.name.find_first_of("/\\") != std::string::npos) {
-      map.fail("name", "holds a slash, expected a name that can be that of a folder");
+    if (const std::string fault = unfit_name(entry.name); !fault.empty()) {
+      map.fail("name", fmt::format("{}, expected a name that can be that of a folder of runs", fault));
+    }
+    for (const std::string& folder : entry.folders) {
+      if (without_control_characters(folder) != folder) {
+        map.fail("folders", "holds a control character, expected ends of paths");
+      }
     }
     if (!names.insert(entry.name).second) {
       map.fail("name", fmt::format("is '{}' for the second time", entry.name));

@@ -32,7 +32,8 @@ struct Manifest {
   std::vector<ManifestEntry> sequences;
 };
 
-/// Throws DataError and UsageError as YamlMap does, also for a name that stands twice.
+/// Throws DataError and UsageError as YamlMap does, also for a name that stands twice or cannot be that of a
+/// folder beside the files of a benchmark.
 Manifest read_manifest(const std::filesystem::path& path);
 
 /// Takes over format and sensors.

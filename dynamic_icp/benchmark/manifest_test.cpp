@@ -87,6 +87,22 @@ TEST_F(ManifestTest, RefusesWhatItDoesNotKnow) {
   EXPECT_NE(refusal<UsageError>("description: d\nformat: dicp\n").find("sequences"), std::string::npos);
   EXPECT_NE(refusal<UsageError>(kList + "  - {name: bridge, folders: [x]}\n").find("second time"), std::string::npos);
   EXPECT_NE(refusal<UsageError>(kList + "  - {name: a/b, folders: [x]}\n").find("slash"), std::string::npos);
+  const auto named = [&](const std::string& name) {
+    return refusal<UsageError>(kList + "  - {name: " + name + ", folders: [x]}\n");
+  };
+  for (const char* name : {"'.'", "'..'", ".hidden"}) {
+    EXPECT_NE(named(name).find("begins with a dot"), std::string::npos) << named(name);
+  }
+  for (const char* name : {"tables", "tables.md", "results.json", "benchmark.lock", "report.html"}) {
+    EXPECT_NE(named(name).find("is that of a file of the benchmark itself"), std::string::npos) << named(name);
+  }
+  for (const char* name : {R"("a\n")", R"("\e[31m")", R"("\x9b31m")", R"("\x7f")"}) {
+    EXPECT_NE(named(name).find("holds a control character"), std::string::npos) << named(name);
+  }
+  EXPECT_NE(named(std::string(300, 'a')).find("longer than 200 bytes"), std::string::npos);
+  EXPECT_EQ(named("'=x, é 1.0'"), "taken");
+  EXPECT_NE(refusal<UsageError>(kList + R"(  - {name: c, folders: ["\e[31m"]})").find("control character"),
+            std::string::npos);
   EXPECT_NE(refusal<UsageError>(kList + "  - {name: c, folders: []}\n").find("folders"), std::string::npos);
 }
 

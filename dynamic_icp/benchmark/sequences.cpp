@@ -3,76 +3,21 @@
 #include "dynamic_icp/benchmark/sequences.hpp"
 
 #include <algorithm>
-#include <cstdint>
-#include <fstream>
 #include <memory>
 #include <set>
-#include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/benchmark/benchmark_folder.hpp"
+#include "dynamic_icp/benchmark/content_checksum.hpp"
+#include "dynamic_icp/datasets/not_a_recording.hpp"
 
 namespace dynamic_icp::benchmark {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::uintmax_t kSmallFile = 64 * 1024;
-
-/// FNV-1a, 64 bits.
-class Checksum {
- public:
-  void add(std::string_view bytes) {
-    for (const char c : bytes) {
-      state_ = (state_ ^ static_cast<unsigned char>(c)) * 0x100000001b3ULL;
-    }
-  }
-  [[nodiscard]] std::string text() const { return fmt::format("{:016x}", state_); }
-
- private:
-  std::uint64_t state_ = 0xcbf29ce484222325ULL;
-};
-
-/// `count` bytes from `offset`, or as many as there are.
-std::string read_part(const fs::path& path, std::uintmax_t offset, std::uintmax_t count) {
-  std::ifstream in(path, std::ios::binary);
-  std::string bytes(count, '\0');
-  in.seekg(static_cast<std::streamoff>(offset));
-  in.read(bytes.data(), static_cast<std::streamsize>(count));
-  bytes.resize(static_cast<std::size_t>(std::max<std::streamsize>(in.gcount(), 0)));
-  return bytes;
-}
-
-/// All files in a folder and below that are not hidden, sorted.
-std::vector<fs::path> files_below(const fs::path& folder, const fs::path& except) {
-  std::vector<fs::path> files;
-  std::error_code fault;
-  auto entry = fs::recursive_directory_iterator(folder, fs::directory_options::skip_permission_denied, fault);
-  for (; !fault && entry != fs::recursive_directory_iterator(); entry.increment(fault)) {
-    const bool hidden = entry->path().filename().string().starts_with(".");
-    std::error_code ignored;
-    if (entry->is_directory(ignored) && (hidden || entry->path() == except)) {
-      entry.disable_recursion_pending();
-    } else if (entry->is_regular_file(ignored) && !hidden) {
-      files.push_back(entry->path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  return files;
-}
-
-void add_file(Checksum& checksum, const fs::path& path, bool whole) {
-  const std::uintmax_t size = fs::file_size(path);
-  checksum.add(fmt::format("{} bytes\n", size));
-  if (size <= kSmallFile) {
-    checksum.add(read_part(path, 0, size));
-  } else if (whole) {
-    checksum.add(read_part(path, 0, kSmallFile));
-    checksum.add(read_part(path, size - kSmallFile, kSmallFile));
-  }
-}
 
 fs::path normalised(const fs::path& path) {
   const fs::path absolute = fs::absolute(path).lexically_normal();
@@ -101,48 +46,94 @@ std::vector<fs::path> visible_folders(const fs::path& path) {
   return folders;
 }
 
+/// The recordings among the sub-folders of a folder that is none. Throws DataError that says what is wrong with them
+/// where all are damaged; false when there is none at all.
+bool append_folders(Sequences& into, const fs::path& path, const datasets::InputSettings& settings,
+                    const fs::path& output) {
+  const std::size_t before = into.sequences.size();
+  std::vector<std::string> skipped;
+  std::vector<std::string> damaged;
+  for (const fs::path& folder : visible_folders(path)) {
+    try {
+      if (folder != output) {
+        into.sequences.push_back(open_sequence(folder, settings, output));
+      }
+    } catch (const datasets::NotARecording& error) {
+      skipped.emplace_back(error.what());
+    } catch (const DataError& error) {
+      skipped.emplace_back(error.what());
+      damaged.emplace_back(error.what());
+    }
+  }
+  const bool found = into.sequences.size() > before;
+  if (!found && !damaged.empty()) {
+    throw DataError(
+        fmt::format("{}: none of the recordings in it can be read:\n  {}", path.string(), fmt::join(damaged, "\n  ")));
+  }
+  if (found) {
+    into.skipped.insert(into.skipped.end(), skipped.begin(), skipped.end());
+  }
+  return found;
+}
+
+/// A damaged recording is not taken apart: its sub-folders may look like recordings, of what are times in truth.
 void append_input(Sequences& into, const fs::path& path, const datasets::InputSettings& settings,
                   const fs::path& output) {
   try {
     into.sequences.push_back(open_sequence(path, settings, output));
-    return;
-  } catch (const DataError&) {
-    const std::size_t before = into.sequences.size();
-    std::vector<std::string> skipped;
-    for (const fs::path& folder : visible_folders(path)) {
-      try {
-        if (folder != output) {
-          into.sequences.push_back(open_sequence(folder, settings, output));
-        }
-      } catch (const DataError& error) {
-        skipped.emplace_back(error.what());
-      }
-    }
-    if (into.sequences.size() == before) {
+  } catch (const datasets::NotARecording&) {
+    if (!append_folders(into, path, settings, output)) {
       throw;
     }
-    into.skipped.insert(into.skipped.end(), skipped.begin(), skipped.end());
   }
 }
 
+/// The folder of the recording where the input is that of its scans alone: more of it lies beside them.
+fs::path whole_recording(const fs::path& path) {
+  const fs::path name = path.filename();
+  const bool scans_themselves = name == "point_clouds" || name == "pointcloud_raw" || name == "pointcloud_compensated";
+  return scans_themselves && path.has_parent_path() ? path.parent_path() : path;
+}
+
+/// A name that no terminal and no table takes for a command.
 std::string name_of(const fs::path& path) {
-  const bool scans_themselves = path.filename() == "point_clouds" && path.has_parent_path();
-  return (scans_themselves ? path.parent_path() : path).filename().string();
+  return without_control_characters(whole_recording(path).filename().string());
+}
+
+/// Of everything that runs read: the files of the recording, and what it says of stamps, truth and mounting, which may
+/// come from files beside it.
+std::string recording_checksum(const fs::path& path, const datasets::Dataset& dataset, const fs::path& object_truth,
+                               const fs::path& output) {
+  Checksum checksum;
+  checksum.add(content_checksum(whole_recording(path), output));
+  for (std::size_t i = 0; i < dataset.size(); ++i) {
+    checksum.add(format_seconds(dataset.stamp(i)));
+  }
+  for (const formats::StampedPose& pose : dataset.ground_truth()) {
+    checksum.add(format_seconds(pose.stamp));
+    checksum.add(std::span(pose.T_world_sensor.data(), 16));
+  }
+  if (const std::optional<Eigen::Isometry3d> T_vehicle_sensor = dataset.T_vehicle_sensor()) {
+    checksum.add(std::span(T_vehicle_sensor->data(), 16));
+  }
+  if (!object_truth.empty()) {
+    checksum.add_file(object_truth);
+  }
+  return checksum.text();
 }
 
 void label_sequences(std::vector<Sequence>& sequences) {
-  // The names of what else lies in the folder of a benchmark.
-  std::set<std::string> taken = {"", "tables", "tables.md", "results.json", "benchmark.lock"};
+  std::set<std::string> taken = {""};
   std::multiset<std::string> names;
   for (const Sequence& sequence : sequences) {
     names.insert(name_of(sequence.path));
   }
   for (Sequence& sequence : sequences) {
     const std::string name = name_of(sequence.path);
-    const std::string parent = sequence.path.parent_path().filename().string();
+    const std::string parent = without_control_characters(sequence.path.parent_path().filename().string());
     const std::string wanted = names.count(name) > 1 && !parent.empty() ? parent + "_" + name : name;
     sequence.label = wanted;
-    for (int number = 2; !taken.insert(sequence.label).second; ++number) {
+    for (int number = 2; is_own_name(sequence.label) || !taken.insert(sequence.label).second; ++number) {
       sequence.label = fmt::format("{}_{}", wanted, number);
     }
   }
@@ -160,8 +151,8 @@ Sequence open_sequence(const fs::path& path, const datasets::InputSettings& sett
   sequence.scans = dataset->size();
   sequence.first_stamp = dataset->stamp(0);
   sequence.last_stamp = dataset->stamp(dataset->size() - 1);
-  sequence.content = content_checksum(path, output);
   sequence.object_truth = object_truth_of(path, *dataset);
+  sequence.content = recording_checksum(path, *dataset, sequence.object_truth, output);
   return sequence;
 }
 
@@ -179,29 +170,6 @@ Sequences open_sequences(const std::vector<std::string>& inputs, const datasets:
   }
   label_sequences(opened.sequences);
   return opened;
-}
-
-std::string content_checksum(const fs::path& path, const fs::path& except) {
-  Checksum checksum;
-  if (!fs::is_directory(path)) {
-    add_file(checksum, path, true);
-    return checksum.text();
-  }
-  const std::vector<fs::path> files = files_below(path, except);
-  for (std::size_t i = 0; i < files.size(); ++i) {
-    const fs::path folder = files[i].parent_path();
-    const bool first = i == 0 || files[i - 1].parent_path() != folder;
-    const bool last = i + 1 == files.size() || files[i + 1].parent_path() != folder;
-    checksum.add(files[i].lexically_relative(path).string() + "\n");
-    add_file(checksum, files[i], first || last);
-  }
-  return checksum.text();
-}
-
-std::string file_checksum(const fs::path& path) {
-  Checksum checksum;
-  checksum.add(formats::read_whole_file(path));
-  return checksum.text();
 }
 
 }  // namespace dynamic_icp::benchmark

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dynamic_icp/base/stamp.hpp"
+#include "dynamic_icp/benchmark/content_checksum.hpp"
 #include "dynamic_icp/datasets/input_settings.hpp"
 
 namespace dynamic_icp::benchmark {
@@ -19,7 +20,7 @@ struct Sequence {
   std::size_t scans = 0;
   Stamp first_stamp;
   Stamp last_stamp;
-  std::string content;                 ///< `content_checksum` of it
+  std::string content;                 ///< checksum of all that is read of it
   std::filesystem::path object_truth;  ///< objects.jsonl of a simulated recording; empty without
 };
 
@@ -33,18 +34,10 @@ Sequence open_sequence(const std::filesystem::path& path, const datasets::InputS
                        const std::filesystem::path& output);
 
 /// Opens the inputs. A folder that is no recording but whose direct sub-folders are counts as all of these, sorted by
-/// name. Two recordings of the same name get the name of their folder in front, or a number behind. Files in `output`
-/// do not count as part of a recording. Throws DataError for an input that is no recording and holds none; UsageError
-/// when a recording is given twice.
+/// name; a recording that is damaged is none of that, but an error. Two recordings of the same name get the name of
+/// their folder in front, or a number behind. Files in `output` do not count as part of a recording. Throws DataError
+/// for an input that is no recording and holds none; UsageError when a recording is given twice.
 Sequences open_sequences(const std::vector<std::string>& inputs, const datasets::InputSettings& settings,
                          const std::filesystem::path& output);
-
-/// A cheap checksum of a file or folder, 16 hexadecimal digits: names and sizes of all files in it, the whole content
-/// of small ones, and the beginning and end of the first and the last of the large ones in each folder. Hidden files
-/// and what lies in `except` are left out.
-std::string content_checksum(const std::filesystem::path& path, const std::filesystem::path& except = {});
-
-/// The checksum of a whole file.
-std::string file_checksum(const std::filesystem::path& path);
 
 }  // namespace dynamic_icp::benchmark

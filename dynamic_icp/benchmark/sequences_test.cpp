@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/benchmark/sequences.hpp"
 
+#include <set>
+
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/benchmark/folder_test.hpp"
 
@@ -68,32 +70,60 @@ TEST_F(SequencesTest, FindsTheTruthAboutObjects) {
   EXPECT_EQ(opened.sequences[0].object_truth, folder_ / "a" / "objects.jsonl");
 }
 
-TEST_F(SequencesTest, TheChecksumSeesChangesOfContent) {
-  const fs::path data = folder_ / "data";
-  const std::string big(1 << 20, 'x');
-  write_file(data / "scans" / "1.bin", big);
-  write_file(data / "scans" / "2.bin", big);
-  write_file(data / "scans" / "3.bin", big);
-  write_file(data / "poses.txt", "1 2 3");
-  const std::string before = content_checksum(data);
-  EXPECT_EQ(content_checksum(data), before);
-  write_file(data / "bench" / "results.json", "{}");
-  write_file(data / ".hidden", "x");
-  EXPECT_EQ(content_checksum(data, data / "bench"), before) << "the benchmark's own output and hidden files";
-  fs::remove_all(data / "bench");
+TEST_F(SequencesTest, ADamagedRecordingIsNotTakenApart) {
+  const fs::path rec = folder_ / "data" / "rec";
+  make_recording(rec);
+  write_file(rec / "times" / "00001.bin", std::string(16, '\0'));  // would be a recording alone
+  write_file(rec / "ref_poses.txt", "0 0 0 0 0 0 0 1\n0.1 0 0 0\n");
+  const auto refusal = [&](const fs::path& input) -> std::string {
+    try {
+      return "taken: " + labels({input}).front();
+    } catch (const DataError& error) {
+      return error.what();
+    }
+  };
+  EXPECT_EQ(refusal(rec).find((rec / "ref_poses.txt").string() + ": line 2"), 0U) << refusal(rec);
+  EXPECT_EQ(refusal(folder_ / "data").find((rec / "ref_poses.txt").string()), 0U) << refusal(folder_ / "data");
+  fs::copy(rec, folder_ / "data" / "other", fs::copy_options::recursive);
+  const std::string all = refusal(folder_ / "data");
+  EXPECT_NE(all.find("none of the recordings in it can be read"), std::string::npos) << all;
+  EXPECT_NE(all.find((rec / "ref_poses.txt").string()), std::string::npos) << all;
+  make_recording(folder_ / "data" / "whole");
+  EXPECT_EQ(labels({folder_ / "data"}), Labels{"whole"}) << "the damaged ones are left out, and told";
+}
 
-  write_file(data / "poses.txt", "1 2 4");
-  EXPECT_NE(content_checksum(data), before) << "a small file of the same size";
-  write_file(data / "poses.txt", "1 2 3");
-  write_file(data / "scans" / "2.bin", big + "x");
-  EXPECT_NE(content_checksum(data), before) << "a large file of another size";
-  write_file(data / "scans" / "2.bin", big);
-  write_file(data / "scans" / "3.bin", std::string(1 << 20, 'y'));
-  EXPECT_NE(content_checksum(data), before) << "other scans of the same size";
-  write_file(data / "scans" / "3.bin", big);
-  EXPECT_EQ(content_checksum(data), before);
-  fs::rename(data / "poses.txt", data / "ref_poses.txt");
-  EXPECT_NE(content_checksum(data), before) << "another name";
+TEST_F(SequencesTest, LabelsHoldNoControlCharactersAndAreNoFilesOfTheBenchmark) {
+  make_recording(folder_ / "a\x1b[31m\n");
+  EXPECT_EQ(labels({folder_ / "a\x1b[31m\n"}), Labels{"a_[31m_"});
+  make_recording(folder_ / "results.json");
+  EXPECT_EQ(labels({folder_ / "results.json"}), Labels{"results.json_2"});
+}
+
+TEST_F(SequencesTest, TheContentIsThatOfEverythingThatIsRead) {
+  const fs::path rec = folder_ / "rec";
+  make_recording(rec, 3);
+  const auto content = [&](const fs::path& input) {
+    return open_sequences({input.string()}, {}, folder_ / "out").sequences.at(0).content;
+  };
+  for (const fs::path& input : {rec, rec / "point_clouds"}) {
+    std::set<std::string> seen = {content(input)};
+    const auto expect_change = [&](const char* why) {
+      EXPECT_TRUE(seen.insert(content(input)).second) << input << ": " << why;
+    };
+    write_file(rec / "ref_poses.txt", "0 0 0 0 0 0 0 1\n0.1 0 0 0 0 0 0 1\n0.2 0 0 0 0 0 0 1\n");
+    expect_change("ground truth");
+    write_file(rec / "calibration.json", R"({"T_V_to_S": {"translation": {"x": 1, "y": 0, "z": 0},
+                                                          "quaternion": {"w": 1, "x": 0, "y": 0, "z": 0}}})");
+    expect_change("where the sensor sits");
+    write_file(rec / "times" / "00001.bin", std::string(4, '\0'));
+    expect_change("times of points");
+    write_file(rec / "point_clouds" / "00002.bin", std::string(15, '\0') + "\x40");
+    expect_change("a point of a scan in the middle");
+    for (const char* name : {"ref_poses.txt", "calibration.json", "times"}) {
+      fs::remove_all(rec / name);
+    }
+    make_recording(rec, 3);
+  }
 }
 
 }  // namespace

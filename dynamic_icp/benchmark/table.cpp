@@ -7,6 +7,8 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/base/parse_number.hpp"
+
 namespace dynamic_icp::benchmark {
 namespace {
 
@@ -118,7 +120,17 @@ TextRows markdown_rows(const Table& table) {
   return rows;
 }
 
-std::string csv_text(const std::string& text) {
+/// Whether a spreadsheet would take the text for a formula and calculate it.
+bool is_formula(std::string_view text) {
+  const bool may_be = text.size() > 1 && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
+  if (text.ends_with('%')) {
+    text.remove_suffix(1);
+  }
+  return may_be && !parse_number<double>(text);
+}
+
+std::string csv_text(const std::string& cell) {
+  const std::string text = is_formula(cell) ? "'" + cell : cell;
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;
   }

@@ -33,7 +33,8 @@ struct Table {
 /// A heading, the table with columns of even width, the caption. Best **bold**, second <u>underlined</u>.
 std::string markdown(const Table& table);
 
-/// Header and rows as RFC 4180 has them, without caption and emphasis. Groups stand before the titles.
+/// Header and rows as RFC 4180 has them, without caption and emphasis. Groups stand before the titles. Texts that a
+/// spreadsheet would take for a formula, which begin with = + - @, get an apostrophe in front; numbers stay.
 std::string csv(const Table& table);
 
 /// A table* for a document that uses the packages booktabs and graphicx. Best \textbf, second \underline.

@@ -42,6 +42,21 @@ TEST(Table, CsvQuotesWhatMustBeQuoted) {
   EXPECT_NE(csv(lines).find("\"two\nlines\",,,\r\n"), std::string::npos);
 }
 
+TEST(Table, CsvHoldsNoFormulas) {
+  const Table table{.name = "n",
+                    .title = "t",
+                    .caption = "c",
+                    .header = {{"", "=1+1"}, {"@a", "b"}, {"", "c"}, {"", "d"}},
+                    .rows = {{{"=HYPERLINK(\"x\",1)"}, {"-0.5"}, {"-12.3%"}, {"-"}},
+                             {{"+cmd|x"}, {"-1-1"}, {"@x"}, {"1e-3"}},
+                             {{"\t=1"}, {"-x%"}, {"+5"}, {"a=b"}}}};
+  EXPECT_EQ(csv(table),
+            "'=1+1,'@a b,c,d\r\n"
+            "\"'=HYPERLINK(\"\"x\"\",1)\",-0.5,-12.3%,-\r\n"
+            "'+cmd|x,'-1-1,'@x,1e-3\r\n"
+            "'\t=1,'-x%,+5,a=b\r\n");
+}
+
 TEST(Table, LatexEscapesGroupsAndStandsOut) {
   EXPECT_EQ(latex(awkward_table()),
             "% needs the packages booktabs and graphicx\n"

@@ -13,7 +13,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/base/parse_number.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
-#include "dynamic_icp/formats/file_kind.hpp"
+#include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -66,6 +66,18 @@ std::string text_of(const Json& json, const char* key) {
   return found == json.end() || !found->is_string() ? "" : found->get<std::string>();
 }
 
+/// A path below the folder of the sequence; empty where there is none. One that leads elsewhere would read what the
+/// user did not name.
+std::string path_of(const Json& json, const char* key, const Place& place) {
+  const std::string text = text_of(json, key);
+  const std::filesystem::path path = std::filesystem::path(text).lexically_normal();
+  if (path.is_absolute() || (!path.empty() && *path.begin() == "..")) {
+    place.fail(fmt::format("{} is {}, expected a path that stays within the folder of the sequence", key,
+                           formats::quoted_text(text)));
+  }
+  return text;
+}
+
 /// Boxes are in vehicle axes, but for those that say they are in a LiDAR's.
 AevaScenesBox box_of(const Json& json, const AevaScenesSequence& sequence, const Place& place) {
   AevaScenesBox box;
@@ -91,9 +103,10 @@ AevaScenesFrame frame_of(const Json& json, const AevaScenesSequence& sequence, c
     frame.T_world_vehicle = pose_of(json["ego_pose"], place);
   }
   for (const auto& [lidar, cloud] : json.at("point_cloud").items()) {
-    AevaScenesPaths paths{text_of(cloud, "point_cloud_compensated_path"), text_of(cloud, "point_cloud_raw_path")};
+    AevaScenesPaths paths{path_of(cloud, "point_cloud_compensated_path", place),
+                          path_of(cloud, "point_cloud_raw_path", place)};
     // v0.x has one path only; the folder it is in says which Doppler.
-    const std::string only = text_of(cloud, "point_cloud_path");
+    const std::string only = path_of(cloud, "point_cloud_path", place);
     (only.find("raw") == std::string::npos ? paths.compensated : paths.raw).append(only);
     if (!paths.compensated.empty() || !paths.raw.empty()) {
       frame.clouds[lidar] = paths;
@@ -137,8 +150,7 @@ AevaScenesSequence read_aevascenes_sequence(const std::filesystem::path& path) {
   AevaScenesSequence sequence;
   Place place{path, "metadata"};
   try {
-    const std::string content = formats::read_whole_file(path);
-    formats::refuse_other_kind(path, content, formats::FileKind::kUnknown);
+    const std::string content = formats::read_text_file(path);
     const Json json = Json::parse(content);
     read_metadata(json.at("metadata"), sequence, place);
     place.where = "frames";

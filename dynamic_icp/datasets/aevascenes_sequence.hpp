@@ -46,7 +46,8 @@ struct AevaScenesSequence {
 };
 
 /// Reads such a file. Throws DataError naming the file, the frame and what was expected: no JSON, keys missing or of
-/// another type, rotations that are none, two frames with the same stamp, a sequence without frames.
+/// another type, rotations that are none, paths that leave the folder of the sequence, two frames with the same stamp,
+/// a sequence without frames.
 AevaScenesSequence read_aevascenes_sequence(const std::filesystem::path& path);
 
 }  // namespace dynamic_icp::datasets

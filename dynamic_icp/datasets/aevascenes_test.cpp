@@ -240,6 +240,9 @@ TEST_F(AevaScenes, WrongSequencesNameThePlace) {
   with("\"vehicle_to_lidar_extrinsics\"", "\"extrinsics\"", "metadata: expected");
   write_sequence(old_sequence().substr(0, old_sequence().find("\"frames\"")) + "\"frames\": []}");
   expect_message("no frames");
+  for (const char* outside : {"/tmp/", "../", "pointcloud_compensated/../../other/"}) {
+    with("pointcloud_compensated/", outside, "frame 0: point_cloud_path is '");
+  }
   with("pointcloud_compensated/", "elsewhere/", "names no points of front_wide_lidar");
 }
 

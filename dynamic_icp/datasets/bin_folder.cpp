@@ -14,6 +14,7 @@
 #include "dynamic_icp/datasets/folder_search.hpp"
 #include "dynamic_icp/datasets/record_dataset.hpp"
 #include "dynamic_icp/datasets/record_guess.hpp"
+#include "dynamic_icp/formats/record_file.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -70,7 +71,7 @@ std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptio
   const fs::path first = first_with_points(folder, scans.files);
   const RecordLayout* const layout = guess_layout(first, kCandidates);
   if (layout == nullptr) {
-    refuse(first, formats::read_whole_file(first));
+    refuse(first, formats::read_whole_file(first, formats::kMaxRecordFileBytes));
   }
   RecordRecording recording;
   recording.format = "bin";

@@ -30,7 +30,7 @@ constexpr std::array<const RecordLayout*, 5> kCandidates = {&formats::kBoreas40,
 
 /// The lines of a file that hold something, each with its place for messages.
 std::vector<std::pair<std::string, std::string>> lines_of(const fs::path& path) {
-  const std::string text = formats::read_whole_file(path);
+  const std::string text = formats::read_text_file(path);
   std::vector<std::pair<std::string, std::string>> lines;
   std::string_view rest = text;
   std::size_t number = 1;
@@ -153,7 +153,7 @@ std::vector<Stamp> read_boreas_times(const fs::path& path) {
 }
 
 Eigen::Isometry3d read_boreas_matrix(const fs::path& path) {
-  std::string text = formats::read_whole_file(path);
+  std::string text = formats::read_text_file(path);
   std::replace(text.begin(), text.end(), '\n', ' ');
   return rigid_transform(numbers_in(text, path.string()), path.string());
 }

@@ -11,7 +11,6 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/datasets/boreas.hpp"
 #include "dynamic_icp/datasets/truth.hpp"
-#include "dynamic_icp/formats/file_kind.hpp"
 #include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
@@ -55,8 +54,7 @@ formats::StampedPose pose_in(std::string_view line, const std::string& place) {
 }  // namespace
 
 formats::Trajectory read_boreas_poses(const std::filesystem::path& path) {
-  const std::string text = formats::read_whole_file(path);
-  formats::refuse_other_kind(path, text, formats::FileKind::kUnknown);
+  const std::string text = formats::read_text_file(path);
   formats::Trajectory poses;
   std::string_view rest = text;
   std::size_t number = 1;

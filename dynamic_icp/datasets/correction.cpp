@@ -4,7 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <cstdint>
+#include <map>
 #include <utility>
 
 #include <fmt/format.h>
@@ -18,6 +19,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::array<int, 4> kInOrder = {0, 1, 2, 3};
+constexpr long double kStampEnd = 9223372036854775808.0L;  // ns, the first that 64 bits do not hold
 
 void check_scale(const char* what, double scale) {
   if (!(std::isfinite(scale) && scale > 0.0)) {
@@ -45,21 +47,25 @@ class CorrectedDataset final : public Dataset {
  public:
   CorrectedDataset(std::unique_ptr<Dataset> dataset, const Correction& correction)
       : dataset_(std::move(dataset)), correction_(correction), ground_truth_(dataset_->ground_truth()) {
-    if (correction_.time_scale != 1.0 && stamped_by_scans()) {
+    for (std::size_t i = 0; i < dataset_->size(); ++i) {
+      const Stamp stamp = dataset_->stamp(i);
+      stamps_.emplace(stamp, scaled(stamp, i));
+    }
+    if (stamped_by_scans()) {
       for (formats::StampedPose& pose : ground_truth_) {
-        pose.stamp = scaled(pose.stamp);
+        pose.stamp = stamps_.at(pose.stamp);
       }
     }
   }
 
   [[nodiscard]] std::string_view format() const override { return dataset_->format(); }
   [[nodiscard]] std::size_t size() const override { return dataset_->size(); }
-  [[nodiscard]] Stamp stamp(std::size_t index) const override { return scaled(dataset_->stamp(index)); }
+  [[nodiscard]] Stamp stamp(std::size_t index) const override { return stamps_.at(dataset_->stamp(index)); }
   [[nodiscard]] fs::path scan_file(std::size_t index) const override { return dataset_->scan_file(index); }
 
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     RawScan scan = corrected(dataset_->scan(index), correction_);
-    scan.stamp = scaled(scan.stamp);
+    scan.stamp = stamp(index);
     return scan;
   }
 
@@ -83,27 +89,33 @@ class CorrectedDataset final : public Dataset {
   [[nodiscard]] const std::vector<std::string>& assumptions() const override { return dataset_->assumptions(); }
 
  private:
-  [[nodiscard]] Stamp scaled(Stamp stamp) const {
+  /// The stamp of a scan with its time since the first scan scaled. Throws DataError where no stamp can say it.
+  [[nodiscard]] Stamp scaled(Stamp stamp, std::size_t index) const {
     if (correction_.time_scale == 1.0) {
       return stamp;  // exact, however long the recording is
     }
     const Stamp first = dataset_->stamp(0);
     // Not by way of a double: the nanoseconds of a long recording fit into a long double.
-    const auto since_first = static_cast<long double>(stamp.ns - first.ns);
-    return {first.ns + std::llround(since_first * static_cast<long double>(correction_.time_scale))};
+    const long double since_first = static_cast<long double>(stamp.ns) - static_cast<long double>(first.ns);
+    const long double ns = std::round(since_first * static_cast<long double>(correction_.time_scale));
+    Stamp result;
+    if (std::abs(ns) >= kStampEnd || __builtin_add_overflow(first.ns, static_cast<std::int64_t>(ns), &result.ns)) {
+      throw DataError(fmt::format(
+          "{}: scan {} is {:.9g} s after the first one; {:.9g} times that is beyond what a time stamp holds (292 "
+          "years)",
+          dataset_->scan_file(index).string(), index, static_cast<double>(since_first) * 1e-9, correction_.time_scale));
+    }
+    return result;
   }
 
   [[nodiscard]] bool stamped_by_scans() const {
-    std::set<Stamp> stamps;
-    for (std::size_t i = 0; i < dataset_->size(); ++i) {
-      stamps.insert(dataset_->stamp(i));
-    }
     return std::all_of(ground_truth_.begin(), ground_truth_.end(),
-                       [&](const formats::StampedPose& pose) { return stamps.contains(pose.stamp); });
+                       [&](const formats::StampedPose& pose) { return stamps_.contains(pose.stamp); });
   }
 
   std::unique_ptr<Dataset> dataset_;
   Correction correction_;
+  std::map<Stamp, Stamp> stamps_;  ///< of the scans, by those of the recording
   formats::Trajectory ground_truth_;
 };
 

@@ -31,7 +31,8 @@ void check(const Correction& correction);
 RawScan corrected(RawScan scan, const Correction& correction);
 
 /// The recording with its numbers mended on the way out. Ground truth is left as it is, but where all its stamps are
-/// those of scans they came from the same clock and move with them. Throws UsageError as `check` does.
+/// those of scans they came from the same clock and move with them. Throws UsageError as `check` does, and DataError
+/// that names the scan where the scaled time is beyond what a stamp holds.
 std::unique_ptr<Dataset> corrected(std::unique_ptr<Dataset> dataset, const Correction& correction);
 
 }  // namespace dynamic_icp::datasets

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/datasets/correction.hpp"
 
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -17,15 +18,19 @@ using Eigen::Vector3d;
 /// Two scans of two points, 0.1 s apart, late in this century: nanoseconds that no double holds.
 class TwoScans final : public Dataset {
  public:
-  explicit TwoScans(std::vector<std::int64_t> truth_ns = {}) {
+  explicit TwoScans(std::vector<std::int64_t> truth_ns = {}, std::int64_t first_ns = kFirst,
+                    std::int64_t second_ns = kFirst + 100'000'001)
+      : stamps_{Stamp{first_ns}, Stamp{second_ns}} {
     for (const std::int64_t ns : truth_ns) {
       truth_.push_back({Stamp{ns}, Eigen::Isometry3d::Identity()});
     }
   }
   [[nodiscard]] std::string_view format() const override { return "test"; }
   [[nodiscard]] std::size_t size() const override { return 2; }
-  [[nodiscard]] Stamp stamp(std::size_t index) const override { return {index == 0 ? kFirst : kFirst + 100'000'001}; }
-  [[nodiscard]] std::filesystem::path scan_file(std::size_t) const override { return "scan"; }
+  [[nodiscard]] Stamp stamp(std::size_t index) const override { return stamps_.at(index); }
+  [[nodiscard]] std::filesystem::path scan_file(std::size_t index) const override {
+    return index == 0 ? "first.bin" : "second.bin";
+  }
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     RawScan raw;
     raw.stamp = stamp(index);
@@ -42,6 +47,7 @@ class TwoScans final : public Dataset {
   static constexpr std::int64_t kFirst = 3'724'479'779'384'729'507;
 
  private:
+  std::array<Stamp, 2> stamps_;
   formats::Trajectory truth_;
   std::vector<std::string> none_;
 };
@@ -106,6 +112,30 @@ TEST(Correction, TimeIsScaledFromTheFirstScanToTheNanosecond) {
   EXPECT_EQ(dataset->stamp(1).ns, TwoScans::kFirst + 50'000'001);  // half away from zero
   EXPECT_EQ(dataset->scan(1).stamp, dataset->stamp(1));
   EXPECT_EQ(dataset->scan(1).times, (std::vector<double>{0.0, 0.025}));
+}
+
+TEST(Correction, TimesThatNoStampHoldsNameTheScan) {
+  constexpr std::int64_t kMin = std::numeric_limits<std::int64_t>::min();
+  constexpr std::int64_t kMax = std::numeric_limits<std::int64_t>::max();
+  const auto message = [](std::int64_t first_ns, std::int64_t second_ns, double scale) -> std::string {
+    Correction correction;
+    correction.time_scale = scale;
+    try {
+      const auto dataset =
+          corrected(std::make_unique<TwoScans>(std::vector<std::int64_t>{}, first_ns, second_ns), correction);
+      return "taken: " + std::to_string(dataset->stamp(1).ns);
+    } catch (const DataError& error) {
+      return error.what();
+    }
+  };
+  const std::string refused = "second.bin: scan 1 is ";
+  EXPECT_EQ(message(0, 3'600'000'000'000, 1e9).find(refused + "3600 s after the first one; 1e+09 times"), 0U);
+  EXPECT_EQ(message(0, 1, 9223372036854775808.0).find(refused), 0U) << "one more than the last";
+  EXPECT_EQ(message(kMax - 1, kMax, 2.0).find(refused), 0U);
+  EXPECT_EQ(message(kMin, kMax, 2.0).find(refused), 0U);
+  EXPECT_EQ(message(0, 1, 1e308).find(refused), 0U);
+  EXPECT_EQ(message(kMin, kMin + 10, 3.0), "taken: " + std::to_string(kMin + 30));
+  EXPECT_EQ(message(kMax - 4, kMax - 2, 2.0), "taken: " + std::to_string(kMax));
 }
 
 TEST(Correction, GroundTruthMovesWithTheScansOnlyWhereItHasTheirStamps) {

@@ -106,9 +106,9 @@ Match match_any(const fs::path& input) {
         return match;
       }
     } else if (!lies_in(found, match.folder) && !lies_in(match.folder, found)) {
-      throw DataError(fmt::format("{}: holds several recordings, name one of them:\n  {} ({})\n  {} ({})",
-                                  input.string(), match.folder.string(), match.layout->name, found.string(),
-                                  layout.name));
+      throw NotARecording(fmt::format("{}: holds several recordings, name one of them:\n  {} ({})\n  {} ({})",
+                                      input.string(), match.folder.string(), match.layout->name, found.string(),
+                                      layout.name));
     }
   }
   return match;
@@ -150,9 +150,10 @@ std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& 
     return open_as(*match.layout, match.folder, options);
   }
   if (const std::string obstacle = known_obstacle(input); !obstacle.empty()) {
-    throw DataError(obstacle);
+    throw NotARecording(obstacle);
   }
-  throw DataError(fmt::format("{}: not a recording of a known layout. Looked for:{}", input.string(), looked_for()));
+  throw NotARecording(
+      fmt::format("{}: not a recording of a known layout. Looked for:{}", input.string(), looked_for()));
 }
 
 }  // namespace dynamic_icp::datasets

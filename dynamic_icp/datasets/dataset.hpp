@@ -78,9 +78,9 @@ class Dataset {
   [[nodiscard]] virtual const std::vector<std::string>& assumptions() const = 0;
 };
 
-/// Opens a recording. Throws DataError when the input is missing, is of no known layout (saying what was looked for,
-/// and naming archives, Git LFS pointers and the like for what they are) or is damaged; UsageError for an unknown
-/// format or options that the format does not have.
+/// Opens a recording. Throws DataError when the input is missing or damaged; NotARecording when it is of no known
+/// layout (saying what was looked for, and naming archives, Git LFS pointers and the like for what they are) or holds
+/// several recordings; UsageError for an unknown format or options that the format does not have.
 std::unique_ptr<Dataset> open_dataset(const std::filesystem::path& input, const OpenOptions& options = {});
 
 /// The layouts that can be read, for `--format` and its help.

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/not_a_recording.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -35,7 +36,7 @@ TEST_F(OpenDataset, AnUnknownLayoutSaysWhatWasLookedFor) {
   try {
     open_dataset(folder_);
     FAIL() << "must throw";
-  } catch (const DataError& error) {
+  } catch (const NotARecording& error) {
     EXPECT_NE(std::string(error.what()).find("point_clouds/*.bin"), std::string::npos);
   }
   EXPECT_THROW(open_dataset(folder_, {.format = "dicp"}), DataError);
@@ -56,7 +57,7 @@ TEST_F(OpenDataset, RecordingsOfSeveralLayoutsSideBySideAreRefused) {
   try {
     open_dataset(folder_);
     FAIL() << "which one?";
-  } catch (const DataError& error) {
+  } catch (const NotARecording& error) {
     const std::string message = error.what();
     EXPECT_NE(message.find("several recordings"), std::string::npos) << message;
     EXPECT_NE(message.find((folder_ / "a").string() + " (dicp)"), std::string::npos) << message;

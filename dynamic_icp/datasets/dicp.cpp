@@ -143,7 +143,7 @@ fs::path find_dicp_scans(const fs::path& input) {
 Eigen::Isometry3d read_calibration(const fs::path& path) {
   // The file calls it T_V_to_S, but it is applied to points of the sensor to get points of the vehicle.
   try {
-    const nlohmann::json calibration = nlohmann::json::parse(formats::read_whole_file(path)).at("T_V_to_S");
+    const nlohmann::json calibration = nlohmann::json::parse(formats::read_text_file(path)).at("T_V_to_S");
     const nlohmann::json& t = calibration.at("translation");
     const nlohmann::json& q = calibration.at("quaternion");
     const Eigen::Quaterniond rotation(q.at("w").get<double>(), q.at("x").get<double>(), q.at("y").get<double>(),

@@ -9,6 +9,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/not_a_recording.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -166,7 +167,7 @@ TEST_F(Dicp, SeveralRecordingsMustBeNamed) {
   fs::create_directories(folder_ / "above" / "b" / "point_clouds");
   write("above/a/point_clouds/1.bin", record(1, 2, 3, 4));
   write("above/b/point_clouds/1.bin", record(1, 2, 3, 4));
-  EXPECT_THROW(open_dataset(folder_ / "above"), DataError);
+  EXPECT_THROW(open_dataset(folder_ / "above"), NotARecording);
 }
 
 TEST_F(Dicp, WrongPosesAreErrorsThatNameThem) {
@@ -177,6 +178,23 @@ TEST_F(Dicp, WrongPosesAreErrorsThatNameThem) {
   EXPECT_NE(message().find("2"), std::string::npos) << "the line";
   write("ref_poses.txt", "0.2 0 0 0 0 0 0 1\n0.1 1 0 0 0 0 0 1\n0.3 0 0 0 0 0 0 1\n");
   EXPECT_NE(message(), "no error") << "time runs backwards";
+  try {
+    open_dataset(folder_);
+  } catch (const NotARecording& error) {
+    FAIL() << "is one, though damaged: " << error.what();
+  } catch (const DataError&) {
+  }
+}
+
+TEST_F(Dicp, NothingFollowsACalibration) {
+  write("ref_poses.txt", kThreePoses);
+  std::string text = R"({"T_V_to_S": {"translation": {"x": 0, "y": 0, "z": 0},
+                         "quaternion": {"w": 1, "x": 0, "y": 0, "z": 0}}})";
+  write("calibration.json", text);
+  EXPECT_EQ(message(), "no error");
+  text.append(100, '\0');
+  write("calibration.json", text);
+  EXPECT_NE(message().find("calibration.json: line 2: has a zero byte"), std::string::npos) << message();
 }
 
 TEST_F(Dicp, WrongCalibrationsAreErrors) {

@@ -8,7 +8,7 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/datasets/not_a_recording.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -108,7 +108,7 @@ fs::path only_one(const fs::path& input, const std::vector<fs::path>& found) {
     for (const fs::path& path : found) {
       names += "\n  " + path.string();
     }
-    throw DataError(fmt::format("{}: holds several recordings, name one of them:{}", input.string(), names));
+    throw NotARecording(fmt::format("{}: holds several recordings, name one of them:{}", input.string(), names));
   }
   return found.empty() ? fs::path() : found.front();
 }

@@ -28,7 +28,8 @@ bool holds_files(const std::filesystem::path& folder, std::string_view extension
 std::vector<std::filesystem::path> find_folders(const std::filesystem::path& input,
                                                 const std::function<bool(const std::filesystem::path&)>& wanted);
 
-/// The only one of them, or empty when there is none. Throws DataError that lists them when there are several.
+/// The only one of them, or empty when there is none. Throws NotARecording that lists them when there are
+/// several.
 std::filesystem::path find_folder(const std::filesystem::path& input,
                                   const std::function<bool(const std::filesystem::path&)>& wanted);
 

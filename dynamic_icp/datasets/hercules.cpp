@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 Eigen::Isometry3d read_imu_lidar(const fs::path& path) {
   constexpr std::string_view kKey = "Tr_lidar_to_imu:";
-  const std::string text = formats::read_whole_file(path);
+  const std::string text = formats::read_text_file(path);
   std::string_view rest = text;
   std::size_t number = 1;
   for (std::optional<std::string_view> line = formats::take_line(rest); line; line = formats::take_line(rest)) {

@@ -8,7 +8,6 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
 
 namespace dynamic_icp::datasets {

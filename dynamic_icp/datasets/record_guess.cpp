@@ -12,6 +12,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
+#include "dynamic_icp/formats/record_file.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -139,7 +140,7 @@ bool looks_like(std::string_view content, const RecordLayout& layout) {
 }
 
 const RecordLayout* guess_layout(const fs::path& file, std::span<const RecordLayout* const> candidates) {
-  const std::string content = formats::read_whole_file(file);
+  const std::string content = formats::read_whole_file(file, formats::kMaxRecordFileBytes);
   formats::refuse_other_kind(file, content, formats::FileKind::kUnknown);
   const auto found = std::find_if(candidates.begin(), candidates.end(),
                                   [&](const RecordLayout* layout) { return looks_like(content, *layout); });

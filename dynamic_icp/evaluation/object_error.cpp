@@ -83,7 +83,7 @@ ReportedObject reported_object(const Json& json) {
 
 template <class Objects, class Read>
 std::vector<Objects> read_lines(const std::filesystem::path& path, const Read& read_object) {
-  const std::string content = formats::read_whole_file(path);
+  const std::string content = formats::read_text_file(path);
   std::string_view rest = content;
   std::vector<Objects> scans;
   for (std::size_t line = 1; const auto text = formats::take_line(rest); ++line) {

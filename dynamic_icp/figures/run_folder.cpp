@@ -148,7 +148,7 @@ void require_file(const fs::path& path) {
 
 std::string read_file_of_run(const fs::path& path) {
   require_file(path);
-  return formats::read_whole_file(path);
+  return formats::read_text_file(path);
 }
 
 /// Calls use(object, place) for each line that is not empty.

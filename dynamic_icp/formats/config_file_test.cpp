@@ -74,5 +74,25 @@ TEST_F(ConfigFile, ErrorsNameFileLineAndKey) {
   EXPECT_THROW(load_config_file("/nonexistent/file.yaml", fields_), DataError);
 }
 
+TEST_F(ConfigFile, AliasesThatUnfoldWithoutEndAreRefused) {
+  std::string doubling = "a0: &a0 {}\n";
+  std::string known = "grid: {deep: &deep {}";
+  for (int i = 1; i <= 30; ++i) {
+    doubling += "a" + std::to_string(i) + ": &a" + std::to_string(i) + " {x: *a" + std::to_string(i - 1) + ", y: *a" +
+                std::to_string(i - 1) + "}\n";
+  }
+  EXPECT_NE(message(doubling).find("unknown configuration key"), std::string::npos) << message(doubling);
+  for (int i = 0; i < 10'000; ++i) {
+    known += ", deep: *deep";
+  }
+  EXPECT_NE(message(known + "}\n").find("line 1: more than 10000 keys"), std::string::npos) << message(known + "}\n");
+}
+
+TEST_F(ConfigFile, AMapWithoutKeysIsNoWayPastTheChecks) {
+  load("grid: {}\n");  // all its keys are left out
+  EXPECT_NE(message("grit: {}\n").find("unknown configuration key 'grit'"), std::string::npos);
+  EXPECT_NE(message("enabled: {}\n").find("'enabled'"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::formats

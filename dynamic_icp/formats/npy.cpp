@@ -12,6 +12,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
+#include "dynamic_icp/formats/memory_error.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
@@ -118,7 +119,7 @@ NpyArray parse_npy(std::string_view content, const std::string& origin) {
 NpyArray read_npy(const std::filesystem::path& path) {
   const std::string content = read_whole_file(path);
   refuse_other_kind(path, content, FileKind::kNpy);
-  return parse_npy(content, path.string());
+  return with_memory_for(path, [&] { return parse_npy(content, path.string()); });
 }
 
 std::string npy_bytes(const NpyArray& array) {

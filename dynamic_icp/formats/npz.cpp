@@ -15,6 +15,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
+#include "dynamic_icp/formats/memory_error.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
@@ -143,19 +144,40 @@ class NpzFile::Archive {
   Archive& operator=(const Archive&) = delete;
 
   [[nodiscard]] zip_t* handle() const { return handle_; }
+  [[nodiscard]] zip_uint64_t entries() const {
+    return static_cast<zip_uint64_t>(std::max<zip_int64_t>(0, zip_get_num_entries(handle_, 0)));
+  }
 
  private:
   zip_t* handle_ = nullptr;
 };
 
-NpzFile::NpzFile(const std::filesystem::path& path) : path_(path), archive_(std::make_unique<Archive>(path)) {}
+NpzFile::NpzFile(const std::filesystem::path& path) : path_(path), archive_(std::make_unique<Archive>(path)) {
+  refuse_bomb();
+}
 
 NpzFile::~NpzFile() = default;
 
+void NpzFile::refuse_bomb() const {
+  std::uint64_t room = kMaxNpzBytes;
+  for (zip_uint64_t i = 0; i < archive_->entries(); ++i) {
+    zip_stat_t status;
+    zip_stat_init(&status);
+    if (zip_stat_index(archive_->handle(), i, 0, &status) != 0 || (status.valid & ZIP_STAT_SIZE) == 0 ||
+        status.size > kMaxNpzMemberBytes) {
+      continue;  // will not be unpacked
+    }
+    if (status.size > room) {
+      throw DataError(fmt::format("{}: its arrays claim more than {} bytes together: no scan is that large",
+                                  path_.string(), kMaxNpzBytes));
+    }
+    room -= status.size;
+  }
+}
+
 std::vector<std::string> NpzFile::names() const {
   std::vector<std::string> names;
-  const auto entries = static_cast<zip_uint64_t>(std::max<zip_int64_t>(0, zip_get_num_entries(archive_->handle(), 0)));
-  for (zip_uint64_t i = 0; i < entries; ++i) {
+  for (zip_uint64_t i = 0; i < archive_->entries(); ++i) {
     const char* const entry = zip_get_name(archive_->handle(), i, 0);
     const std::string_view name = entry == nullptr ? "" : entry;
     if (name.size() > kExtension.size() && name.ends_with(kExtension)) {
@@ -183,6 +205,15 @@ std::string NpzFile::why_no_numbers(std::string_view name) const {
 }
 
 NpyArray NpzFile::read(std::string_view name) const {
+  NpyArray array = with_memory_for(path_, [&] { return unpacked(name); });
+  const std::size_t rows = array.shape.empty() ? 1 : array.shape.front();
+  if (rows > kMaxNpzRows) {
+    throw DataError(fmt::format("{}: has {} rows, expected at most {}", array.origin, rows, kMaxNpzRows));
+  }
+  return array;
+}
+
+NpyArray NpzFile::unpacked(std::string_view name) const {
   const std::string origin = fmt::format("{}: array '{}'", path_.string(), name);
   const zip_int64_t index = zip_name_locate(archive_->handle(), member_name(name).c_str(), 0);
   zip_stat_t status;

@@ -16,13 +16,16 @@ namespace dynamic_icp::formats {
 
 // Named arrays of NumPy in one zip archive, as numpy.savez and numpy.savez_compressed write them.
 
-/// Members that unpack to more are refused: no scan is that large, a damaged or hostile file may say so.
-constexpr std::size_t kMaxNpzMemberBytes = std::size_t{1} << 28U;
+// What is more is refused: no scan is that large, a damaged or hostile file may say so.
+constexpr std::size_t kMaxNpzMemberBytes = std::size_t{1} << 28U;  ///< that a member unpacks to
+constexpr std::size_t kMaxNpzBytes = std::size_t{1} << 29U;        ///< that those of an archive unpack to together
+constexpr std::size_t kMaxNpzRows = std::size_t{1} << 25U;         ///< of an array
 
 /// An archive open for reading.
 class NpzFile {
  public:
-  /// Throws DataError when the file cannot be read or is no zip archive.
+  /// Throws DataError when the file cannot be read, is no zip archive or claims to unpack to more than kMaxNpzBytes in
+  /// members that may be read.
   explicit NpzFile(const std::filesystem::path& path);
   ~NpzFile();
   NpzFile(const NpzFile&) = delete;
@@ -37,11 +40,15 @@ class NpzFile {
   [[nodiscard]] std::string why_no_numbers(std::string_view name) const;
 
   /// Unpacks one array. Throws DataError naming file and member when there is none of that name, it is damaged, claims
-  /// more than kMaxNpzMemberBytes or is not an array of numbers (see parse_npy). The other members stay readable.
+  /// more than kMaxNpzMemberBytes, has more than kMaxNpzRows or is not an array of numbers (see parse_npy). The other
+  /// members stay readable.
   [[nodiscard]] NpyArray read(std::string_view name) const;
 
  private:
   class Archive;
+  void refuse_bomb() const;
+  [[nodiscard]] NpyArray unpacked(std::string_view name) const;
+
   std::filesystem::path path_;
   std::unique_ptr<Archive> archive_;
 };

@@ -13,6 +13,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/npz_by_hand.hpp"
+#include "dynamic_icp/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -209,6 +210,41 @@ TEST_F(Npz, WritesWholeFilesThatComeBack) {
     FAIL();
   } catch (const DataError& error) {
     EXPECT_NE(std::string(error.what()).find((folder_ / "missing" / "a.npz").string()), std::string::npos);
+  }
+}
+
+TEST_F(Npz, ArchivesThatClaimTooMuchTogetherAreRefused) {
+  // Three members, each of which may be that large alone.
+  std::vector<NpzMember> members = two_members();
+  members.push_back({"more", npy_array<float>({1}, std::array{1.0F})});
+  std::string bytes = npz_bytes(members);
+  for (const std::size_t at : central_entries(bytes)) {
+    overwrite<std::uint32_t>(bytes, at + 24, static_cast<std::uint32_t>(kMaxNpzMemberBytes));
+  }
+  write_whole_file(path_, bytes);
+  try {
+    const NpzFile file(path_);
+    FAIL() << "must throw";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find(path_.string() + ": its arrays claim more than 536870912 bytes"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
+TEST_F(Npz, MoreRowsThanAnyScanHasAreRefused) {
+  const std::vector<std::uint8_t> values(kMaxNpzRows + 1);
+  write_npz(path_, std::array{NpzMember{"a", npy_array<std::uint8_t>({values.size()}, values)},
+                              NpzMember{"b", npy_array<std::uint8_t>({1, 3}, std::array<std::uint8_t, 3>{1, 2, 3})}});
+  const NpzFile file(path_);
+  EXPECT_EQ(rows_of(file.read("b")), 1U);
+  try {
+    (void)file.read("a");
+    FAIL() << "must throw";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("array 'a': has 33554433 rows, expected at most 33554432"),
+              std::string::npos)
+        << error.what();
   }
 }
 

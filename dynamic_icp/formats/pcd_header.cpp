@@ -20,6 +20,8 @@ namespace {
 using Words = std::vector<std::string_view>;
 
 constexpr std::size_t kMostNumbersOfAPoint = 1U << 20U;
+// No file has that many but a damaged one; each is looked up among the others by its name.
+constexpr std::size_t kMostFields = 1024;
 
 /// Text of the file as it may stand in a message: it may be anything.
 std::string printable(std::string_view text) {
@@ -130,6 +132,9 @@ class HeaderReader {
   void add_fields() {
     const Entry& names = entries_.contains("COLUMNS") ? entry("COLUMNS") : entry("FIELDS");
     const std::size_t fields = names.words.size();
+    if (fields > kMostFields) {
+      fail(names.line, fmt::format("{} fields, expected at most {}", fields, kMostFields));
+    }
     const Entry& sizes = entry_for_fields("SIZE", fields);
     const Entry& types = entry_for_fields("TYPE", fields);
     const bool counted = entries_.contains("COUNT");

@@ -15,6 +15,7 @@
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
 #include "dynamic_icp/formats/lzf.hpp"
+#include "dynamic_icp/formats/memory_error.hpp"
 #include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
 
@@ -99,6 +100,12 @@ PcdFile::PcdFile(std::string content, const std::filesystem::path& origin)
     : origin_(origin.string()), bytes_(std::move(content)) {
   refuse_other_kind(origin, bytes_, FileKind::kPcd);
   header_ = parse_pcd_header(bytes_, origin_);
+  with_memory_for(origin, [this] { read_data(); });
+}
+
+void PcdFile::fail(std::string_view message) const { throw DataError(fmt::format("{}: {}", origin_, message)); }
+
+void PcdFile::read_data() {
   if (header_.encoding == PcdEncoding::kAscii) {
     read_ascii();
   } else if (header_.encoding == PcdEncoding::kBinary) {
@@ -107,8 +114,6 @@ PcdFile::PcdFile(std::string content, const std::filesystem::path& origin)
     unpack();
   }
 }
-
-void PcdFile::fail(std::string_view message) const { throw DataError(fmt::format("{}: {}", origin_, message)); }
 
 void PcdFile::read_ascii() {
   std::string_view rest = std::string_view(bytes_).substr(header_.data_offset);

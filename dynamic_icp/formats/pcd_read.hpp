@@ -35,6 +35,7 @@ class PcdFile {
   [[nodiscard]] const std::string& warning() const { return warning_; }
 
  private:
+  void read_data();
   void read_ascii();
   void read_binary();
   void unpack();

@@ -137,6 +137,23 @@ TEST(PcdRead, WrongHeadersNameTheLine) {
   expect_message("version https://git-lfs.github.com/spec/v1\noid sha256:00\nsize 1\n", "Git LFS pointer");
 }
 
+TEST(PcdRead, MoreFieldsThanAnyFileHasAreRefusedAtOnce) {
+  const auto header = [](std::size_t fields) {
+    std::string names = "FIELDS";
+    std::string sizes = "\nSIZE";
+    std::string types = "\nTYPE";
+    for (std::size_t i = 0; i < fields; ++i) {
+      names += fmt::format(" f{}", i);
+      sizes += " 1";
+      types += " U";
+    }
+    return names + sizes + types + "\nPOINTS 1\nDATA binary\n" + std::string(fields, 'x');
+  };
+  EXPECT_EQ(parse(header(1024)).names().size(), 1024U);
+  expect_message(header(1025), "line 1: 1025 fields, expected at most 1024");
+  expect_message(header(100'000), "line 1: 100000 fields");
+}
+
 TEST(PcdRead, CountsAreCheckedBeforeMemoryIsTaken) {
   const auto with = [](const std::string& points, const std::string& data) {
     return "FIELDS x y\nSIZE 4 4\nTYPE F F\nPOINTS " + points + "\nDATA " + data;

@@ -14,6 +14,7 @@
 #include "dynamic_icp/base/parse_number.hpp"
 #include "dynamic_icp/formats/binary_file.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
+#include "dynamic_icp/formats/memory_error.hpp"
 #include "dynamic_icp/formats/ply_values.hpp"
 #include "dynamic_icp/formats/text_lines.hpp"
 #include "dynamic_icp/formats/whole_file.hpp"
@@ -22,6 +23,10 @@ namespace dynamic_icp::formats {
 namespace {
 
 enum class Encoding { kAscii, kLittleEndian, kBigEndian };
+
+// No file has that many but a damaged one; each is looked up among the others by its name.
+constexpr std::size_t kMostElements = 1024;
+constexpr std::size_t kMostColumns = 1024;  // of an element
 
 class Reader {
  public:
@@ -49,7 +54,7 @@ class Reader {
 
   std::optional<std::string_view> next_line() {
     const std::optional<std::string_view> line = take_line(rest_);
-    line_ += line ? 1 : 0;
+    line_ += line ? 1U : 0U;
     return line;
   }
 
@@ -103,6 +108,9 @@ class Reader {
     if (!number) {
       fail(fmt::format("element '{}' has the count '{}', expected a whole number", name, count));
     }
+    if (file_.elements.size() == kMostElements) {
+      fail(fmt::format("more than {} elements", kMostElements));
+    }
     if (file_.find(name) != nullptr) {
       fail(fmt::format("element '{}' for the second time", name));
     }
@@ -124,6 +132,9 @@ class Reader {
       fail(fmt::format("property '{}' before the first element", name));
     }
     PlyElement& element = file_.elements.back();
+    if (element.columns.size() == kMostColumns) {
+      fail(fmt::format("element '{}' has more than {} properties", element.name, kMostColumns));
+    }
     if (element.find(name) != nullptr) {
       fail(fmt::format("property '{}' of element '{}' for the second time", name, element.name));
     }
@@ -278,7 +289,7 @@ class Reader {
 
   std::string_view rest_;
   const std::filesystem::path& origin_;
-  int line_ = 0;  // of the header and of ascii data
+  std::size_t line_ = 0;  // of the header and of ascii data
   Encoding encoding_ = Encoding::kAscii;
   PlyFile file_;
   std::vector<std::vector<PlyType>> count_types_;  // of the lengths of lists, for each element's columns
@@ -304,7 +315,7 @@ const PlyElement* PlyFile::find(std::string_view element) const {
 PlyFile read_ply(const std::filesystem::path& path) {
   const std::string content = read_whole_file(path);
   refuse_other_kind(path, content, FileKind::kPly);
-  return parse_ply(content, path);
+  return with_memory_for(path, [&] { return parse_ply(content, path); });
 }
 
 PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin) {

@@ -142,6 +142,23 @@ TEST(Ply, ErrorsNameLineAndExpectation) {
   }
 }
 
+TEST(Ply, MoreColumnsOrElementsThanAnyFileHasAreRefusedAtOnce) {
+  const auto header = [](std::size_t elements, std::size_t columns) {
+    std::string text = "ply\nformat ascii 1.0\n";
+    for (std::size_t i = 0; i < elements; ++i) {
+      text += "element e" + std::to_string(i) + " 0\n";
+    }
+    for (std::size_t i = 0; i < columns; ++i) {
+      text += "property uchar p" + std::to_string(i) + "\n";
+    }
+    return text + "end_header\n";
+  };
+  EXPECT_EQ(parse(header(1024, 1024)).elements.back().columns.size(), 1024U);
+  EXPECT_NE(message(header(1025, 1)).find("line 1027: more than 1024 elements"), std::string::npos);
+  EXPECT_NE(message(header(1, 1025)).find("line 1028: element 'e0' has more than 1024 properties"), std::string::npos);
+  EXPECT_NE(message(header(100'000, 1)).find("more than 1024 elements"), std::string::npos);
+}
+
 TEST(Ply, LyingCountsTakeNoMemory) {
   for (const char* format : {"ascii", "binary_little_endian"}) {
     const std::string head = std::string("ply\nformat ") + format + " 1.0\nelement vertex ";

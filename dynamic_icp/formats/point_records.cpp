@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dynamic_icp/formats/binary_file.hpp"
+#include "dynamic_icp/formats/memory_error.hpp"
 #include "dynamic_icp/formats/record_file.hpp"
 
 namespace dynamic_icp::formats {
@@ -60,20 +61,7 @@ double field_at(std::string_view block, std::size_t at, const RecordField& field
   return has_parts ? static_cast<double>(static_cast<std::uint64_t>(value) >> field.shift & field.mask) : 0.0;
 }
 
-}  // namespace
-
-const RecordLayout kXyzd = {"xyzd", 16, 12};
-const RecordLayout kAeva25 = {"aeva25", 25, 16, RecordTime::kNanoseconds, 20, std::span(kAevaFields).first(2)};
-const RecordLayout kAeva29 = {"aeva29", 29, 16, RecordTime::kNanoseconds, 20, kAevaFields};
-const RecordLayout kBoreas40 = {"boreas40", 40, 12, RecordTime::kSecondsOrNanoseconds, 28, kBoreas40Fields};
-const RecordLayout kBoreas24 = {"boreas24", 24, 16, RecordTime::kSeconds, 20, std::span(kBoreasFields).first(1)};
-const RecordLayout kBoreas28 = {"boreas28", 28, 16, RecordTime::kSeconds, 20, std::span(kBoreasFields).first(2)};
-const RecordLayout kBoreas28BeamThenTime = {
-    "boreas28 with the beam before the time", 28, 16, RecordTime::kSeconds, 24, kBoreasBeamFirstFields};
-const RecordLayout kBoreas32 = {"boreas32", 32, 16, RecordTime::kSeconds, 20, kBoreasFields};
-const RecordLayout kXyzdTime = {"xyzd with times", 20, 12, RecordTime::kSeconds, 16};
-
-RawScan read_points(const std::filesystem::path& path, const RecordLayout& layout) {
+RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout) {
   RecordFile file(path, layout.bytes);
   RawScan raw;
   raw.points.resize(file.records());
@@ -99,8 +87,7 @@ RawScan read_points(const std::filesystem::path& path, const RecordLayout& layou
   return raw;
 }
 
-std::vector<double> read_field(const std::filesystem::path& path, const RecordLayout& layout,
-                               const RecordField& field) {
+std::vector<double> field_of(const std::filesystem::path& path, const RecordLayout& layout, const RecordField& field) {
   RecordFile file(path, layout.bytes);
   std::vector<double> values;
   values.reserve(file.records());
@@ -110,6 +97,28 @@ std::vector<double> read_field(const std::filesystem::path& path, const RecordLa
     }
   }
   return values;
+}
+
+}  // namespace
+
+const RecordLayout kXyzd = {"xyzd", 16, 12};
+const RecordLayout kAeva25 = {"aeva25", 25, 16, RecordTime::kNanoseconds, 20, std::span(kAevaFields).first(2)};
+const RecordLayout kAeva29 = {"aeva29", 29, 16, RecordTime::kNanoseconds, 20, kAevaFields};
+const RecordLayout kBoreas40 = {"boreas40", 40, 12, RecordTime::kSecondsOrNanoseconds, 28, kBoreas40Fields};
+const RecordLayout kBoreas24 = {"boreas24", 24, 16, RecordTime::kSeconds, 20, std::span(kBoreasFields).first(1)};
+const RecordLayout kBoreas28 = {"boreas28", 28, 16, RecordTime::kSeconds, 20, std::span(kBoreasFields).first(2)};
+const RecordLayout kBoreas28BeamThenTime = {
+    "boreas28 with the beam before the time", 28, 16, RecordTime::kSeconds, 24, kBoreasBeamFirstFields};
+const RecordLayout kBoreas32 = {"boreas32", 32, 16, RecordTime::kSeconds, 20, kBoreasFields};
+const RecordLayout kXyzdTime = {"xyzd with times", 20, 12, RecordTime::kSeconds, 16};
+
+RawScan read_points(const std::filesystem::path& path, const RecordLayout& layout) {
+  return with_memory_for(path, [&] { return points_of(path, layout); });
+}
+
+std::vector<double> read_field(const std::filesystem::path& path, const RecordLayout& layout,
+                               const RecordField& field) {
+  return with_memory_for(path, [&] { return field_of(path, layout, field); });
 }
 
 }  // namespace dynamic_icp::formats

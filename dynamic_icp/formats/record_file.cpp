@@ -36,6 +36,10 @@ RecordFile::RecordFile(const std::filesystem::path& path, std::size_t record_byt
   }
   try {
     bytes_ = static_cast<std::size_t>(status.st_size);
+    if (bytes_ > kMaxRecordFileBytes) {
+      throw DataError(
+          fmt::format("{}: has {} bytes, expected at most {} of a scan", path.string(), bytes_, kMaxRecordFileBytes));
+    }
     fill();
     refuse_other_kind(path, block_, FileKind::kUnknown);
   } catch (const DataError&) {

@@ -3,18 +3,23 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <string_view>
 
 namespace dynamic_icp::formats {
 
+/// Longer files of records are refused: no scan is that large, but a sparse file may be.
+constexpr std::uintmax_t kMaxRecordFileBytes = std::uintmax_t{1} << 30U;
+
 /// A file of records of equal size, read from front to back in blocks that fit the cache: faster than the whole file
 /// at once or mapped into memory, and no harm comes of a file that is cut while it is read.
 class RecordFile {
  public:
-  /// Opens the file and looks at its first bytes. Throws DataError naming the file when it cannot be read or is known
-  /// to be something else: an archive, a Git LFS pointer, a point cloud with a header.
+  /// Opens the file and looks at its first bytes. Throws DataError naming the file when it cannot be read, is longer
+  /// than kMaxRecordFileBytes or is known to be something else: an archive, a Git LFS pointer, a point cloud with a
+  /// header.
   RecordFile(const std::filesystem::path& path, std::size_t record_bytes);
   ~RecordFile();
   RecordFile(const RecordFile&) = delete;

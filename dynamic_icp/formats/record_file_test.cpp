@@ -77,6 +77,19 @@ TEST_F(RecordFiles, NameWhatIsNotData) {
   EXPECT_NE(fault().find(path_.string() + ": cannot open: Is a directory"), std::string::npos) << fault();
 }
 
+TEST_F(RecordFiles, SparseFilesBeyondAnyScanAreRefused) {
+  write_whole_file(path_, std::string(16, 'x'));
+  fs::resize_file(path_, kMaxRecordFileBytes + 1);
+  try {
+    const RecordFile file(path_, 16);
+    FAIL() << "must throw";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find(path_.string() + ": has 1073741825 bytes, expected at most 1073741824"),
+              std::string::npos)
+        << error.what();
+  }
+}
+
 TEST_F(RecordFiles, FilesThatAreCutMeanwhileAreErrors) {
   write_whole_file(path_, std::string(200'000, 'x'));
   RecordFile file(path_, 4);

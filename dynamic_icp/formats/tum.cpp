@@ -174,7 +174,7 @@ TumFile parse_tum(std::string_view text, std::string_view name) {
   return file;
 }
 
-TumFile read_tum(const std::filesystem::path& path) { return parse_tum(read_whole_file(path), path.string()); }
+TumFile read_tum(const std::filesystem::path& path) { return parse_tum(read_text_file(path), path.string()); }
 
 std::string format_tum_line(const StampedPose& pose, std::string_view name) {
   const Eigen::Matrix3d R = pose.T_world_sensor.linear();

@@ -12,6 +12,7 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
+#include "dynamic_icp/formats/memory_error.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -28,6 +29,39 @@ struct Descriptor {
   Descriptor& operator=(const Descriptor&) = delete;
   int number;
 };
+
+void refuse_longer(const std::filesystem::path& path, std::uintmax_t bytes, std::uintmax_t max_bytes) {
+  if (bytes > max_bytes) {
+    throw DataError(fmt::format("{}: has {} bytes, expected at most {}", path.string(), bytes, max_bytes));
+  }
+}
+
+/// What is left to be read. `expected` bytes are there in all likelihood: one more tells that the end has come, so that
+/// a file that does not grow meanwhile is read without taking memory twice.
+std::string read_to_end(int descriptor, const std::filesystem::path& path, std::uintmax_t expected,
+                        std::uintmax_t max_bytes) {
+  constexpr std::size_t kLeastRoom = 4096;  // files of the system's own have no size
+  std::string content(std::max<std::size_t>(kLeastRoom, expected + 1), '\0');
+  std::size_t used = 0;
+  while (true) {
+    if (used == content.size()) {
+      content.resize(2 * used);
+    }
+    const ssize_t got = ::read(descriptor, content.data() + used, content.size() - used);
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got < 0) {
+      throw_error(path, "read");
+    }
+    used += static_cast<std::size_t>(got);
+    refuse_longer(path, used, max_bytes);
+    if (got == 0) {
+      content.resize(used);
+      return content;
+    }
+  }
+}
 
 }  // namespace
 
@@ -96,31 +130,27 @@ void write_whole_file(const std::filesystem::path& path, std::string_view conten
   }
 }
 
-std::string read_whole_file(const std::filesystem::path& path) {
+std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
   refuse_irregular(path);
   const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
   if (file.number < 0) {
     throw_error(path, "open");
   }
   std::error_code unknown_size;
-  const std::uintmax_t expected = std::filesystem::file_size(path, unknown_size);
-  std::string content;
-  std::size_t used = 0;
-  while (true) {
-    content.resize(used + std::max<std::size_t>(4096, unknown_size || used > 0 ? used : expected + 1));
-    const ssize_t got = ::read(file.number, content.data() + used, content.size() - used);
-    if (got < 0 && errno == EINTR) {
-      continue;
-    }
-    if (got < 0) {
-      throw_error(path, "read");
-    }
-    used += static_cast<std::size_t>(got);
-    if (got == 0) {
-      content.resize(used);
-      return content;
-    }
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown_size);
+  const std::uintmax_t expected = unknown_size ? 0 : size;
+  refuse_longer(path, expected, max_bytes);
+  return with_memory_for(path, [&] { return read_to_end(file.number, path, expected, max_bytes); });
+}
+
+std::string read_text_file(const std::filesystem::path& path) {
+  std::string text = read_whole_file(path, kMaxTextBytes);
+  refuse_other_kind(path, text, FileKind::kUnknown);
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
+    throw DataError(fmt::format("{}: line {}: has a zero byte, expected text", path.string(), line));
   }
+  return text;
 }
 
 }  // namespace dynamic_icp::formats

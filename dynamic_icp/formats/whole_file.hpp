@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
+#include <limits>
 #include <string>
 #include <string_view>
 
@@ -33,7 +35,16 @@ class OutputFile {
 /// name stays untouched when anything fails. A device or pipe of that name is written into.
 void write_whole_file(const std::filesystem::path& path, std::string_view content);
 
-/// The whole content of a regular file. Throws DataError naming the file and the reason.
-std::string read_whole_file(const std::filesystem::path& path);
+/// The whole content of a regular file, in as much memory as the file is long. Throws DataError naming the file and the
+/// reason, also where it is longer than `max_bytes` or the memory does not suffice.
+std::string read_whole_file(const std::filesystem::path& path,
+                            std::uintmax_t max_bytes = std::numeric_limits<std::uintmax_t>::max());
+
+/// Longer texts are refused: a trajectory of a day at 100 Hz is not that long.
+constexpr std::uintmax_t kMaxTextBytes = std::uintmax_t{1} << 30U;
+
+/// The same for a text: one that is too long or has a zero byte in it is refused, and so is a file that is known to be
+/// no text (see kind_of). Some parsers take a zero byte for the end and would miss what follows.
+std::string read_text_file(const std::filesystem::path& path);
 
 }  // namespace dynamic_icp::formats

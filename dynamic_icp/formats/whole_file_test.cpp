@@ -3,6 +3,8 @@
 #include "dynamic_icp/formats/whole_file.hpp"
 
 #include <fstream>
+#include <new>
+#include <stdexcept>
 
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -10,6 +12,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/formats/memory_error.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -23,6 +26,18 @@ class WholeFile : public ::testing::Test {
   [[nodiscard]] std::size_t entries() const {
     return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
+  /// That it throws DataError, which names the file "a" and holds these words.
+  template <class Action>
+  void expect_refusal(const Action& action, const std::string& words) const {
+    try {
+      action();
+      ADD_FAILURE() << "must throw: " << words;
+    } catch (const DataError& error) {
+      EXPECT_EQ(std::string(error.what()).find((folder_ / "a").string()), 0U) << error.what();
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+
   fs::path folder_ = fs::temp_directory_path() / ("whole_file_test-" + std::to_string(::getpid()));
 };
 
@@ -76,6 +91,40 @@ TEST_F(WholeFile, FullDeviceIsAnError) {
 TEST_F(WholeFile, ReadingWhatIsNotThereIsAnError) {
   EXPECT_THROW(read_whole_file(folder_ / "missing"), DataError);
   EXPECT_THROW(read_whole_file(folder_), DataError);
+}
+
+TEST_F(WholeFile, IsReadIntoAsMuchMemoryAsItIsLong) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{4095}, std::size_t{4096}, std::size_t{10'000'000}}) {
+    write_whole_file(folder_ / "a", std::string(size, 'x'));
+    const std::string content = read_whole_file(folder_ / "a");
+    EXPECT_EQ(content, std::string(size, 'x'));
+    EXPECT_LE(content.capacity(), size + 4096);
+  }
+  EXPECT_GT(read_whole_file("/proc/self/status").size(), 100U) << "has no size before it is read";
+}
+
+TEST_F(WholeFile, WhatIsTooLongIsRefusedBeforeItIsRead) {
+  write_whole_file(folder_ / "a", "12345");
+  EXPECT_EQ(read_whole_file(folder_ / "a", 5), "12345");
+  expect_refusal([&] { (void)read_whole_file(folder_ / "a", 4); }, "has 5 bytes, expected at most 4");
+  fs::resize_file(folder_ / "a", kMaxTextBytes + 1);
+  expect_refusal([&] { (void)read_text_file(folder_ / "a"); }, "expected at most");
+}
+
+TEST_F(WholeFile, LackOfMemoryNamesTheFile) {
+  expect_refusal([&] { with_memory_for(folder_ / "a", [] { throw std::bad_alloc(); }); }, "too little memory");
+  expect_refusal([&] { with_memory_for(folder_ / "a", [] { throw std::length_error("vector"); }); },
+                 "too little memory");
+  EXPECT_EQ(with_memory_for(folder_ / "a", [] { return 7; }), 7);
+}
+
+TEST_F(WholeFile, TextsHoldNoZeroBytesAndNothingElse) {
+  write_whole_file(folder_ / "a", "{}\n");
+  EXPECT_EQ(read_text_file(folder_ / "a"), "{}\n");
+  write_whole_file(folder_ / "a", std::string("{}\n\0\0", 5));
+  expect_refusal([&] { (void)read_text_file(folder_ / "a"); }, "line 2: has a zero byte, expected text");
+  write_whole_file(folder_ / "a", std::string("PK\x03\x04\0", 5));
+  expect_refusal([&] { (void)read_text_file(folder_ / "a"); }, "is a zip archive");
 }
 
 }  // namespace

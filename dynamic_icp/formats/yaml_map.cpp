@@ -142,7 +142,7 @@ YamlMap YamlMap::parse(std::string_view text, const std::filesystem::path& origi
 }
 
 YamlMap YamlMap::load(const std::filesystem::path& path, Blank blank) {
-  return parse(read_whole_file(path), path, blank);
+  return parse(read_text_file(path), path, blank);
 }
 
 const YamlMap::Entry* YamlMap::find(std::string_view key) const {

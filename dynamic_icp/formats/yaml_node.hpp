@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <filesystem>
 #include <set>
 #include <string>
@@ -31,13 +32,18 @@ class SettingsReader {
  public:
   SettingsReader(const std::filesystem::path& origin, const ConfigFields& fields) : origin_(origin), fields_(fields) {}
 
-  /// Sets the field `key`, or those below it where the value is a map.
+  /// Sets the field `key`, or those below it where the value is a map. Throws UsageError for a key that is unknown,
+  /// also that of an empty map, and where aliases unfold to more keys than any configuration has.
   void read(const YAML::Node& key_node, const YAML::Node& value, const std::string& key, int depth = 0);
 
  private:
+  /// Whether there are fields below this key.
+  [[nodiscard]] bool holds_fields(const std::string& key) const;
+
   const std::filesystem::path& origin_;
   const ConfigFields& fields_;
   std::set<std::string> seen_;
+  std::size_t visited_ = 0;
 };
 
 }  // namespace dynamic_icp::formats

@@ -173,7 +173,7 @@ bool is_benchmark_folder(const fs::path& folder) {
 
 PageContent benchmark_report(const fs::path& folder) {
   const fs::path file = folder / kResults;
-  const benchmark::BenchmarkResults results = benchmark::results_from_json(formats::read_whole_file(file), file);
+  const benchmark::BenchmarkResults results = benchmark::results_from_json(formats::read_text_file(file), file);
   std::vector<std::string> notes = {
       "Scans are not shown where runs are compared: the report of a single run has them."};
   RunList list(results.cells.size());

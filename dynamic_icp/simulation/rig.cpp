@@ -87,7 +87,7 @@ Rig parse_rig(std::string_view yaml, const std::filesystem::path& origin) {
 
 Rig find_rig(const std::string& name) {
   if (is_file_name(name)) {
-    return parse_rig(formats::read_whole_file(name), name);
+    return parse_rig(formats::read_text_file(name), name);
   }
   std::string names;
   for (const RigPreset& preset : rig_presets()) {

@@ -131,7 +131,7 @@ struct ObjReader {
 };
 
 TriangleMesh load_obj(const std::filesystem::path& path) {
-  const std::string content = formats::read_whole_file(path);
+  const std::string content = formats::read_text_file(path);
   ObjReader reader{path, {}, 0, {}};
   std::string_view rest = content;
   while (const std::optional<std::string_view> line = formats::take_line(rest)) {
