@@ -12,6 +12,7 @@
 
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
+#include "dynamic_icp/formats/unfinished.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -31,8 +32,10 @@ struct Descriptor {
 
 }  // namespace
 
-OutputFile::OutputFile(const std::filesystem::path& path)
-    : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+OutputFile::OutputFile(const std::filesystem::path& path) : OutputFile(path, path) {}
+
+OutputFile::OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name)
+    : final_name_(final_name), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) {
     fail("create");
   }
@@ -44,7 +47,7 @@ OutputFile::~OutputFile() {
   }
 }
 
-void OutputFile::fail(const char* action) const { throw_error(path_, action); }
+void OutputFile::fail(const char* action) const { throw_error(final_name_, action); }
 
 void OutputFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
@@ -78,8 +81,9 @@ void write_whole_file(const std::filesystem::path& path, std::string_view conten
   }
   std::filesystem::path partial = path;
   partial += fmt::format(".partial-{}", ::getpid());
+  const Unfinished unfinished(partial);
   try {
-    OutputFile file(partial);
+    OutputFile file(partial, path);
     file.write(content);
     file.close();
   } catch (const DataError&) {
