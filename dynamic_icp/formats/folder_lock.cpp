@@ -3,25 +3,42 @@
 #include "dynamic_icp/formats/folder_lock.hpp"
 
 #include <cerrno>
+#include <chrono>
+#include <thread>
 
 #include <fcntl.h>
+#include <fmt/format.h>
 #include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dynamic_icp/base/error.hpp"
+
 namespace dynamic_icp::formats {
+namespace {
+
+constexpr std::chrono::seconds kLongestWait{30};
+constexpr std::chrono::milliseconds kBetweenLooks{2};
+
+}  // namespace
 
 FolderLock::FolderLock(const std::filesystem::path& folder, Wait wait)
     : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
   if (descriptor_ < 0) {
     return;
   }
-  int result = 0;
-  do {
-    result = ::flock(descriptor_, wait == Wait::kYes ? LOCK_EX : LOCK_EX | LOCK_NB);
-  } while (result != 0 && errno == EINTR);
+  const auto give_up = std::chrono::steady_clock::now() + kLongestWait;
+  int result = ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  while (result != 0 && errno == EWOULDBLOCK && wait == Wait::kYes && std::chrono::steady_clock::now() < give_up) {
+    std::this_thread::sleep_for(kBetweenLooks);
+    result = ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  }
   if (result != 0) {
+    taken_ = errno == EWOULDBLOCK;
     release();
+  }
+  if (taken_ && wait == Wait::kYes) {
+    throw DataError(fmt::format("{}: another process has locked this folder", folder.string()));
   }
 }
 

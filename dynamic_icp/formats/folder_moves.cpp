@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostTries = 8;  // others may come and go at the same place
+constexpr int kMostTries = 100;  // others may come and go at the same place
 
 void clear_away(const fs::path& folder) {
   std::error_code ignored;
@@ -40,7 +40,6 @@ bool exchange(const fs::path& one, const fs::path& other) {
 
 /// Exchanges a result and an earlier one that `check` lets go; false where the file system cannot.
 bool try_exchange(const fs::path& staging, const fs::path& target, const FolderCheck& check) {
-  const FolderLock replacing(target);  // it must not look left behind while it is checked
   if (!exchange(staging, target)) {
     return false;
   }
@@ -79,7 +78,8 @@ void settle_within(const fs::path& target) {
   const FolderLock moving(target, FolderLock::Wait::kYes);
   for (const StagedNames::Found& left : names.found()) {
     std::error_code ignored;
-    if (const FolderLock lock(left.path); !lock.held()) {
+    const FolderLock lock(left.path);
+    if (!lock.is_of(left.path)) {
       continue;  // being written
     }
     const fs::path replaced = names.path(Staged::kReplaced, left.number);
@@ -132,8 +132,17 @@ bool is_mount_point(const fs::path& folder) {
 }  // namespace
 
 bool is_vacant(const fs::path& folder) {
-  return std::all_of(fs::directory_iterator(folder), fs::directory_iterator(),
-                     [](const auto& entry) { return is_staged_within(entry.path().filename().string()); });
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
+       entry.increment(fault)) {
+    if (!is_staged_within(entry->path().filename().string())) {
+      return false;
+    }
+  }
+  if (fault && fault != std::errc::no_such_file_or_directory) {  // it may have been replaced meanwhile
+    throw fs::filesystem_error("cannot read", folder, fault);
+  }
+  return true;
 }
 
 bool must_stay(const fs::path& folder) {
@@ -147,13 +156,11 @@ bool must_stay(const fs::path& folder) {
 
 void replace_in_two_steps(const fs::path& target, const std::string& number, const FolderCheck& check) {
   const StagedNames names = StagedNames::beside(target);
-  const fs::path staging = names.path(Staged::kPartial, number);
   const fs::path earlier = names.path(Staged::kReplaced, number);
-  const FolderLock replacing(target, FolderLock::Wait::kYes);  // or others would take it for left behind
   fs::rename(target, earlier);
   try {
     check(earlier);
-    fs::rename(staging, target);
+    fs::rename(names.path(Staged::kPartial, number), target);
   } catch (...) {
     std::error_code ignored;
     fs::rename(earlier, target, ignored);
@@ -164,26 +171,31 @@ void replace_in_two_steps(const fs::path& target, const std::string& number, con
 
 void move_beside(const fs::path& target, const std::string& number, const FolderCheck& check) {
   const fs::path staging = StagedNames::beside(target).path(Staged::kPartial, number);
-  for (int tries = 1;; ++tries) {
-    check(target);
+  for (int tries = 1; tries <= kMostTries; ++tries) {
     std::error_code fault;
     if (!fs::exists(target, fault) || is_vacant(target)) {
       fs::rename(staging, target, fault);
       if (!fault) {
         return;
       }
-      if (tries == kMostTries || (fault != std::errc::directory_not_empty && fault != std::errc::file_exists)) {
+      if (fault != std::errc::directory_not_empty && fault != std::errc::file_exists) {
         throw std::system_error(fault);
       }
       continue;  // another one was faster
     }
-    if (!try_exchange(staging, target, check)) {
-      replace_in_two_steps(target, number, check);
-      return;
+    const FolderLock replacing(target, FolderLock::Wait::kYes);  // nor must it look left behind while it is checked
+    if (replacing.held() && !replacing.is_of(target)) {
+      continue;
     }
-    clear_away(staging);
+    check(target);
+    if (try_exchange(staging, target, check)) {
+      clear_away(staging);
+    } else {
+      replace_in_two_steps(target, number, check);
+    }
     return;
   }
+  throw std::system_error(std::make_error_code(std::errc::device_or_resource_busy));
 }
 
 void move_within(const fs::path& target, const std::string& number, const std::string& marker,
@@ -194,18 +206,21 @@ void move_within(const fs::path& target, const std::string& number, const std::s
   const fs::path replaced = names.path(Staged::kReplaced, number);
   const FolderLock moving(target, FolderLock::Wait::kYes);
   check(target);
-  if (!is_vacant(target)) {
-    fs::create_directory(replaced);
-    try {
+  const bool replacing = !is_vacant(target);
+  try {
+    if (replacing) {
+      fs::create_directory(replaced);
       move_entries(target, replaced, marker, "");
       check(replaced);
-    } catch (...) {
+    }
+    fs::rename(partial, arriving);  // from here on the new result counts
+  } catch (...) {
+    if (replacing) {
       move_entries(replaced, target, "", marker);
       clear_away(replaced);
-      throw;
     }
+    throw;
   }
-  fs::rename(partial, arriving);  // from here on the new result counts
   move_entries(arriving, target, "", marker);
   clear_away(arriving);
   clear_away(replaced);

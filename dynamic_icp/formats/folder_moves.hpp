@@ -24,7 +24,7 @@ bool must_stay(const std::filesystem::path& folder);
 /// `check` lets go: once before anything is moved, and once more when nobody can come to it any more.
 void move_beside(const std::filesystem::path& target, const std::string& number, const FolderCheck& check);
 
-/// The same for a `target` to be replaced, where the file system cannot exchange two folders.
+/// The same for a `target` to be replaced, and that is locked, where the file system cannot exchange two folders.
 void replace_in_two_steps(const std::filesystem::path& target, const std::string& number, const FolderCheck& check);
 
 /// Moves what is in the partial folder of that number within `target` up into it. The file `marker` goes first and

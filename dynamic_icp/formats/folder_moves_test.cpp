@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <stdexcept>
+#include <system_error>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
@@ -82,6 +83,8 @@ TEST_F(FolderMovesTest, MovesWithinAFolderThatMustStay) {
   EXPECT_EQ(text_of(out_), "one");
   make(partial, "two");
   EXPECT_THROW(move_within(out_, "1", "run.json", target_only()), std::runtime_error);
+  EXPECT_EQ(text_of(out_), "one");
+  EXPECT_THROW(move_within(out_, "2", "run.json", anything), std::system_error) << "there is no such folder";
   EXPECT_EQ(text_of(out_), "one");
   move_within(out_, "1", "run.json", anything);
   EXPECT_EQ(text_of(out_), "two");

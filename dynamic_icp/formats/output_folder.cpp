@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/formats/output_folder.hpp"
 
+#include <cerrno>
 #include <csignal>
 #include <system_error>
 
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "dynamic_icp/formats/folder_moves.hpp"
@@ -75,13 +77,25 @@ OutputFolder::OutputFolder(const fs::path& path, const ResultKind& kind, bool re
     : named_(named(path)), final_(resolved(path)), kind_(kind), replace_(replace), within_(must_stay(final_)) {
   remove_leftovers(final_);
   refuse_if_within(inputs);
-  check_replaceable(final_);
+  check_final();
   make_staging();
 }
 
 OutputFolder::~OutputFolder() {
-  std::error_code ignored;
-  fs::remove_all(staging_, ignored);
+  if (lock_) {  // not after commit(): the name may be another one's by now
+    std::error_code ignored;
+    fs::remove_all(staging_, ignored);
+  }
+}
+
+void OutputFolder::check_final() const {
+  while (true) {
+    const FolderLock looking(final_, FolderLock::Wait::kYes);  // who replaces it may do so first
+    if (!looking.held() || looking.is_of(final_)) {
+      check_replaceable(final_);
+      return;
+    }
+  }
 }
 
 void OutputFolder::check_replaceable(const fs::path& folder) const {
@@ -144,12 +158,18 @@ void OutputFolder::make_staging() {
   for (auto number = static_cast<unsigned long>(::getpid()); !fault; ++number) {
     number_ = std::to_string(number);
     const fs::path staging = names.path(Staged::kPartial, number_);
-    if (!fs::create_directory(staging, fault)) {
+    if (::mkdir(staging.c_str(), 0777) != 0) {
+      if (errno != EEXIST) {
+        fault.assign(errno, std::generic_category());
+      }
       continue;
     }
     lock_ = std::make_unique<FolderLock>(staging);
-    if (lock_->held() && !lock_->is_of(staging)) {
-      continue;  // another one took it for left behind
+    // Until it is locked, another one may take it for left behind.
+    std::error_code ignored;
+    const bool there = lock_->held() ? lock_->is_of(staging) : !lock_->taken() && fs::exists(staging, ignored);
+    if (!there) {
+      continue;
     }
     staging_ = staging;
     unfinished_ = std::make_unique<Unfinished>(staging_);

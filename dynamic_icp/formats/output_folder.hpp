@@ -57,6 +57,7 @@ class OutputFolder {
   }
 
  private:
+  void check_final() const;
   void check_replaceable(const std::filesystem::path& folder) const;
   void refuse_if_within(const std::vector<std::filesystem::path>& inputs) const;
   void make_staging();
