@@ -29,6 +29,7 @@
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
+#include "apps/messages.hpp"
 #include "apps/method_options.hpp"
 #include "apps/scan_selection.hpp"
 
@@ -83,14 +84,17 @@ void print(const std::string& text) {
   }
 }
 
-/// A folder without tables of earlier results, which the new ones may not replace.
+/// The forms of a table, by the endings of their files.
+const std::pair<const char*, std::string (*)(const benchmark::Table&)> kTableForms[] = {
+    {".md", benchmark::markdown}, {".csv", benchmark::csv}, {".tex", benchmark::latex}};
+
+/// A folder without tables of earlier results, which the new ones may not replace. Other files are left alone.
 void make_tables_folder(const fs::path& folder) {
   formats::make_folder(folder);
-  std::error_code fault;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
-    const std::string extension = entry.path().extension().string();
-    if (extension == ".md" || extension == ".csv" || extension == ".tex") {
-      fs::remove(entry.path(), fault);
+  for (const std::string& name : benchmark::table_names()) {
+    for (const auto& [ending, write] : kTableForms) {
+      std::error_code fault;
+      fs::remove(folder / (name + ending), fault);
     }
   }
 }
@@ -102,11 +106,10 @@ void write_tables(const fs::path& folder) {
   make_tables_folder(folder / "tables");
   std::string all;
   for (const benchmark::Table& table : benchmark::all_tables(results)) {
-    const std::string text = benchmark::markdown(table);
-    formats::write_whole_file(folder / "tables" / (table.name + ".md"), text);
-    formats::write_whole_file(folder / "tables" / (table.name + ".csv"), benchmark::csv(table));
-    formats::write_whole_file(folder / "tables" / (table.name + ".tex"), benchmark::latex(table));
-    all += (all.empty() ? "" : "\n") + text;
+    for (const auto& [ending, write] : kTableForms) {
+      formats::write_whole_file(folder / "tables" / (table.name + ending), write(table));
+    }
+    all += (all.empty() ? "" : "\n") + benchmark::markdown(table);
   }
   formats::write_whole_file(folder / "tables.md", all);
   print(all);
@@ -164,7 +167,7 @@ int run_benchmark(BenchmarkOptions options) {
   const std::vector<Candidate> rivals = choose_candidates(options.methods, options.ablations, options.run);
   const benchmark::Sequences opened = open_recordings(options);
   for (const std::string& reason : opened.skipped) {
-    fmt::print(stderr, "dynamic-icp: warning: left out: {}\n", reason);
+    tell("dynamic-icp: warning: left out: {}\n", reason);
   }
   const benchmark::BenchmarkFolder folder(options.output);
   const benchmark::Program program = this_program();

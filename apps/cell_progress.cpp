@@ -9,6 +9,8 @@
 #include <fmt/ranges.h>
 #include <unistd.h>
 
+#include "apps/messages.hpp"
+
 namespace dynamic_icp::apps {
 namespace {
 
@@ -23,7 +25,7 @@ CellProgress::CellProgress(std::size_t total, bool quiet)
 
 CellProgress::~CellProgress() {
   if (terminal_) {
-    fmt::print(stderr, "{}", kClearLine);
+    tell("{}", kClearLine);
   }
 }
 
@@ -45,7 +47,7 @@ void CellProgress::end(const std::string& name, const std::string& outcome, bool
 }
 
 void CellProgress::say(const std::string& line) const {
-  fmt::print(stderr, "{}{}\n", terminal_ ? kClearLine : "", line);
+  tell("{}{}\n", terminal_ ? kClearLine : "", line);
   std::fflush(stderr);
 }
 
@@ -56,8 +58,8 @@ void CellProgress::draw() const {
     if (names.size() > kLongestNames) {
       names = names.substr(0, kLongestNames) + "...";
     }
-    fmt::print(stderr, "{}benchmark [{}{}] {}/{}  {} ", kClearLine, std::string(filled, '='),
-               std::string(kBarWidth - filled, ' '), done_, total_, names);
+    tell("{}benchmark [{}{}] {}/{}  {} ", kClearLine, std::string(filled, '='), std::string(kBarWidth - filled, ' '),
+         done_, total_, names);
     std::fflush(stderr);
   }
 }

@@ -24,6 +24,9 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected);
 void add_report_command(CLI::App& app, std::function<int()>& selected);
 void add_config_command(CLI::App& app, std::function<int()>& selected);
 
+/// Whether this program was built with what draws the HTML pages.
+bool has_viewer();
+
 /// Makes the HTML page of a run folder as `report` does without options: for `run --report`. Throws DataError when the
 /// program was built without the viewer.
 void write_report(const std::filesystem::path& run_folder, const std::filesystem::path& html, int threads);

@@ -17,15 +17,15 @@
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
+#include "apps/messages.hpp"
 #include "apps/progress.hpp"
+#include "apps/result_kinds.hpp"
 #include "apps/scan_selection.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr const char* kRecord = "conversion.json";  // what was converted how; marks the folder as a result
 
 struct ConvertOptions {
   std::string input;
@@ -63,17 +63,19 @@ int convert(const ConvertOptions& options) {
   const ScanSelection selection = select_scans(*dataset, options.start, options.max_frames);
   if (!options.quiet) {
     for (const std::string& assumption : dataset->assumptions()) {
-      fmt::print(stderr, "dynamic-icp: warning: {}\n", assumption);
+      tell("dynamic-icp: warning: {}\n", assumption);
     }
   }
-  formats::OutputFolder output(options.output, kRecord, options.force);
-  std::vector<std::string> notes;
-  {
+  const formats::ResultKind kind = conversion_result();
+  formats::OutputFolder output(options.output, kind, options.force,
+                               {options.input, dataset->scan_file(selection.begin), dataset->ground_truth_file()});
+  const std::vector<std::string> notes = output.fill([&] {
     Progress progress("convert", 2 * (selection.end - selection.begin), options.quiet);
-    notes = conversion::convert(*dataset, {selection.begin, selection.end}, target, output.path(),
-                                [&] { progress.advance(); });
-  }
-  formats::write_whole_file(output.path() / kRecord, record_json(options, *dataset, selection, notes));
+    const std::vector<std::string> left_out = conversion::convert(*dataset, {selection.begin, selection.end}, target,
+                                                                  output.path(), [&] { progress.advance(); });
+    formats::write_whole_file(output.path() / kind.marker, record_json(options, *dataset, selection, left_out));
+    return left_out;
+  });
   output.commit();
   if (!options.quiet) {
     for (const std::string& note : notes) {
@@ -97,7 +99,7 @@ void add_convert_command(CLI::App& app, std::function<int()>& selected) {
       ->type_name("DIR");
   add_input_options(*command, options->settings);
   add_selection_options(*command, "convert", options->start, options->max_frames);
-  command->add_flag("--force", options->force, "Replace an earlier conversion in DIR");
+  command->add_flag("--force", options->force, "Replace an earlier conversion in DIR, which may hold nothing else");
   command->add_flag("--quiet", options->quiet, "Print errors only");
   command->callback([options, &selected] { selected = [options] { return convert(*options); }; });
 }

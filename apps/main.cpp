@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <cstdio>
 #include <functional>
+#include <iostream>
+#include <system_error>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -12,8 +14,15 @@
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
+#include "apps/messages.hpp"
+#include "apps/process.hpp"
 
 namespace {
+
+namespace apps = dynamic_icp::apps;
+using dynamic_icp::DataError;
+using dynamic_icp::UsageError;
+using dynamic_icp::version;
 
 constexpr int kDataOrMachineFailed = 1;
 constexpr int kWrongUsage = 2;
@@ -22,8 +31,8 @@ constexpr const char* kNotPrinted = "standard output: not all could be written";
 
 /// The status, but what was printed must have arrived: a file that it was sent to may be full.
 int with_output_written(int status) {
-  if (std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
-    throw dynamic_icp::DataError(kNotPrinted);
+  if (!std::cout.flush() || std::fflush(stdout) != 0 || std::ferror(stdout) != 0) {
+    throw DataError(kNotPrinted);
   }
   return status;
 }
@@ -40,20 +49,22 @@ void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
     }
     known += " " + command->get_name();
   }
-  throw dynamic_icp::UsageError(fmt::format("unknown command '{}'; known are:{}", argv[1], known));
+  throw UsageError(fmt::format("unknown command '{}'; known are:{}", argv[1], known));
 }
 
-int report(const char* message, int status) {
-  fmt::print(stderr, "dynamic-icp: {}\n", message);
+int report(const std::string& message, int status) {
+  apps::tell("dynamic-icp: {}\n", message);
   return status;
 }
 
-}  // namespace
+/// The system names what it lacks, but not what for.
+std::string what_failed(const std::system_error& error) {
+  const bool no_thread = error.code() == std::errc::resource_unavailable_try_again;
+  return fmt::format("{}{}", no_thread ? "cannot start another thread (--threads N takes fewer): " : "", error.what());
+}
 
-int main(int argc, char** argv) {
-  using namespace dynamic_icp;
-  keep_freed_memory();
-  apps::remember_command_line(argc, argv);
+/// Carries out what the command line says.
+int run(int argc, char** argv) {
   CLI::App app{"Registration and odometry for FMCW LiDAR in scenes full of moving things", "dynamic-icp"};
   app.set_version_flag("--version", std::string(version()));
   app.require_subcommand(1);
@@ -64,19 +75,33 @@ int main(int argc, char** argv) {
         apps::add_info_command, apps::add_config_command}) {
     add(app, selected);
   }
+  refuse_unknown_command(app, argc, argv);
   try {
-    refuse_unknown_command(app, argc, argv);
     app.parse(argc, argv);
-    return with_output_written(selected());
   } catch (const CLI::Success& help_or_version) {
-    return app.exit(help_or_version);
+    return with_output_written(app.exit(help_or_version));
+  }
+  return with_output_written(selected());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  apps::open_standard_streams();
+  apps::clean_up_on_signals();
+  dynamic_icp::keep_freed_memory();
+  apps::remember_command_line(argc, argv);
+  try {
+    return run(argc, argv);
   } catch (const CLI::ParseError& error) {
-    fmt::print(stderr, "dynamic-icp: {}\nRun 'dynamic-icp --help' or 'dynamic-icp COMMAND --help'.\n", error.what());
-    return kWrongUsage;
+    return report(fmt::format("{}\nRun 'dynamic-icp --help' or 'dynamic-icp COMMAND --help'.", error.what()),
+                  kWrongUsage);
   } catch (const UsageError& error) {
     return report(error.what(), kWrongUsage);
   } catch (const std::bad_alloc&) {
     return report("the machine has no memory left", kDataOrMachineFailed);
+  } catch (const std::system_error& error) {
+    return report(std::ferror(stdout) != 0 ? kNotPrinted : what_failed(error), kDataOrMachineFailed);
   } catch (const std::exception& error) {
     // Long texts fail while they are printed, not at the end.
     return report(std::ferror(stdout) != 0 ? kNotPrinted : error.what(), kDataOrMachineFailed);

@@ -4,8 +4,9 @@
 
 #include <cstdio>
 
-#include <fmt/format.h>
 #include <unistd.h>
+
+#include "apps/messages.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -21,7 +22,7 @@ Progress::Progress(std::string what, std::size_t total, bool quiet)
 Progress::~Progress() {
   if (!quiet_ && terminal_ && done_ > 0) {
     draw_bar();
-    fmt::print(stderr, "\n");
+    tell("\n");
   }
 }
 
@@ -37,15 +38,15 @@ void Progress::advance() {
       draw_bar();
     }
   } else if (done_ * 10 / total_ != (done_ - 1) * 10 / total_) {
-    fmt::print(stderr, "{}: {} of {}\n", what_, done_, total_);
+    tell("{}: {} of {}\n", what_, done_, total_);
   }
 }
 
 void Progress::draw_bar() {
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - started_).count();
   const std::size_t filled = kBarWidth * done_ / total_;
-  fmt::print(stderr, "\r{} [{}{}] {}/{}  {:.0f}/s ", what_, std::string(filled, '='),
-             std::string(kBarWidth - filled, ' '), done_, total_, static_cast<double>(done_) / seconds);
+  tell("\r{} [{}{}] {}/{}  {:.0f}/s ", what_, std::string(filled, '='), std::string(kBarWidth - filled, ' '), done_,
+       total_, static_cast<double>(done_) / seconds);
   std::fflush(stderr);
 }
 

@@ -15,6 +15,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
+#include "apps/messages.hpp"
 #include "apps/method_options.hpp"
 
 namespace dynamic_icp::apps {
@@ -33,7 +34,7 @@ RawScan read_scan(const std::string& path, Stamp stamp, const datasets::Correcti
   RawScan raw = datasets::corrected(formats::read_xyzd(path), correction);
   raw.stamp = stamp;
   if (!raw.warning.empty()) {
-    fmt::print(stderr, "dynamic-icp: warning: {}\n", raw.warning);
+    tell("dynamic-icp: warning: {}\n", raw.warning);
   }
   return raw;
 }
@@ -55,7 +56,7 @@ int register_pair(const RegisterOptions& options) {
   const std::unique_ptr<odometry::Odometry> odometry =
       odometry::make_odometry(options.method.method, config, surroundings, options.method.threads);
   for (const std::string& assumption : odometry->assumptions()) {
-    fmt::print(stderr, "dynamic-icp: warning: {}\n", assumption);
+    tell("dynamic-icp: warning: {}\n", assumption);
   }
   const odometry::Frame first = odometry->process(source);
   odometry::Frame second = odometry->process(target);

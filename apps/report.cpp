@@ -111,6 +111,8 @@ int write_page(const ReportOptions& options) {
 
 }  // namespace
 
+bool has_viewer() { return report::viewer_bundle().has_value(); }
+
 void write_report(const fs::path& run_folder, const fs::path& html, int threads) {
   const report::ViewerBundle viewer = required_viewer();
   formats::write_whole_file(html, report::html_page(report::run_report(run_folder, {}, Workers(threads)), viewer));

@@ -24,6 +24,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/progress.hpp"
+#include "apps/result_kinds.hpp"
 #include "apps/settings.hpp"
 
 namespace dynamic_icp::apps {
@@ -138,10 +139,22 @@ SimulationConfig make_config(const SceneKind& kind, const SimulateOptions& optio
   return config;
 }
 
+bool is_file(const std::string& name) { return name.ends_with(".yaml") || name.ends_with(".yml"); }
+
 /// The scene that comes with the program or the one of a file.
 SceneKind find_scene(const std::string& name) {
-  const bool is_file = name.ends_with(".yaml") || name.ends_with(".yml");
-  return is_file ? scenes::load_scene_file(name) : scenes::find_scene(name);
+  return is_file(name) ? scenes::load_scene_file(name) : scenes::find_scene(name);
+}
+
+/// The files that the simulation reads.
+std::vector<std::filesystem::path> inputs(const SimulateOptions& options) {
+  std::vector<std::filesystem::path> files;
+  for (const std::string& name : {options.scene, options.sensor}) {
+    if (is_file(name)) {
+      files.emplace_back(name);
+    }
+  }
+  return files;
 }
 
 void print_summary(const Simulation& simulation, const SequenceCounts& counts, double seconds,
@@ -177,6 +190,25 @@ void write_overview(const Simulation& simulation, const std::filesystem::path& p
   formats::write_whole_file(path, simulation::draw_overview(simulation, frame, drawing::Ground::kLight, workers));
 }
 
+/// All files of the sequence, with its picture.
+SequenceCounts write_sequence(const Simulation& simulation, const simulation::SequenceOptions& written,
+                              const std::filesystem::path& folder, const SimulateOptions& options) {
+  const Workers workers(options.threads);
+  simulation::SequenceWriter writer(folder, simulation, written);
+  {
+    Progress progress(fmt::format("simulating {}", simulation.kind().name), simulation.size(), options.quiet);
+    for (std::size_t i = 0; i < simulation.size(); ++i) {
+      for (std::size_t sensor = 0; sensor < simulation.config().rig.sensors.size(); ++sensor) {
+        writer.add(simulation.frame(i, workers, sensor), sensor);
+      }
+      progress.advance();
+    }
+  }
+  writer.finish(version());
+  write_overview(simulation, folder / "overview.svg", workers);
+  return writer.counts();
+}
+
 int simulate(const SimulateOptions& options) {
   if (options.list) {
     return list_choices();
@@ -195,25 +227,14 @@ int simulate(const SimulateOptions& options) {
     throw UsageError("simulate: --output DIR is missing");
   }
   const auto started = std::chrono::steady_clock::now();
-  const Workers workers(options.threads);
-  formats::OutputFolder output(options.output, "scene.json", options.force);
+  formats::OutputFolder output(options.output, sequence_result(), options.force, inputs(options));
   const Simulation simulation(kind, config);
-  simulation::SequenceWriter writer(output.path(), simulation, written);
-  {
-    Progress progress(fmt::format("simulating {}", kind.name), simulation.size(), options.quiet);
-    for (std::size_t i = 0; i < simulation.size(); ++i) {
-      for (std::size_t sensor = 0; sensor < config.rig.sensors.size(); ++sensor) {
-        writer.add(simulation.frame(i, workers, sensor), sensor);
-      }
-      progress.advance();
-    }
-  }
-  writer.finish(version());
-  write_overview(simulation, output.path() / "overview.svg", workers);
+  const SequenceCounts counts =
+      output.fill([&] { return write_sequence(simulation, written, output.path(), options); });
   output.commit();
   if (!options.quiet) {
     const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
-    print_summary(simulation, writer.counts(), elapsed.count(), options);
+    print_summary(simulation, counts, elapsed.count(), options);
   }
   return 0;
 }
@@ -234,8 +255,9 @@ void add_simulate_command(CLI::App& app, std::function<int()>& selected) {
       ->type_name("NAME");
   command->add_option("--show-sensor", options->show_sensor, "Print the file of a sensor and end")->type_name("NAME");
   command
-      ->add_option("--layout", options->layout,
-                   "Files to write: dicp, hercules, helipr, boreas or aevascenes (default dicp); the truth is the same for all")
+      ->add_option(
+          "--layout", options->layout,
+          "Files to write: dicp, hercules, helipr, boreas or aevascenes (default dicp); the truth is the same for all")
       ->type_name("NAME");
   command->add_option("--frames", options->frames, "Number of scans, the length of the drive (default 60)")
       ->type_name("N");
@@ -252,7 +274,8 @@ void add_simulate_command(CLI::App& app, std::function<int()>& selected) {
   command->add_flag("--point-truth", options->point_truth, "Write true range and true Doppler of every point");
   command->add_flag("--calibration", options->calibration,
                     "Write calibration.json, and poses of the vehicle instead of the sensor (layout dicp)");
-  command->add_flag("--force", options->force, "Replace an earlier simulated sequence in the output folder");
+  command->add_flag("--force", options->force,
+                    "Replace an earlier simulated sequence in DIR, which may hold nothing else");
   command->add_flag("--quiet", options->quiet, "Print nothing but errors");
   command->footer(settings_help);
   command->callback([options, &selected] { selected = [options] { return simulate(*options); }; });

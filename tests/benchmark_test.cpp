@@ -96,11 +96,17 @@ TEST_F(Benchmark, TablesComeFromTheSavedResults) {
   fs::remove_all(out() / "jam");
   fs::remove(out() / "benchmark.lock");
   write_file(out() / "tables" / "ablation.md", "of an earlier benchmark");
+  for (const char* name : {"my_table.tex", "notes.md", "numbers.csv"}) {
+    write_file(out() / "tables" / name, "of the user");
+  }
   const Outcome outcome = run_program("benchmark --tables " + out().string());
   EXPECT_EQ(outcome.status, 0) << outcome.text;
   EXPECT_NE(outcome.text.find("12.3456"), std::string::npos) << outcome.text;
   EXPECT_EQ(outcome.text, read_file(out() / "tables.md"));
   EXPECT_FALSE(fs::exists(out() / "tables" / "ablation.md"));
+  for (const char* name : {"my_table.tex", "notes.md", "numbers.csv"}) {
+    EXPECT_TRUE(fs::exists(out() / "tables" / name)) << name;
+  }
 }
 
 TEST_F(Benchmark, FinishedCellsStayChangedOnesRunAgain) {

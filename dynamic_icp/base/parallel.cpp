@@ -10,8 +10,11 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
+
+#include "dynamic_icp/base/error.hpp"
 
 namespace dynamic_icp {
 namespace {
@@ -41,22 +44,20 @@ class Workers::Pool {
  public:
   explicit Pool(int threads) : may_look_(threads <= machine_threads()) {
     open_.reserve(kDeepest);
-    for (int i = 1; i < threads; ++i) {
-      helpers_.emplace_back([this] { help(); });
+    helpers_.reserve(static_cast<std::size_t>(threads));
+    try {
+      for (int i = 1; i < threads; ++i) {
+        helpers_.emplace_back([this] { help(); });
+      }
+    } catch (const std::system_error& error) {
+      const std::size_t started = helpers_.size() + 1;
+      stop();
+      throw DataError("the machine starts " + std::to_string(started) + " of " + std::to_string(threads) +
+                      " threads and no more: " + error.code().message());
     }
   }
 
-  ~Pool() {
-    {
-      const std::lock_guard lock(mutex_);
-      stopping_ = true;
-      ++opened_;
-    }
-    changed_.notify_all();
-    for (std::thread& helper : helpers_) {
-      helper.join();
-    }
-  }
+  ~Pool() { stop(); }
 
   Pool(const Pool&) = delete;
   Pool& operator=(const Pool&) = delete;
@@ -104,6 +105,18 @@ class Workers::Pool {
       }
     }
   };
+
+  void stop() {
+    {
+      const std::lock_guard lock(mutex_);
+      stopping_ = true;
+      ++opened_;
+    }
+    changed_.notify_all();
+    for (std::thread& helper : helpers_) {
+      helper.join();
+    }
+  }
 
   /// Looks whether something has come true until it has, or for long enough; not where that would take the processor
   /// from the thread that is waited for.

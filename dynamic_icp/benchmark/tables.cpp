@@ -15,6 +15,12 @@
 namespace dynamic_icp::benchmark {
 namespace {
 
+constexpr const char* kAccuracy = "accuracy";
+constexpr const char* kRuntime = "runtime";
+constexpr const char* kAblation = "ablation";
+constexpr const char* kDynamics = "dynamics";
+constexpr const char* kObjects = "objects";
+
 Table named(const char* name, const char* title) {
   Table table;
   table.name = name;
@@ -128,13 +134,13 @@ std::vector<CellResult> start_sequence_rows(Table& table, const BenchmarkResults
 
 Table accuracy_table(const BenchmarkResults& results) {
   Table table = comparison(results, methods_run(results), "Comparison of the methods under identical preprocessing.");
-  table.name = "accuracy";
+  table.name = kAccuracy;
   table.title = "Accuracy";
   return table;
 }
 
 Table runtime_table(const BenchmarkResults& results) {
-  Table table = named("runtime", "Runtime and convergence");
+  Table table = named(kRuntime, "Runtime and convergence");
   table.header = {{"", "Method"}};
   table.caption =
       "Per method over all its finished sequences. Avg. iters: per pair of scans; conv. rate: share of pairs that "
@@ -171,13 +177,13 @@ Table ablation_table(const BenchmarkResults& results) {
   Table table = comparison(results, variants,
                            "Dynamic-ICP without the velocity filter (VF), without the prediction of dynamic points "
                            "(DPP), without the Doppler residual (DR), and in full.");
-  table.name = "ablation";
+  table.name = kAblation;
   table.title = "Ablation";
   return table;
 }
 
 Table dynamics_table(const BenchmarkResults& results) {
-  Table table = named("dynamics", "Scene dynamics");
+  Table table = named(kDynamics, "Scene dynamics");
   table.caption =
       "Dyn./All: dynamic candidates over all points used of a scan; Clustered/Dyn.: clustered points over dynamic "
       "candidates; Refined/Dyn.: points in accepted objects, used for prediction, over clustered points. Max and mean "
@@ -196,7 +202,7 @@ Table dynamics_table(const BenchmarkResults& results) {
 }
 
 Table objects_table(const BenchmarkResults& results) {
-  Table table = named("objects", "Object velocities");
+  Table table = named(kObjects, "Object velocities");
   table.caption =
       "Velocities of moving objects against the truth, for true objects with at least 50 points and 2 m/s after the "
       "first 5 scans; their estimate is the nearest reported object within 3 m beyond half their longest edge. Along, "
@@ -219,6 +225,8 @@ Table objects_table(const BenchmarkResults& results) {
        cell_column({"", "False per scan"}, {}, [](const CellResult& cell) { return cell.objects.false_per_scan; })});
   return table;
 }
+
+std::vector<std::string> table_names() { return {kAccuracy, kRuntime, kAblation, kDynamics, kObjects}; }
 
 std::vector<Table> all_tables(const BenchmarkResults& results) {
   std::vector<Table> tables = {accuracy_table(results), runtime_table(results), ablation_table(results),

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "dynamic_icp/benchmark/results.hpp"
@@ -23,6 +24,9 @@ Table ablation_table(const BenchmarkResults& results);
 Table dynamics_table(const BenchmarkResults& results);
 /// (5) Object velocities of dynamic-icp against the truth per sequence, where there is truth.
 Table objects_table(const BenchmarkResults& results);
+
+/// The names of all tables.
+std::vector<std::string> table_names();
 
 /// All tables that have rows, in this order.
 std::vector<Table> all_tables(const BenchmarkResults& results);

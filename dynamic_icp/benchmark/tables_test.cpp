@@ -54,6 +54,13 @@ TEST(Tables, OfNothingAreNone) {
   EXPECT_TRUE(all_tables(with({"a"}, {})).empty());
 }
 
+TEST(Tables, AllNamesAreKnown) {
+  const BenchmarkResults none;
+  EXPECT_EQ(table_names(),
+            (std::vector<std::string>{accuracy_table(none).name, runtime_table(none).name, ablation_table(none).name,
+                                      dynamics_table(none).name, objects_table(none).name}));
+}
+
 TEST(Tables, AccuracyHasThePapersNamesAndOrder) {
   const Table table = accuracy_table(
       with({"a", "b"}, {cell("a", "dynamic-icp", 0.1), cell("a", "other", 0.3), cell("a", "point-to-point", 0.2),

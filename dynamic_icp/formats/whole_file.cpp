@@ -13,6 +13,7 @@
 #include "dynamic_icp/base/error.hpp"
 #include "dynamic_icp/formats/file_kind.hpp"
 #include "dynamic_icp/formats/memory_error.hpp"
+#include "dynamic_icp/formats/unfinished.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -65,8 +66,10 @@ std::string read_to_end(int descriptor, const std::filesystem::path& path, std::
 
 }  // namespace
 
-OutputFile::OutputFile(const std::filesystem::path& path)
-    : path_(path), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+OutputFile::OutputFile(const std::filesystem::path& path) : OutputFile(path, path) {}
+
+OutputFile::OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name)
+    : final_name_(final_name), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
   if (descriptor_ < 0) {
     fail("create");
   }
@@ -78,7 +81,7 @@ OutputFile::~OutputFile() {
   }
 }
 
-void OutputFile::fail(const char* action) const { throw_error(path_, action); }
+void OutputFile::fail(const char* action) const { throw_error(final_name_, action); }
 
 void OutputFile::write(std::string_view bytes) {
   while (!bytes.empty()) {
@@ -112,8 +115,9 @@ void write_whole_file(const std::filesystem::path& path, std::string_view conten
   }
   std::filesystem::path partial = path;
   partial += fmt::format(".partial-{}", ::getpid());
+  const Unfinished unfinished(partial);
   try {
-    OutputFile file(partial);
+    OutputFile file(partial, path);
     file.write(content);
     file.close();
   } catch (const DataError&) {

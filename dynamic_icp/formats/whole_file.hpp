@@ -15,6 +15,8 @@ namespace dynamic_icp::formats {
 class OutputFile {
  public:
   explicit OutputFile(const std::filesystem::path& path);
+  /// A file that is to be renamed: messages name the one that it will be.
+  OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name);
   ~OutputFile();
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
@@ -27,7 +29,7 @@ class OutputFile {
  private:
   [[noreturn]] void fail(const char* action) const;
 
-  std::filesystem::path path_;
+  std::filesystem::path final_name_;
   int descriptor_ = -1;
 };
 

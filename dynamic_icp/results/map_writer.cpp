@@ -52,6 +52,9 @@ fs::path map_destination(const fs::path& path, const fs::path& output, const fs:
     return staging / within;
   }
   std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    throw DataError(fmt::format("{}: cannot create: it is a folder", path.string()));
+  }
   if (!fs::is_directory(fs::absolute(path).parent_path(), ignored)) {
     throw DataError(fmt::format("{}: cannot create: its folder does not exist", path.string()));
   }

@@ -15,7 +15,8 @@ void check_map_file(const std::filesystem::path& path);
 
 /// Where to write the map at `path` of a run whose folder `output` is put together in `staging` (see
 /// formats/output_folder): a map within `output` goes to its place in `staging`, any other one to `path`. Throws
-/// UsageError when both are the same, and DataError when the map's folder is not there and is no part of the run's.
+/// UsageError when both are the same, and DataError when the map's folder is not there and is no part of the run's, or
+/// there is a folder of the map's name.
 std::filesystem::path map_destination(const std::filesystem::path& path, const std::filesystem::path& output,
                                       const std::filesystem::path& staging);
 

@@ -172,6 +172,8 @@ TEST_F(MapWriterTest, AMapWithinTheRunWaitsInItsStaging) {
   EXPECT_EQ(map_destination(folder_ / "out.ply", output, staging), folder_ / "out.ply");
   EXPECT_EQ(map_destination("map.ply", output, staging), "map.ply") << "of the working directory";
   EXPECT_THROW(map_destination(folder_ / "no" / "map.ply", output, staging), DataError);
+  fs::create_directory(folder_ / "folder.ply");
+  EXPECT_THROW(map_destination(folder_ / "folder.ply", output, staging), DataError);
   EXPECT_THROW(map_destination(output, output, staging), UsageError);
   EXPECT_THROW(map_destination(output / "", output, staging), UsageError);
   fs::create_directory_symlink(output, folder_ / "link");

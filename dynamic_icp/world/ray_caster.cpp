@@ -64,6 +64,17 @@ bool meets_ball(const Ray& ray, const BodyAt& body) {
          distance_squared - along * along <= radius_squared;
 }
 
+const char* reason_of(RTCError error) {
+  switch (error) {
+    case RTC_ERROR_OUT_OF_MEMORY:
+      return "the machine has no memory left";
+    case RTC_ERROR_UNSUPPORTED_CPU:
+      return "it does not support this processor";
+    default:
+      return "for a reason that it does not tell";
+  }
+}
+
 }  // namespace
 
 /// Embree's search tree over one mesh.
@@ -75,7 +86,7 @@ class RayCaster::SearchTree {
     rtcCommitScene(scene_);
     if (const RTCError fault = rtcGetDeviceError(device); fault != RTC_ERROR_NONE) {
       throw DataError("Embree cannot build a search tree over " + std::to_string(mesh.triangles.size()) +
-                      " triangles: error " + std::to_string(fault));
+                      " triangles: " + reason_of(fault));
     }
   }
 
@@ -135,7 +146,8 @@ RayCaster::RayCaster(const World& world) : world_(&world) {
   // one is reported, and it must be the same tree each time.
   const RTCDevice device = rtcNewDevice("threads=1");
   if (device == nullptr) {
-    throw DataError("Embree cannot start: error " + std::to_string(rtcGetDeviceError(nullptr)));
+    throw DataError(std::string("the search for what rays meet (Embree) cannot start: ") +
+                    reason_of(rtcGetDeviceError(nullptr)));
   }
   const std::unique_ptr<RTCDeviceTy, void (*)(RTCDevice)> owner(device,
                                                                 rtcReleaseDevice);  // scenes keep their own hold

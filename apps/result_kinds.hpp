@@ -1,0 +1,19 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "dynamic_icp/formats/result_kind.hpp"
+
+// What the results of the commands consist of, for --force: it removes these files and no others.
+namespace dynamic_icp::apps {
+
+/// Of `run`, with what `report` and `plot` add to it, and its map when that lies in it.
+formats::ResultKind run_result();
+
+/// Of `convert`, in all layouts.
+formats::ResultKind conversion_result();
+
+/// Of `simulate`, in all layouts, with the folders of its sensors.
+formats::ResultKind sequence_result();
+
+}  // namespace dynamic_icp::apps

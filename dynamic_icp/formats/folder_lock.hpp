@@ -1,0 +1,36 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+
+namespace dynamic_icp::formats {
+
+/// A lock on a folder, whatever its name becomes. It ends with the process, however that ends.
+class FolderLock {
+ public:
+  enum class Wait { kNo, kYes };
+
+  /// Throws DataError when it was to wait and another one holds the lock for longer than moving folders takes.
+  explicit FolderLock(const std::filesystem::path& folder, Wait wait = Wait::kNo);
+  ~FolderLock() { release(); }
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+  /// False when another one holds it, or where there is no such folder or no locks.
+  [[nodiscard]] bool held() const { return descriptor_ >= 0; }
+
+  /// Another one holds it.
+  [[nodiscard]] bool taken() const { return taken_; }
+
+  /// Whether the folder that was locked still has this name.
+  [[nodiscard]] bool is_of(const std::filesystem::path& folder) const;
+
+  void release();
+
+ private:
+  int descriptor_ = -1;
+  bool taken_ = false;
+};
+
+}  // namespace dynamic_icp::formats
