@@ -102,7 +102,7 @@ void make_tables_folder(const fs::path& folder) {
 /// Makes tables/ and tables.md from results.json and prints the latter.
 void write_tables(const fs::path& folder) {
   const fs::path source = folder / kResultsName;
-  const benchmark::BenchmarkResults results = benchmark::results_from_json(formats::read_whole_file(source), source);
+  const benchmark::BenchmarkResults results = benchmark::results_from_json(formats::read_text_file(source), source);
   make_tables_folder(folder / "tables");
   std::string all;
   for (const benchmark::Table& table : benchmark::all_tables(results)) {

@@ -18,7 +18,7 @@ constexpr const char* kPictures[] = {"convergence", "dynamics", "errors", "scan"
 /// What the marker of a result says; nothing when it cannot be read: then nothing but the usual files is known.
 json content_of(const fs::path& marker) {
   try {
-    const json content = json::parse(formats::read_whole_file(marker));
+    const json content = json::parse(formats::read_text_file(marker));
     return content.is_object() ? content : json::object();
   } catch (const std::exception&) {
     return json::object();
