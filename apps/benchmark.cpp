@@ -11,18 +11,18 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/base/version.hpp"
-#include "dynamic_icp/benchmark/benchmark_folder.hpp"
-#include "dynamic_icp/benchmark/cell_plan.hpp"
-#include "dynamic_icp/benchmark/cell_queue.hpp"
-#include "dynamic_icp/benchmark/machine.hpp"
-#include "dynamic_icp/benchmark/manifest.hpp"
-#include "dynamic_icp/benchmark/sequences.hpp"
-#include "dynamic_icp/benchmark/tables.hpp"
-#include "dynamic_icp/benchmark/variants.hpp"
-#include "dynamic_icp/formats/binary_file.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/version.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
+#include "dynamic_icp/tools/benchmark/cell_plan.hpp"
+#include "dynamic_icp/tools/benchmark/cell_queue.hpp"
+#include "dynamic_icp/tools/benchmark/machine.hpp"
+#include "dynamic_icp/tools/benchmark/manifest.hpp"
+#include "dynamic_icp/tools/benchmark/sequences.hpp"
+#include "dynamic_icp/tools/benchmark/tables.hpp"
+#include "dynamic_icp/tools/benchmark/variants.hpp"
 
 #include "apps/candidates.hpp"
 #include "apps/cell_progress.hpp"
@@ -161,9 +161,6 @@ benchmark::Sequences open_recordings(BenchmarkOptions& options) {
 }
 
 int run_benchmark(BenchmarkOptions options) {
-  if (!options.run.config_file.empty()) {
-    options.run.config_file = fs::absolute(options.run.config_file).string();
-  }
   const std::vector<Candidate> rivals = choose_candidates(options.methods, options.ablations, options.run);
   const benchmark::Sequences opened = open_recordings(options);
   for (const std::string& reason : opened.skipped) {
@@ -174,8 +171,9 @@ int run_benchmark(BenchmarkOptions options) {
   std::vector<benchmark::CellPlan> plans;
   for (const benchmark::Sequence& sequence : opened.sequences) {
     for (const Candidate& rival : rivals) {
-      plans.push_back(
-          benchmark::plan_cell(program, sequence, rival.method, rival.ablation, options.run, rival.configuration));
+      benchmark::RunSettings run = options.run;
+      run.settings = rival.settings;
+      plans.push_back(benchmark::plan_cell(program, sequence, rival.method, rival.ablation, run, rival.configuration));
     }
   }
   const std::size_t failed = run_plans(options, folder, program, plans, {describe(options, opened.sequences), {}});

@@ -9,9 +9,9 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/benchmark/variants.hpp"
-#include "dynamic_icp/odometry/odometry.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/tools/benchmark/variants.hpp"
 
 #include "apps/method_options.hpp"
 
@@ -50,24 +50,38 @@ std::vector<std::string> without_none(const std::vector<std::string_view>& names
   return parts;
 }
 
-odometry::Config configuration(const benchmark::RunSettings& settings, MethodOptions options) {
-  options.preset = settings.preset;
-  options.config_file = settings.config_file;
-  options.settings = settings.settings;
-  return make_config(options);
-}
-
-std::vector<std::string> resolved_configuration(const benchmark::RunSettings& settings, const std::string& method,
-                                                const std::string& ablation) {
+MethodOptions method_options(const benchmark::RunSettings& settings, const std::string& method = "dynamic-icp",
+                             const std::string& ablation = "none") {
   MethodOptions options;
   options.method = method;
   options.ablation = ablation;
-  odometry::Config config = configuration(settings, options);
-  std::vector<std::string> texts;
-  for (const ConfigField& field : odometry::fields(config)) {
-    texts.push_back(field.key + "=" + value_text(field));
+  options.preset = settings.preset;
+  options.config_file = settings.config_file;
+  options.settings = settings.settings;
+  return options;
+}
+
+std::vector<std::string> texts(const ConfigFields& fields) {
+  std::vector<std::string> result;
+  for (const ConfigField& field : fields) {
+    result.push_back(field.key + "=" + value_text(field));
   }
-  return texts;
+  return result;
+}
+
+/// What is to be set for a method, of all that is set: what it reads.
+std::vector<std::string> settings_of(const benchmark::RunSettings& settings, const std::string& method) {
+  odometry::Config config = resolve_config(method_options(settings, method));
+  odometry::Config plain = odometry::preset(settings.preset);
+  const std::vector<std::string> usual = texts(odometry::fields(plain));
+  std::vector<std::string> changed = texts(odometry::effective_fields(config, method));
+  std::erase_if(changed, [&](const std::string& text) { return std::ranges::find(usual, text) != usual.end(); });
+  return changed;
+}
+
+Candidate candidate(const benchmark::RunSettings& settings, const std::string& method, const std::string& ablation) {
+  odometry::Config config = resolve_config(method_options(settings, method, ablation));
+  return {method, ablation, settings_of(settings, method), texts(odometry::fields(config))};
 }
 
 }  // namespace
@@ -82,18 +96,19 @@ std::vector<std::string> known_ablations() { return without_none(odometry::ablat
 std::vector<Candidate> choose_candidates(const std::string& method_list, const std::string& ablation_list,
                                          const benchmark::RunSettings& settings) {
   const std::vector<std::string> methods = chosen_names("--methods", method_list, known_methods(), false);
-  const std::vector<std::string> parts = ablation_list == "all"
-                                             ? without_none(odometry::ablation_names(configuration(settings, {})))
-                                             : chosen_names("--ablations", ablation_list, known_ablations(), true);
+  const std::vector<std::string> parts =
+      ablation_list == "all" ? without_none(odometry::ablation_names(resolve_config(method_options(settings))))
+                             : chosen_names("--ablations", ablation_list, known_ablations(), true);
   if (ablation_list != "all" && !parts.empty() &&
       std::find(methods.begin(), methods.end(), benchmark::kOurMethod) == methods.end()) {
     throw UsageError(fmt::format("--ablations is about {}, which is not among --methods", benchmark::kOurMethod));
   }
+  refuse_ineffective_keys(method_options(settings), methods);
   std::vector<Candidate> all;
   for (const std::string& method : methods) {
-    all.push_back({method, "none", resolved_configuration(settings, method, "none")});
+    all.push_back(candidate(settings, method, "none"));
     for (const std::string& part : method == benchmark::kOurMethod ? parts : std::vector<std::string>()) {
-      all.push_back({method, part, resolved_configuration(settings, method, part)});
+      all.push_back(candidate(settings, method, part));
     }
   }
   return all;

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamic_icp/benchmark/cell_plan.hpp"
+#include "dynamic_icp/tools/benchmark/cell_plan.hpp"
 
 namespace dynamic_icp::apps {
 
@@ -13,6 +13,7 @@ namespace dynamic_icp::apps {
 struct Candidate {
   std::string method;
   std::string ablation;
+  std::vector<std::string> settings;       ///< key=value, what differs from the preset and has an effect on it
   std::vector<std::string> configuration;  ///< resolved, key=value
 };
 
@@ -22,7 +23,8 @@ std::vector<std::string> known_methods();
 std::vector<std::string> known_ablations();
 
 /// What a benchmark compares. The lists are names with commas, or "all"; "none" switches nothing off. Throws UsageError
-/// for an unknown name, for ablations without the method they are about, and as `make_config` does.
+/// for an unknown name, for ablations without the method they are about, and as `make_config` does; a key must have an
+/// effect on one of the methods.
 std::vector<Candidate> choose_candidates(const std::string& method_list, const std::string& ablation_list,
                                          const benchmark::RunSettings& settings);
 

@@ -7,12 +7,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/base/version.hpp"
-#include "dynamic_icp/conversion/conversion.hpp"
-#include "dynamic_icp/datasets/input_settings.hpp"
-#include "dynamic_icp/formats/output_folder.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/version.hpp"
+#include "dynamic_icp/recording/conversion/conversion.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/formats/output_folder.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"

@@ -12,10 +12,10 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/evaluation/evaluation.hpp"
-#include "dynamic_icp/evaluation/evaluation_report.hpp"
-#include "dynamic_icp/formats/tum.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/evaluation/evaluation.hpp"
+#include "dynamic_icp/recording/evaluation/evaluation_report.hpp"
+#include "dynamic_icp/recording/formats/tum.hpp"
 
 #include "apps/commands.hpp"
 

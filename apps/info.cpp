@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/base/scan.hpp"
-#include "dynamic_icp/datasets/input_settings.hpp"
-#include "dynamic_icp/doctor/diagnosis.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
@@ -168,10 +168,10 @@ double truth_coverage(const datasets::Dataset& dataset) {
   return dataset.size() == 0 ? 0.0 : 100.0 * static_cast<double>(covered) / static_cast<double>(dataset.size());
 }
 
-void print_diagnosis(const doctor::Diagnosis& diagnosis) {
+void print_diagnosis(const diagnosis::Diagnosis& diagnosis) {
   fmt::print("diagnosis    of {} scans\n", diagnosis.scans_looked_at);
-  for (const doctor::Finding& finding : diagnosis.findings) {
-    fmt::print("  {:<15} {:<11} {}\n", doctor::to_string(finding.question), doctor::to_string(finding.verdict),
+  for (const diagnosis::Finding& finding : diagnosis.findings) {
+    fmt::print("  {:<15} {:<11} {}\n", diagnosis::to_string(finding.question), diagnosis::to_string(finding.verdict),
                finding.sentence);
     if (!finding.fix.empty()) {
       fmt::print("  {:<15} {:<11} mend it with {}\n", "", "", finding.fix);
@@ -179,15 +179,15 @@ void print_diagnosis(const doctor::Diagnosis& diagnosis) {
   }
 }
 
-Json diagnosis_json(const doctor::Diagnosis& diagnosis) {
+Json diagnosis_json(const diagnosis::Diagnosis& diagnosis) {
   Json list = Json::array();
-  for (const doctor::Finding& finding : diagnosis.findings) {
+  for (const diagnosis::Finding& finding : diagnosis.findings) {
     Json evidence = Json::object();
     for (const auto& [name, value] : finding.evidence) {
       evidence[name] = value;  // what is not finite becomes null
     }
-    list.push_back({{"question", doctor::to_string(finding.question)},
-                    {"verdict", doctor::to_string(finding.verdict)},
+    list.push_back({{"question", diagnosis::to_string(finding.question)},
+                    {"verdict", diagnosis::to_string(finding.verdict)},
                     {"sentence", finding.sentence},
                     {"fix", finding.fix.empty() ? Json(nullptr) : Json(finding.fix)},
                     {"evidence", evidence}});
@@ -226,7 +226,7 @@ Json points_json(const PointsSeen& seen) {
 }
 
 void print_json(const InfoOptions& options, const datasets::Dataset& dataset, const TimesSeen& times,
-                const PointsSeen& seen, const doctor::Diagnosis& diagnosis) {
+                const PointsSeen& seen, const diagnosis::Diagnosis& diagnosis) {
   Json json = {{"input", options.input}, {"format", dataset.format()}, {"scans", dataset.size()}};
   if (dataset.size() > 0) {
     json["first_timestamp"] = format_seconds(dataset.stamp(0));
@@ -253,7 +253,8 @@ int info(const InfoOptions& options) {
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const TimesSeen times = look_at_times(*dataset);
   const PointsSeen seen = look_at_points(*dataset);
-  const doctor::Diagnosis diagnosis = doctor::diagnose(*dataset, {.applied = options.settings.correction}, Workers());
+  const diagnosis::Diagnosis diagnosis =
+      diagnosis::diagnose(*dataset, {.applied = options.settings.correction}, Workers());
   if (options.json) {
     print_json(options, *dataset, times, seen, diagnosis);
     return 0;

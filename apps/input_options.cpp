@@ -6,8 +6,8 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/dataset.hpp"
 
 namespace dynamic_icp::apps {
 namespace {

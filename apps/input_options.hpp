@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamic_icp/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
 
 namespace CLI {
 class App;

@@ -8,12 +8,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/base/keep_memory.hpp"
-#include "dynamic_icp/base/version.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/version.hpp"
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
+#include "apps/keep_memory.hpp"
 #include "apps/messages.hpp"
 #include "apps/process.hpp"
 

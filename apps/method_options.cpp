@@ -3,14 +3,16 @@
 #include "apps/method_options.hpp"
 
 #include <algorithm>
+#include <iterator>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/formats/config_file.hpp"
-#include "dynamic_icp/odometry/odometry.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/nearest_key.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/recording/formats/config_file.hpp"
 
 #include "apps/settings.hpp"
 
@@ -51,11 +53,76 @@ void add_method_options(CLI::App& command, MethodOptions& options) {
   add_configuration_options(command, options.preset, options.config_file, options.settings, options.threads);
 }
 
-odometry::Config make_config(const MethodOptions& options) {
-  const auto methods = odometry::method_names();
-  if (std::find(methods.begin(), methods.end(), options.method) == methods.end()) {
-    throw UsageError(fmt::format("unknown method '{}'; known are: {}", options.method, fmt::join(methods, ", ")));
+namespace {
+
+/// A key of the configuration that does what the other one would have done elsewhere, as far as names tell.
+std::string nearest_effective(const std::string& key, const ConfigFields& effective) {
+  const std::string last = key.substr(key.rfind('.') + 1);
+  std::vector<std::string> keys;
+  for (const ConfigField& field : effective) {
+    if (field.key.ends_with("." + last)) {
+      return field.key;
+    }
+    keys.push_back(field.key);
   }
+  return std::string(nearest_key(key, keys));
+}
+
+std::vector<std::string> keys_of(const std::vector<std::string>& settings) {
+  std::vector<std::string> keys;
+  for (const std::string& setting : settings) {
+    keys.push_back(setting.substr(0, setting.find('=')));
+  }
+  return keys;
+}
+
+/// The keys of --set, and those of the file that change something: it may list all, as `dynamic-icp config` prints
+/// them.
+std::vector<std::string> given_keys(const MethodOptions& options) {
+  std::vector<std::string> keys = keys_of(options.settings);
+  if (!options.config_file.empty()) {
+    odometry::Config config = odometry::preset(options.preset);
+    const ConfigFields fields = odometry::fields(config);
+    std::vector<std::string> before;
+    std::ranges::transform(fields, std::back_inserter(before), value_text);
+    formats::load_config_file(options.config_file, fields);
+    for (std::size_t i = 0; i < fields.size(); ++i) {
+      if (value_text(fields[i]) != before[i]) {
+        keys.push_back(fields[i].key);
+      }
+    }
+  }
+  return keys;
+}
+
+}  // namespace
+
+void refuse_ineffective_keys(const MethodOptions& options, const std::vector<std::string>& methods) {
+  odometry::Config config = resolve_config(options);
+  ConfigFields effective;
+  for (const std::string& method : methods) {
+    ConfigFields of_method = odometry::effective_fields(config, method);
+    effective.insert(effective.end(), of_method.begin(), of_method.end());
+  }
+  for (const std::string& key : given_keys(options)) {
+    if (std::any_of(effective.begin(), effective.end(), [&](const ConfigField& field) { return field.key == key; })) {
+      continue;
+    }
+    const std::string nearest = nearest_effective(key, effective);
+    throw UsageError(fmt::format("configuration key '{}' has no effect on {} with preset {}{}", key,
+                                 fmt::join(methods, ", "), options.preset,
+                                 nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
+  }
+}
+
+odometry::Config make_config(const MethodOptions& options) {
+  odometry::Config config = resolve_config(options);
+  refuse_ineffective_keys(options, {options.method});
+  return config;
+}
+
+odometry::Config resolve_config(const MethodOptions& options) {
+  odometry::check_method(options.method);
   if (options.ablation != "none" && options.method != "dynamic-icp") {
     throw UsageError(fmt::format("--ablation {}: parts can be switched off in dynamic-icp only, not in {}",
                                  options.ablation, options.method));

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamic_icp/odometry/config.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
 
 namespace CLI {
 class App;
@@ -32,6 +32,12 @@ void add_method_options(CLI::App& command, MethodOptions& options);
 
 /// The configuration: the preset, then the file, then --set in their order, then the ablation. Throws UsageError or
 /// DataError.
+odometry::Config resolve_config(const MethodOptions& options);
+
+/// Throws UsageError for a key of --set or of the file that none of the methods reads: who sets it expects an effect.
+void refuse_ineffective_keys(const MethodOptions& options, const std::vector<std::string>& methods);
+
+/// Both.
 odometry::Config make_config(const MethodOptions& options);
 
 }  // namespace dynamic_icp::apps

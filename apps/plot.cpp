@@ -10,13 +10,13 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/figures/run_context.hpp"
-#include "dynamic_icp/figures/run_figures.hpp"
-#include "dynamic_icp/formats/binary_file.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
-#include "dynamic_icp/report/run_facts.hpp"
-#include "dynamic_icp/report/step_figure.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/figures/run_context.hpp"
+#include "dynamic_icp/tools/figures/run_figures.hpp"
+#include "dynamic_icp/tools/report/run_facts.hpp"
+#include "dynamic_icp/tools/report/step_figure.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/svg_to_png.hpp"

@@ -9,7 +9,7 @@
 #include <pthread.h>
 #include <unistd.h>
 
-#include "dynamic_icp/formats/unfinished.hpp"
+#include "dynamic_icp/recording/formats/unfinished.hpp"
 
 namespace dynamic_icp::apps {
 namespace {

@@ -6,8 +6,8 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/doctor/diagnosis.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -20,29 +20,29 @@ constexpr std::size_t kProbes = 4;
 
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
                                std::size_t begin, std::size_t end, bool needs_doppler, int threads) {
-  doctor::DoctorConfig config;
+  diagnosis::DoctorConfig config;
   config.begin = begin;
   config.end = std::min(end, begin + kScans);
   config.probes = kProbes;
   config.applied = settings.correction;
   config.always_match_scans = false;
-  const doctor::Diagnosis diagnosis = doctor::diagnose(dataset, config, Workers(threads));
+  const diagnosis::Diagnosis diagnosis = diagnosis::diagnose(dataset, config, Workers(threads));
   RecordingCheck check;
   check.period_s = diagnosis.period_s;
-  check.doppler = fmt::format("{}; {}", diagnosis.of(doctor::Question::kDopplerKind).sentence,
-                              diagnosis.of(doctor::Question::kDopplerSign).sentence);
+  check.doppler = fmt::format("{}; {}", diagnosis.of(diagnosis::Question::kDopplerKind).sentence,
+                              diagnosis.of(diagnosis::Question::kDopplerSign).sentence);
   if (!diagnosis.has_doppler && needs_doppler && !settings.correction.doppler_kind) {
     throw DataError(fmt::format(
         "{}: {}. A method that needs none: --method kiss-icp; by the shape of the scene alone: --doppler-kind "
         "compensated; it is Doppler all the same: --doppler-kind relative",
-        dataset.scan_file(begin).string(), diagnosis.of(doctor::Question::kDopplerKind).sentence));
+        dataset.scan_file(begin).string(), diagnosis.of(diagnosis::Question::kDopplerKind).sentence));
   }
-  for (const doctor::Finding& finding : diagnosis.findings) {
-    const bool is_sign = finding.question == doctor::Question::kDopplerSign;
-    const bool is_kind = finding.question == doctor::Question::kDopplerKind;
+  for (const diagnosis::Finding& finding : diagnosis.findings) {
+    const bool is_sign = finding.question == diagnosis::Question::kDopplerSign;
+    const bool is_kind = finding.question == diagnosis::Question::kDopplerKind;
     const bool is_said = (is_sign && settings.doppler_sign_is_said) ||
                          (is_kind && (settings.correction.doppler_kind || !diagnosis.has_doppler));
-    if (finding.verdict == doctor::Verdict::kWrong && (is_sign || is_kind) && !is_said) {
+    if (finding.verdict == diagnosis::Verdict::kWrong && (is_sign || is_kind) && !is_said) {
       throw DataError(fmt::format(
           "{}: the Doppler is {}. Run with {}; or say that it is not so with {}", dataset.scan_file(begin).string(),
           finding.sentence, finding.fix,
@@ -50,8 +50,8 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
           : dataset.doppler_kind() == DopplerKind::kRelative ? "--doppler-kind relative"
                                                              : "--doppler-kind compensated"));
     }
-    if (finding.verdict == doctor::Verdict::kWrong || finding.verdict == doctor::Verdict::kSuspicious) {
-      check.warnings.push_back(fmt::format("{}: {}{}", doctor::to_string(finding.question), finding.sentence,
+    if (finding.verdict == diagnosis::Verdict::kWrong || finding.verdict == diagnosis::Verdict::kSuspicious) {
+      check.warnings.push_back(fmt::format("{}: {}{}", diagnosis::to_string(finding.question), finding.sentence,
                                            finding.fix.empty() ? "" : "; mend it with " + finding.fix));
     }
   }

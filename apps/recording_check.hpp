@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamic_icp/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
 
 namespace dynamic_icp::apps {
 

@@ -6,12 +6,12 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/dicp.hpp"
-#include "dynamic_icp/datasets/input_settings.hpp"
-#include "dynamic_icp/formats/xyzd_bin.hpp"
-#include "dynamic_icp/odometry/odometry.hpp"
-#include "dynamic_icp/results/frame_json.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/recording/datasets/dicp.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/formats/xyzd_bin.hpp"
+#include "dynamic_icp/tools/results/frame_json.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"

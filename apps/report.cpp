@@ -10,11 +10,11 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
-#include "dynamic_icp/report/comparison_report.hpp"
-#include "dynamic_icp/report/run_report.hpp"
-#include "dynamic_icp/report/viewer_bundle.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/report/comparison_report.hpp"
+#include "dynamic_icp/tools/report/run_report.hpp"
+#include "dynamic_icp/tools/report/viewer_bundle.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/number_list.hpp"

@@ -4,7 +4,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::apps {
 namespace {

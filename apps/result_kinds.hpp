@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include "dynamic_icp/formats/result_kind.hpp"
+#include "dynamic_icp/recording/formats/result_kind.hpp"
 
 // What the results of the commands consist of, for --force: it removes these files and no others.
 namespace dynamic_icp::apps {

@@ -6,15 +6,15 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/input_settings.hpp"
-#include "dynamic_icp/datasets/read_ahead.hpp"
-#include "dynamic_icp/formats/output_folder.hpp"
-#include "dynamic_icp/formats/tum.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
-#include "dynamic_icp/odometry/odometry.hpp"
-#include "dynamic_icp/results/map_writer.hpp"
-#include "dynamic_icp/results/run_writer.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/read_ahead.hpp"
+#include "dynamic_icp/recording/formats/output_folder.hpp"
+#include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/results/map_writer.hpp"
+#include "dynamic_icp/tools/results/run_writer.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"

@@ -5,7 +5,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/base/version.hpp"
+#include "dynamic_icp/method/base/version.hpp"
 
 #include "apps/command_line.hpp"
 #include "apps/messages.hpp"

@@ -7,10 +7,10 @@
 #include <string>
 #include <vector>
 
-#include "dynamic_icp/datasets/input_settings.hpp"
-#include "dynamic_icp/odometry/odometry.hpp"
-#include "dynamic_icp/results/map_writer.hpp"
-#include "dynamic_icp/results/run_writer.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/tools/results/map_writer.hpp"
+#include "dynamic_icp/tools/results/run_writer.hpp"
 
 #include "apps/method_options.hpp"
 #include "apps/recording_check.hpp"

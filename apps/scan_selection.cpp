@@ -7,8 +7,8 @@
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/base/parse_number.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/parse_number.hpp"
 
 namespace dynamic_icp::apps {
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <optional>
 
-#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/recording/datasets/dataset.hpp"
 
 namespace CLI {
 class App;

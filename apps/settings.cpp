@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/method/base/error.hpp"
 
 namespace dynamic_icp::apps {
 

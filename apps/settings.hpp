@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "dynamic_icp/base/config_field.hpp"
+#include "dynamic_icp/method/base/config_field.hpp"
 
 namespace dynamic_icp::apps {
 

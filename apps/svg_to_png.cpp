@@ -8,7 +8,7 @@
 #include <fmt/format.h>
 #include <librsvg/rsvg.h>
 
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/method/base/error.hpp"
 
 namespace dynamic_icp::apps {
 namespace {

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 // Stands in for svg_to_png.cpp where librsvg is not installed.
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/method/base/error.hpp"
 
 #include "apps/svg_to_png.hpp"
 

@@ -12,7 +12,7 @@
 
 #include <Eigen/Core>
 
-#include "dynamic_icp/base/parallel.hpp"
+#include "dynamic_icp/method/base/parallel.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 

@@ -5,8 +5,8 @@
 // (--benchmark_filter=...).
 #include <benchmark/benchmark.h>
 
-#include "dynamic_icp/base/version.hpp"
-#include "dynamic_icp/benchmark/machine.hpp"
+#include "dynamic_icp/method/base/version.hpp"
+#include "dynamic_icp/tools/benchmark/machine.hpp"
 
 int main(int argc, char** argv) {
   benchmark::Initialize(&argc, argv);

@@ -13,12 +13,12 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/base/keep_memory.hpp"
-#include "dynamic_icp/base/version.hpp"
-#include "dynamic_icp/benchmark/machine.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/version.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/benchmark/machine.hpp"
 
+#include "apps/keep_memory.hpp"
 #include "benchmarks/sequence/measurement.hpp"
 #include "benchmarks/sequence/reference_work.hpp"
 #include "benchmarks/sequence/report.hpp"

@@ -7,7 +7,7 @@ set_property(CACHE DYNAMIC_ICP_VIEWER PROPERTY STRINGS AUTO ON OFF)
 # CMakeLists.txt.
 function(dynamic_icp_viewer_source OUT_VAR)
   set(folder ${PROJECT_SOURCE_DIR}/viewer)
-  set(${OUT_VAR} ${PROJECT_SOURCE_DIR}/dynamic_icp/report/viewer_bundle_missing.cpp PARENT_SCOPE)
+  set(${OUT_VAR} ${PROJECT_SOURCE_DIR}/dynamic_icp/tools/report/viewer_bundle_missing.cpp PARENT_SCOPE)
   if(NOT DYNAMIC_ICP_VIEWER)
     message(STATUS "Viewer of reports: left out (DYNAMIC_ICP_VIEWER=OFF)")
     return()

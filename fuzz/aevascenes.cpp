@@ -1,8 +1,8 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/aevascenes_sequence.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/aevascenes_sequence.hpp"
 
 #include "fuzz/memory_file.hpp"
 

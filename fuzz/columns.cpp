@@ -1,9 +1,9 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/base/scan.hpp"
-#include "dynamic_icp/datasets/column_folder.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/recording/datasets/column_folder.hpp"
 
 #include "fuzz/memory_file.hpp"
 

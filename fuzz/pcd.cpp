@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <string>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/formats/pcd_read.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/pcd_read.hpp"
 
 #include "fuzz/memory_file.hpp"
 

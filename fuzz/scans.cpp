@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/odometry/odometry.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
 
 #include "fuzz/memory_file.hpp"
 #include "testing/adversarial_scans.hpp"

@@ -8,11 +8,11 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/formats/binary_file.hpp"
-#include "dynamic_icp/formats/npz.hpp"
-#include "dynamic_icp/formats/pcd.hpp"
-#include "dynamic_icp/formats/ply.hpp"
-#include "dynamic_icp/formats/tum.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/npz.hpp"
+#include "dynamic_icp/recording/formats/pcd.hpp"
+#include "dynamic_icp/recording/formats/ply.hpp"
+#include "dynamic_icp/recording/formats/tum.hpp"
 
 namespace dynamic_icp::fuzz {
 namespace {

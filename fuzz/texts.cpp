@@ -1,10 +1,10 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/boreas.hpp"
-#include "dynamic_icp/datasets/dicp.hpp"
-#include "dynamic_icp/datasets/hercules.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/boreas.hpp"
+#include "dynamic_icp/recording/datasets/dicp.hpp"
+#include "dynamic_icp/recording/datasets/hercules.hpp"
 
 #include "fuzz/memory_file.hpp"
 

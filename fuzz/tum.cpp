@@ -1,10 +1,10 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/formats/tum.hpp"
+#include "dynamic_icp/recording/formats/tum.hpp"
 
 #include <string_view>
 
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/method/base/error.hpp"
 
 #include "fuzz/memory_file.hpp"
 

@@ -8,7 +8,7 @@
 #include <limits>
 #include <numbers>
 
-#include "dynamic_icp/base/scan_limits.hpp"
+#include "dynamic_icp/method/base/scan_limits.hpp"
 
 namespace dynamic_icp::adversarial {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 #include <string>
 
-#include "dynamic_icp/base/random_source.hpp"
-#include "dynamic_icp/base/scan.hpp"
-#include "dynamic_icp/odometry/frame.hpp"
+#include "dynamic_icp/method/base/random_source.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/odometry/frame.hpp"
 
 // Scans as a damaged file, a wrong unit or a broken driver makes them, and what must hold of the frames they give.
 namespace dynamic_icp::adversarial {

@@ -10,8 +10,8 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/odometry/odometry.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <memory>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/dataset.hpp"
 
 #include "tests/damaged_recordings.hpp"
 

@@ -9,9 +9,10 @@
 #include <sstream>
 #include <stdexcept>
 
-#include "dynamic_icp/formats/npy.hpp"
-#include "dynamic_icp/formats/npz.hpp"
-#include "dynamic_icp/formats/npz_by_hand.hpp"
+#include "dynamic_icp/recording/formats/npy.hpp"
+#include "dynamic_icp/recording/formats/npz.hpp"
+
+#include "testing/npz_by_hand.hpp"
 
 namespace dynamic_icp::tests {
 namespace {

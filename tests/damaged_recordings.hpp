@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamic_icp/base/scan.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
 
 #include "tests/program.hpp"
 

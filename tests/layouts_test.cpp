@@ -11,7 +11,7 @@
 #include <Eigen/Geometry>
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/datasets/dataset.hpp"
+#include "dynamic_icp/recording/datasets/dataset.hpp"
 
 #include "tests/program.hpp"
 

@@ -1,9 +1,9 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/ego_motion/consensus_regression.hpp"
-#include "dynamic_icp/ego_motion/doppler_regression.hpp"
-#include "dynamic_icp/ego_motion/velocity_filter.hpp"
-#include "dynamic_icp/odometry/config.hpp"
+#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 #include "benchmarks/kernels/scans.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/mapping/plane_map.hpp"
-#include "dynamic_icp/odometry/config.hpp"
+#include "dynamic_icp/method/mapping/plane_map.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 #include "benchmarks/kernels/scans.hpp"

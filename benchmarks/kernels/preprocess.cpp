@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/odometry/config.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 #include "benchmarks/kernels/scans.hpp"

@@ -5,8 +5,8 @@
 
 #include <unistd.h>
 
-#include "dynamic_icp/formats/point_records.hpp"
-#include "dynamic_icp/formats/whole_file.hpp"
+#include "dynamic_icp/recording/formats/point_records.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 

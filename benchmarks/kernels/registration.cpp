@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <optional>
 
-#include "dynamic_icp/odometry/config.hpp"
-#include "dynamic_icp/registration/align.hpp"
-#include "dynamic_icp/registration/map_alignment.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
+#include "dynamic_icp/method/registration/align.hpp"
+#include "dynamic_icp/method/registration/map_alignment.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 #include "benchmarks/kernels/scans.hpp"

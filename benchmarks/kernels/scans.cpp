@@ -8,11 +8,11 @@
 #include <optional>
 #include <stdexcept>
 
-#include "dynamic_icp/base/parallel.hpp"
-#include "dynamic_icp/ego_motion/velocity_filter.hpp"
-#include "dynamic_icp/odometry/config.hpp"
-#include "dynamic_icp/scenes/scene.hpp"
-#include "dynamic_icp/simulation/simulation.hpp"
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
+#include "dynamic_icp/tools/scenes/scene.hpp"
+#include "dynamic_icp/tools/simulation/simulation.hpp"
 
 namespace dynamic_icp::kernels {
 namespace {

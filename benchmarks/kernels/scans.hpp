@@ -7,8 +7,8 @@
 
 #include <Eigen/Geometry>
 
-#include "dynamic_icp/base/scan.hpp"
-#include "dynamic_icp/mapping/plane_map.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/mapping/plane_map.hpp"
 
 // What the kernels work on: instant scans of the simulated city (seed 31) with the sensor noise of docs/benchmarks.md,
 // made in this process, once, when they are first asked for.

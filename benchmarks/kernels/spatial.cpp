@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/spatial/kd_tree.hpp"
+#include "dynamic_icp/method/spatial/kd_tree.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 #include "benchmarks/kernels/scans.hpp"

@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/odometry/config.hpp"
-#include "dynamic_icp/tracking/object_tracker.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
+#include "dynamic_icp/method/tracking/object_tracker.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 #include "benchmarks/kernels/scans.hpp"

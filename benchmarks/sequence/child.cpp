@@ -11,7 +11,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/method/base/error.hpp"
 
 namespace dynamic_icp::speed {
 namespace {

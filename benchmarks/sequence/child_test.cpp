@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/base/error.hpp"
+#include "dynamic_icp/method/base/error.hpp"
 
 namespace dynamic_icp::speed {
 namespace {

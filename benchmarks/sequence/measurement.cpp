@@ -8,9 +8,9 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
-#include "dynamic_icp/odometry/odometry.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/recording/datasets/dataset.hpp"
 
 #include "benchmarks/sequence/child.hpp"
 #include "benchmarks/sequence/memory.hpp"

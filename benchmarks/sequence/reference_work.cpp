@@ -10,9 +10,9 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include "dynamic_icp/base/error.hpp"
-#include "dynamic_icp/datasets/dataset.hpp"
-#include "dynamic_icp/formats/xyzd_bin.hpp"
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/dataset.hpp"
+#include "dynamic_icp/recording/formats/xyzd_bin.hpp"
 
 #include "benchmarks/sequence/child.hpp"
 

@@ -9,7 +9,7 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/odometry/frame.hpp"
+#include "dynamic_icp/method/odometry/frame.hpp"
 
 namespace dynamic_icp::speed {
 namespace {

@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 
-#include "dynamic_icp/odometry/frame.hpp"
+#include "dynamic_icp/method/odometry/frame.hpp"
 
 namespace dynamic_icp::speed {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "dynamic_icp/evaluation/statistics.hpp"
+#include "dynamic_icp/recording/evaluation/statistics.hpp"
 
 namespace dynamic_icp::speed {
 namespace {

@@ -1,8 +1,8 @@
 // The example of the README, word for word: odometry over a recording in fifteen lines.
 #include <iostream>
 
-#include <dynamic_icp/datasets/dataset.hpp>
-#include <dynamic_icp/odometry/odometry.hpp>
+#include <dynamic_icp/method/odometry/odometry.hpp>
+#include <dynamic_icp/recording/datasets/dataset.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;

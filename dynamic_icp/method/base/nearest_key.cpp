@@ -1,0 +1,45 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/base/nearest_key.hpp"
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace dynamic_icp {
+namespace {
+
+/// Levenshtein distance.
+std::size_t edit_distance(std::string_view a, std::string_view b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) {
+    row[j] = j;
+  }
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = row[0];
+    row[0] = i;
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t above = row[j];
+      row[j] = std::min({above + 1, row[j - 1] + 1, diagonal + (a[i - 1] == b[j - 1] ? 0 : 1)});
+      diagonal = above;
+    }
+  }
+  return row[b.size()];
+}
+
+std::size_t key_distance(std::string_view typed, std::string_view key) {
+  const std::size_t dot = key.rfind('.');
+  const std::string_view last = dot == std::string_view::npos ? key : key.substr(dot + 1);
+  return std::min(edit_distance(typed, key), edit_distance(typed, last));
+}
+
+}  // namespace
+
+std::string_view nearest_key(std::string_view typed, std::span<const std::string> keys) {
+  const auto nearest = std::min_element(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
+    return key_distance(typed, a) < key_distance(typed, b);
+  });
+  return nearest == keys.end() ? std::string_view() : std::string_view(*nearest);
+}
+
+}  // namespace dynamic_icp

@@ -1,0 +1,36 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/base/nearest_key.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/parse_number.hpp"
+
+namespace dynamic_icp {
+namespace {
+
+TEST(NearestKey, TakesTheFewestChanges) {
+  const std::vector<std::string> keys = {"speed_mps", "spacing_m", "grid.size_m"};
+  EXPECT_EQ(nearest_key("sped_mps", keys), "speed_mps");
+  EXPECT_EQ(nearest_key("spacing", keys), "spacing_m");
+  EXPECT_EQ(nearest_key("sise_m", keys), "grid.size_m");
+  EXPECT_EQ(nearest_key("", std::vector<std::string>{"ab", "cd"}), "ab");
+  EXPECT_EQ(nearest_key("speed", {}), "");
+}
+
+TEST(ParseNumber, TakesWholeTextsOnly) {
+  EXPECT_EQ(parse_number<double>("-1.5e2"), -150.0);
+  EXPECT_EQ(parse_number<int>("+7"), 7);
+  for (const char* text : {"", "+", "-", "+-1", "++1", " 1", "1 ", "1,5", "0x1", "one"}) {
+    EXPECT_FALSE(parse_number<double>(text)) << text;
+    EXPECT_FALSE(parse_number<int>(text)) << text;
+  }
+  EXPECT_FALSE(parse_number<int>("1.0"));
+  EXPECT_FALSE(parse_number<int>("3000000000"));
+  EXPECT_FALSE(parse_number<double>("1e999"));
+}
+
+}  // namespace
+}  // namespace dynamic_icp

@@ -1,0 +1,366 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <Eigen/Cholesky>
+
+#include "dynamic_icp/method/base/scan_limits.hpp"
+#include "dynamic_icp/method/ego_motion/doppler_fit.hpp"
+#include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_modes.hpp"
+
+namespace dynamic_icp::ego_motion {
+namespace {
+
+constexpr std::size_t kLeastPoints = 3;
+constexpr std::size_t kVotesOnHypotheses = 600;  // a share of 0.3 is then known to 0.02
+constexpr std::size_t kVotesOnModes = 2500;      // and the few modes that remain are told apart by twice that
+constexpr int kMostSteps = 20;
+constexpr double kStepToleranceMps = 3e-4;  // a tenth of the deviation of a good estimate
+constexpr double kOpenDeviationMps = 2.0;   // who knows a component no better than this knows it better by any prior
+constexpr double kFloorMps = 1e-3;          // errors of all lines of sight together: 0.003 degrees at 20 m/s
+constexpr double kLeastSlope = 0.6;         // of psi' to the weights; 0.8 for normal noise at the default cutoff
+constexpr double kWider = 1.4;
+constexpr double kLeastVariance = 1e-12;    // a prior without any doubt must not divide by zero
+constexpr double kUnknownMps = 30.0;        // of a velocity of which nothing is known
+constexpr double kBonusDeviationMps = 0.3;  // a velocity this near to the expected one still earns most of its bonus
+constexpr double kJerk = 10.0;              // m/s^3, of hard braking and steering
+
+/// The priors of acceleration and bias alone: the search for the static scene must not lean on an earlier velocity.
+DopplerModel voting_model(const EgoPrior& prior, const ConsensusRegressionConfig& config) {
+  DopplerModel model;
+  model.has_bias = config.estimate_bias;
+  model.prior.tail<4>() = prior.mean.tail<4>();
+  for (Eigen::Index k = 3; k < 7; ++k) {
+    model.information(k, k) = 1.0 / std::max(prior.covariance(k, k), kLeastVariance);
+  }
+  if (!config.estimate_bias) {
+    model.prior[6] = 0.0;
+    model.information(6, 6) = 1.0;  // takes no part: stays where it is
+  }
+  return model;
+}
+
+/// The same after a velocity that nobody expected: neither is the acceleration what it was.
+EgoPrior surprised(const EgoPrior& prior) {
+  EgoPrior open = prior;
+  const Matrix7d start = EgoPrior::default_covariance();
+  for (Eigen::Index k = 3; k < 6; ++k) {
+    open.covariance(k, k) = std::max(prior.covariance(k, k), start(k, k));
+  }
+  return open;
+}
+
+/// Whether the prior velocity may take part: one far from what the scan shows is wrong, not informative.
+bool agrees(const EgoPrior& prior, const Vector7d& x) {
+  constexpr double kDeviations2 = 16.0;
+  const Eigen::Vector3d difference = x.head<3>() - prior.mean.head<3>();
+  const Eigen::Matrix3d covariance =
+      prior.covariance.topLeftCorner<3, 3>() + kLeastVariance * Eigen::Matrix3d::Identity();
+  return prior.has_velocity && difference.dot(covariance.ldlt().solve(difference)) < kDeviations2;
+}
+
+/// The whole prior, for the fit to all points of the static scene.
+DopplerModel fitting_model(const EgoPrior& prior, const ConsensusRegressionConfig& config) {
+  DopplerModel model;
+  model.has_bias = config.estimate_bias;
+  model.prior = prior.mean;
+  Matrix7d covariance = prior.covariance;
+  if (!config.estimate_bias) {
+    model.prior[6] = 0.0;
+    covariance.row(6).setZero();
+    covariance.col(6).setZero();
+    covariance(6, 6) = 1.0;
+  }
+  covariance.diagonal().array() += kLeastVariance;
+  model.information = covariance.ldlt().solve(Matrix7d::Identity());
+  return model;
+}
+
+/// A few steps on the rows that vote, the last with the cutoff, those before with a wider one.
+void refine(const DopplerRows& voters, const DopplerModel& model, const RobustScale& scale, int steps,
+            const Workers& workers, Vector7d& x) {
+  RobustScale wide = scale;
+  wide.cutoff_mps *= 1.5;
+  for (int k = 0; k < steps; ++k) {
+    const FitSums sums = sum_fit(voters, x, k + 1 < steps ? wide : scale, model.has_bias, workers);
+    x += solve_fit(sums, x, model, kOpenDeviationMps).step;
+  }
+}
+
+/// Keeps the first of those that look the same.
+void remove_duplicates(const DopplerRows& voters, double width_mps, std::vector<VelocityMode>& modes) {
+  std::ranges::stable_sort(modes, [](const auto& a, const auto& b) { return a.votes > b.votes; });
+  const StateDistance distance(voters);
+  std::vector<VelocityMode> kept;
+  for (const VelocityMode& mode : modes) {
+    const bool is_new =
+        std::ranges::all_of(kept, [&](const VelocityMode& other) { return distance(mode.x, other.x) > width_mps; });
+    if (is_new) {
+      kept.push_back(mode);
+    }
+  }
+  modes = std::move(kept);
+}
+
+/// Modes that differ by more than the width of a vote, refined for the velocity alone: as long as half of what counts
+/// may be a crowd, a free acceleration and bias would bend towards it.
+std::vector<VelocityMode> coarse_modes(const Electorate& voters, const EgoPrior& prior, const DopplerModel& model,
+                                       const ConsensusRegressionConfig& config, const Workers& workers) {
+  Vector7d start = model.prior;
+  start.head<3>() = prior.has_velocity ? Eigen::Vector3d(prior.mean.head<3>()) : Eigen::Vector3d::Zero();
+  ModeSearch search;
+  search.hypotheses = static_cast<std::size_t>(config.hypotheses);
+  search.width_mps = config.vote_width_mps;
+  search.acceleration_deviation =
+      voters.rows.takes_time ? std::sqrt(prior.covariance.diagonal().segment<3>(3).mean()) : 0.0;
+  std::vector<VelocityMode> modes = find_modes(voters, start, search, workers);
+  DopplerModel velocity_only = model;
+  velocity_only.information.diagonal().tail<4>().setConstant(1e9);
+  const RobustScale scale{0.5 * config.vote_width_mps, 2.0 * config.vote_width_mps, 0.0};
+  workers.for_each(modes.size(), 1, [&](std::size_t k) {
+    VelocityMode& mode = modes[k];
+    refine(voters.rows, velocity_only, scale, 3, workers, mode.x);
+    mode.votes = votes(voters, mode.x, config.vote_width_mps);
+  });
+  remove_duplicates(voters.rows, config.vote_width_mps, modes);
+  const double enough = 0.5 * modes.front().votes;
+  std::erase_if(modes, [&](const VelocityMode& mode) { return mode.votes < enough; });
+  return modes;
+}
+
+/// Splits a mode into what the noise can tell apart, such as the static scene and a crowd that creeps.
+std::vector<VelocityMode> split_mode(const Electorate& voters, const VelocityMode& mode, const DopplerModel& model,
+                                     const ConsensusRegressionConfig& config, double noise_mps,
+                                     const Workers& workers) {
+  ModeSearch search;
+  search.hypotheses = 63;
+  search.most_modes = 3;
+  search.width_mps = std::min(config.vote_width_mps, config.tukey_cutoff * noise_mps);
+  search.within_mps = 2.0 * config.vote_width_mps;
+  search.seed = 1;
+  std::vector<VelocityMode> parts = find_modes(voters, mode.x, search, workers);
+  for (VelocityMode& part : parts) {
+    // Rows of one crowd err together, so a row counts for a ninth here: acceleration and bias must not bend a mode
+    // through the static scene and a crowd where the scene itself says little about them.
+    refine(voters.rows, model, {3.0 * noise_mps, config.tukey_cutoff * noise_mps, 0.0}, 4, workers, part.x);
+    part.votes = votes(voters, part.x, 3.0 * noise_mps);
+  }
+  remove_duplicates(voters.rows, 2.0 * noise_mps, parts);
+  return parts;
+}
+
+/// What the priors say of a mode, as a factor of its votes. Acceleration and bias within two deviations cost nothing;
+/// beyond, a mode that needs them bends through the static scene and a crowd. The velocity prior is only a bonus:
+/// it decides between modes of similar support and cannot hold a velocity that the scan does not bear out.
+double prior_factor(const EgoPrior& prior, const DopplerModel& model, const Vector7d& x, double weight) {
+  const double deviation2 = (x - model.prior).cwiseAbs2().dot(model.information.diagonal());
+  const double plausible = std::exp(-0.125 * std::max(0.0, deviation2 - 4.0));
+  if (!prior.has_velocity) {
+    return plausible;
+  }
+  const Eigen::Vector3d difference = x.head<3>() - prior.mean.head<3>();
+  const Eigen::Matrix3d covariance =
+      prior.covariance.topLeftCorner<3, 3>() + kBonusDeviationMps * kBonusDeviationMps * Eigen::Matrix3d::Identity();
+  return plausible * (1.0 + weight * std::exp(-0.5 * difference.dot(covariance.ldlt().solve(difference))));
+}
+
+/// The static scene, as far as votes can tell.
+struct Choice {
+  Vector7d x = Vector7d::Zero();
+  double noise_mps = 0.0;
+  double support = 0.0;
+  bool ambiguous = false;
+};
+
+Choice choose_mode(const DopplerRows& rows, const EgoPrior& prior, const DopplerModel& model,
+                   const ConsensusRegressionConfig& config, const Workers& workers) {
+  Electorate few;
+  Electorate many;
+  workers.both([&] { few = elect(rows, kVotesOnHypotheses); }, [&] { many = elect(rows, kVotesOnModes); });
+  const std::vector<VelocityMode> coarse = coarse_modes(few, prior, model, config, workers);
+  // A wrong velocity turns differences of direction into noise, so the smallest estimate is the right one.
+  Choice choice;
+  choice.noise_mps = config.max_noise_mps;
+  for (const VelocityMode& mode : coarse) {
+    choice.noise_mps =
+        std::min(choice.noise_mps, noise_from_neighbours(rows, mode.x, config.min_noise_mps, config.max_noise_mps));
+  }
+  std::vector<std::vector<VelocityMode>> parts(coarse.size());
+  workers.for_each(coarse.size(), 1, [&](std::size_t k) {
+    parts[k] = split_mode(few, coarse[k], model, config, choice.noise_mps, workers);
+  });
+  std::vector<VelocityMode> modes;
+  for (const std::vector<VelocityMode>& of_one : parts) {
+    modes.insert(modes.end(), of_one.begin(), of_one.end());
+  }
+  workers.for_each(modes.size(), 1, [&](std::size_t k) {
+    VelocityMode& mode = modes[k];
+    mode.votes = votes(many, mode.x, 3.0 * choice.noise_mps) * prior_factor(prior, model, mode.x, config.prior_weight);
+  });
+  remove_duplicates(few.rows, config.tukey_cutoff * choice.noise_mps, modes);
+  choice.x = modes.front().x;
+  choice.support = modes.front().votes;
+  choice.ambiguous = modes.size() > 1 && modes[1].votes > config.ambiguity_ratio * modes[0].votes;
+  return choice;
+}
+
+/// All points near the winner.
+struct Fit {
+  Vector7d x = Vector7d::Zero();
+  FitSums sums;  ///< at x
+  Eigen::Matrix3d open = Eigen::Matrix3d::Zero();
+  Matrix7d covariance = Matrix7d::Zero();
+  int iterations = 0;
+  bool converged = false;
+};
+
+Fit fit_all(const DopplerRows& rows, const Choice& choice, const EgoPrior& prior,
+            const ConsensusRegressionConfig& config, const Workers& workers) {
+  const bool as_expected = agrees(prior, choice.x);
+  const DopplerModel without_velocity =
+      voting_model(prior.has_velocity && !as_expected ? surprised(prior) : prior, config);
+  const DopplerModel model = as_expected ? fitting_model(prior, config) : without_velocity;
+  RobustScale scale{choice.noise_mps, config.tukey_cutoff * choice.noise_mps, config.surface_noise_mps};
+  Fit fit;
+  fit.x = choice.x;
+  while (!fit.converged && fit.iterations < kMostSteps) {
+    const FitSums sums = sum_fit(rows, fit.x, scale, model.has_bias, workers);
+    // Neighbours that err together, as where the Doppler has coarse steps, make the noise look small. The cutoff then
+    // lies where residuals are still dense, and their pull falls as they grow: the scale must widen.
+    const bool too_narrow = sums.slopes < kLeastSlope * sums.weights && scale.noise_mps < config.max_noise_mps;
+    const FitStep step = solve_fit(sums, fit.x, model, kOpenDeviationMps);
+    fit.x += step.step;
+    ++fit.iterations;
+    fit.converged = !too_narrow && step.step.head<3>().norm() < kStepToleranceMps;
+    if (too_narrow) {
+      scale.noise_mps *= kWider;
+      scale.cutoff_mps *= kWider;
+      scale.surface_mps *= kWider;
+    }
+  }
+  std::vector<Vector7d> gradients;
+  fit.sums = sum_fit(rows, fit.x, scale, model.has_bias, workers, &gradients);
+  // What the lines of sight leave open is open even where the prior fills the gap.
+  fit.open = solve_fit(fit.sums, fit.x, without_velocity, kOpenDeviationMps).open;
+  fit.covariance = sandwich_covariance(rows, fit.sums, fit.open, model, gradients);
+  return fit;
+}
+
+/// (m/s)^2 that the covariance of v never falls below.
+double floor_variance(const DopplerRows& rows) {
+  // A jerk j leaves j dt^2/2 unexplained, j T^2/24 on average over a sweep of duration T.
+  const double unexplained = kJerk * rows.duration_s * rows.duration_s / 24.0;
+  return kFloorMps * kFloorMps + unexplained * unexplained;
+}
+
+EgoVelocityStatus status_of(const Fit& fit, const Choice& choice) {
+  if (choice.ambiguous) {
+    return EgoVelocityStatus::kAmbiguous;
+  }
+  if (!fit.open.isZero(0.0)) {
+    return EgoVelocityStatus::kDegenerate;
+  }
+  return fit.converged ? EgoVelocityStatus::kConverged : EgoVelocityStatus::kIterationLimit;
+}
+
+/// The prior, as the result where the scan says nothing.
+EgoVelocity nothing_but_prior(std::size_t points, const EgoPrior& prior, const ConsensusRegressionConfig& config) {
+  EgoVelocity result;
+  result.status = EgoVelocityStatus::kTooFewPoints;
+  result.points = points;
+  result.unobservable.setIdentity();
+  result.joint_covariance = prior.covariance;
+  if (prior.has_velocity) {
+    result.velocity_sensor = prior.mean.head<3>();
+  } else {
+    result.joint_covariance.topLeftCorner<3, 3>() = kUnknownMps * kUnknownMps * Eigen::Matrix3d::Identity();
+  }
+  result.covariance = result.joint_covariance.topLeftCorner<3, 3>();
+  result.acceleration_sensor = prior.mean.segment<3>(3);
+  result.bias_mps = config.estimate_bias ? prior.mean[6] : 0.0;
+  result.bias_variance = config.estimate_bias ? prior.covariance(6, 6) : 0.0;
+  return result;
+}
+
+/// False when rows that hardly determine the motion have carried it away from anything that moves.
+bool is_plausible(const EgoVelocity& ego) {
+  return ego.velocity_sensor.norm() <= kMaxDoppler_mps && ego.acceleration_sensor.norm() <= kMaxAcceleration_mps2 &&
+         ego.joint_covariance.allFinite();
+}
+
+}  // namespace
+
+ConfigFields fields(ConsensusRegressionConfig& config) {
+  return {
+      {"estimate_bias", &config.estimate_bias, 0, 0, "", "estimate a constant error of the Doppler"},
+      {"cell_size_m", &config.cell_size_m, 0.01, 100.0, "m", "edge of the cubes that vote on what stands still"},
+      {"hypotheses", &config.hypotheses, 8, 100'000, "", "velocities tried, each from three points"},
+      {"vote_width_mps", &config.vote_width_mps, 0.01, 10.0, "m/s", "residuals below this agree with a velocity"},
+      {"tukey_cutoff", &config.tukey_cutoff, 2.0, 20.0, "",
+       "residuals beyond this many deviations of the noise have no weight"},
+      {"min_noise_mps", &config.min_noise_mps, 1e-4, 1.0, "m/s", "smallest deviation of static Doppler"},
+      {"max_noise_mps", &config.max_noise_mps, 1e-3, 10.0, "m/s", "largest deviation of static Doppler"},
+      {"surface_noise_mps", &config.surface_noise_mps, 1e-4, 1.0, "m/s",
+       "deviation of what the Doppler of all points of one cell has in common"},
+      {"prior_weight", &config.prior_weight, 0.0, 10.0, "",
+       "a velocity gains up to this share of its votes by agreeing with the prior"},
+      {"ambiguity_ratio", &config.ambiguity_ratio, 0.0, 1.0, "",
+       "the scan is ambiguous when a second velocity has this share of the votes of the first"},
+      {"min_support", &config.min_support, 0.0, 1.0, "", "a velocity needs this share of all votes"},
+  };
+}
+
+EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const ConsensusRegressionConfig& config,
+                              const Workers& workers) {
+  return estimate_velocity(sort_into_cells(scan, config.cell_size_m, workers), prior, config, workers);
+}
+
+EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, const ConsensusRegressionConfig& config,
+                              const Workers& workers) {
+  const EgoVelocity expected = nothing_but_prior(rows.size(), prior, config);
+  EgoVelocity result = expected;
+  if (rows.size() < kLeastPoints) {
+    return result;
+  }
+  result.reference_time_s = rows.reference_time_s;
+  const Choice choice = choose_mode(rows, prior, voting_model(prior, config), config, workers);
+  if (choice.support < config.min_support) {
+    result.status = EgoVelocityStatus::kAmbiguous;
+    return result;
+  }
+  const Fit fit = fit_all(rows, choice, prior, config, workers);
+  result.status = status_of(fit, choice);
+  result.iterations = fit.iterations;
+  result.unobservable = fit.open;
+  result.velocity_sensor = fit.x.head<3>() + fit.open * (result.velocity_sensor - fit.x.head<3>());
+  result.joint_covariance = fit.covariance;
+  result.joint_covariance.topLeftCorner<3, 3>() +=
+      fit.open * result.covariance * fit.open + floor_variance(rows) * (Eigen::Matrix3d::Identity() - fit.open);
+  result.joint_covariance(6, 6) += kFloorMps * kFloorMps;
+  result.covariance = result.joint_covariance.topLeftCorner<3, 3>();
+  result.acceleration_sensor = fit.x.segment<3>(3);
+  if (config.estimate_bias) {
+    result.bias_mps = fit.x[6];
+    result.bias_variance = result.joint_covariance(6, 6);
+  } else {
+    result.joint_covariance.row(6).setZero();
+    result.joint_covariance.col(6).setZero();
+  }
+  result.inliers = fit.sums.inliers;
+  if (result.inliers > 0) {
+    result.inlier_rms_mps = std::sqrt(fit.sums.inlier_squared / static_cast<double>(result.inliers));
+  }
+  if (!is_plausible(result)) {
+    result = expected;
+    result.reference_time_s = rows.reference_time_s;
+    result.status = EgoVelocityStatus::kAmbiguous;
+  }
+  return result;
+}
+
+}  // namespace dynamic_icp::ego_motion

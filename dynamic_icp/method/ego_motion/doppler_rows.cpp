@@ -1,0 +1,154 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamic_icp/method/spatial/cell_key.hpp"
+#include "dynamic_icp/method/spatial/key_numbers.hpp"
+
+namespace dynamic_icp::ego_motion {
+namespace {
+
+constexpr std::size_t kEnoughCells = 300;
+constexpr int kMostHalvings = 6;
+constexpr std::size_t kBlock = 4096;
+
+// Edge of a direction sector on the unit cube, three to six degrees. What errs together,
+// the surfaces of one object, falls into one sector or a few.
+constexpr double kSectorEdge = 0.1;
+
+/// The face of the cube around the sensor that a direction leaves through, and where on it.
+std::uint64_t sector_key(const Eigen::Vector3d& u) {
+  int axis = 0;
+  const double largest = u.cwiseAbs().maxCoeff(&axis);
+  std::uint64_t key = static_cast<std::uint64_t>(2 * axis + (u[axis] > 0.0 ? 1 : 0));
+  for (const int other : {(axis + 1) % 3, (axis + 2) % 3}) {
+    key = key << 8 | static_cast<std::uint64_t>((u[other] / largest + 1.0) / kSectorEdge);
+  }
+  return key;
+}
+
+/// Finds out where each point goes.
+void place_in_cells(const Scan& scan, double cell_size_m, const Workers& workers, SortMemory& memory) {
+  memory.keys.resize(scan.size());
+  memory.cell.resize(scan.size());
+  memory.rank.resize(scan.size());
+  memory.cell_size.clear();
+  memory.numbers.clear();
+  const double per_cell = 1.0 / cell_size_m;
+  workers.for_each(scan.size(), kBlock,
+                   [&](std::size_t i) { memory.keys[i] = spatial::clamped_cell_key(per_cell * scan.points()[i]); });
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    // Points that follow each other often share a cell.
+    const bool same = i > 0 && memory.keys[i] == memory.keys[i - 1];
+    const std::uint32_t cell = same ? memory.cell[i - 1] : memory.numbers.number_of(memory.keys[i]);
+    if (cell == memory.cell_size.size()) {
+      memory.cell_size.push_back(0);
+    }
+    memory.cell[i] = cell;
+    memory.rank[i] = memory.cell_size[cell]++;
+  }
+}
+
+void number_sectors(DopplerRows& rows) {
+  spatial::KeyNumbers numbers;
+  for (std::size_t c = 0; c < rows.sector.size(); ++c) {
+    rows.sector[c] = numbers.number_of(sector_key(rows.u(rows.first[c])));
+  }
+  rows.sectors = numbers.count();
+}
+
+/// The times of a scan, as they count for its rows.
+void measure_time(const Scan& scan, DopplerRows& rows) {
+  rows.reference_time_s = 0.0;
+  rows.duration_s = 0.0;
+  rows.takes_time = false;
+  if (scan.has_times() && !scan.empty()) {
+    const auto [earliest, latest] = std::ranges::minmax(scan.times());
+    rows.reference_time_s = 0.5 * (earliest + latest);
+    rows.duration_s = latest - earliest;
+    rows.takes_time = latest > earliest;
+  }
+}
+
+}  // namespace
+
+DopplerRows sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers) {
+  SortMemory memory;
+  DopplerRows rows;
+  sort_into_cells(scan, cell_size_m, workers, memory, rows);
+  return rows;
+}
+
+void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, SortMemory& memory,
+                     DopplerRows& rows) {
+  place_in_cells(scan, cell_size_m, workers, memory);
+  for (int halving = 0; halving < kMostHalvings && memory.cell_size.size() < std::min(kEnoughCells, scan.size() / 4);
+       ++halving) {
+    cell_size_m *= 0.5;
+    place_in_cells(scan, cell_size_m, workers, memory);
+  }
+  const std::size_t cells = memory.cell_size.size();
+  rows.first.resize(cells + 1);
+  rows.first[0] = 0;
+  for (std::size_t c = 0; c < cells; ++c) {
+    rows.first[c + 1] = rows.first[c] + memory.cell_size[c];
+  }
+  measure_time(scan, rows);
+  for (std::vector<double>* column : {&rows.ux, &rows.uy, &rows.uz, &rows.s, &rows.dt}) {
+    column->resize(scan.size());
+  }
+  rows.range.resize(cells);
+  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+    const std::uint32_t row = rows.first[memory.cell[i]] + memory.rank[i];
+    rows.ux[row] = scan.directions()[i].x();
+    rows.uy[row] = scan.directions()[i].y();
+    rows.uz[row] = scan.directions()[i].z();
+    rows.s[row] = scan.doppler()[i];
+    rows.dt[row] = rows.takes_time ? scan.times()[i] - rows.reference_time_s : 0.0;
+    if (memory.rank[i] == 0) {
+      rows.range[memory.cell[i]] = scan.points()[i].norm();
+    }
+  });
+  rows.sector.resize(cells);
+  number_sectors(rows);
+}
+
+Electorate elect(const DopplerRows& rows, std::size_t most) {
+  const std::size_t n = std::min(most, rows.cells());
+  Electorate electorate;
+  DopplerRows& chosen = electorate.rows;
+  chosen.reference_time_s = rows.reference_time_s;
+  chosen.duration_s = rows.duration_s;
+  chosen.takes_time = rows.takes_time;
+  chosen.sectors = rows.sectors;
+  chosen.first.push_back(0);
+  std::vector<std::size_t> farthest(rows.sectors, n);
+  std::size_t occupied = 0;
+  for (std::size_t k = 0; k < n; ++k) {
+    const std::size_t cell = k * rows.cells() / n;
+    const std::size_t row = (rows.first[cell] + rows.first[cell + 1]) / 2;
+    chosen.ux.push_back(rows.ux[row]);
+    chosen.uy.push_back(rows.uy[row]);
+    chosen.uz.push_back(rows.uz[row]);
+    chosen.s.push_back(rows.s[row]);
+    chosen.dt.push_back(rows.dt[row]);
+    chosen.sector.push_back(rows.sector[cell]);
+    chosen.range.push_back(rows.range[cell]);
+    chosen.first.push_back(static_cast<std::uint32_t>(k + 1));
+    std::size_t& outermost = farthest[rows.sector[cell]];
+    occupied += outermost == n ? 1 : 0;
+    outermost = outermost == n || rows.range[cell] > chosen.range[outermost] ? k : outermost;
+  }
+  electorate.weights.assign(n, 0.5 / static_cast<double>(std::max<std::size_t>(n, 1)));
+  for (const std::size_t k : farthest) {
+    if (k < n) {
+      electorate.weights[k] += 0.5 / static_cast<double>(occupied);
+    }
+  }
+  return electorate;
+}
+
+}  // namespace dynamic_icp::ego_motion

@@ -1,0 +1,69 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/spatial/key_numbers.hpp"
+
+namespace dynamic_icp::ego_motion {
+
+/// The Doppler measurements of a scan, row by row, sorted into cells of space.
+///
+/// A cell is a cube that holds points. It stands for a piece of surface: its points belong to one thing or to few, so
+/// they move together and err together. Votes are counted by cells, because a vehicle near by fills few cells with
+/// many points, and the far scene many cells with few.
+struct DopplerRows {
+  std::vector<double> ux, uy, uz;     ///< line of sight, unit length
+  std::vector<double> s;              ///< m/s, positive away from the sensor
+  std::vector<double> dt;             ///< s after `reference_time_s`; zero for scans taken in an instant
+  std::vector<std::uint32_t> first;   ///< cell c holds the rows [first[c], first[c + 1])
+  std::vector<std::uint32_t> sector;  ///< of each cell: number of the direction sector it is seen in
+  std::vector<double> range;          ///< of each cell, m: how far its first point is
+  std::size_t sectors = 0;            ///< how many sectors are occupied
+  double reference_time_s = 0.0;      ///< s after the stamp: half way between the first and the last point
+  double duration_s = 0.0;            ///< between the first and the last point
+  bool takes_time = false;            ///< the times of the points differ
+
+  [[nodiscard]] Eigen::Vector3d u(std::size_t row) const { return {ux[row], uy[row], uz[row]}; }
+  [[nodiscard]] std::size_t size() const { return s.size(); }
+  [[nodiscard]] std::size_t cells() const { return sector.size(); }
+};
+
+/// Sorts the points of a scan into cubic cells of `cell_size_m`. Where that leaves few cells, as in a small room, the
+/// cells are halved until there are a few hundred or no more to be gained. Cells come in the order of their first
+/// point, rows in scan order within their cell.
+DopplerRows sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers);
+
+/// Working memory of the sorting, to be used again for the next scan.
+struct SortMemory {
+  std::vector<std::uint64_t> keys;       ///< of each point
+  std::vector<std::uint32_t> cell;       ///< of each point
+  std::vector<std::uint32_t> rank;       ///< of each point: how many points of its cell came before
+  std::vector<std::uint32_t> cell_size;  ///< of each cell
+  spatial::KeyNumbers numbers;
+};
+
+/// The same into `rows`, whose memory is used again too.
+void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, SortMemory& memory,
+                     DopplerRows& rows);
+
+/// Rows that vote on what stands still, and the weight of each vote; the weights sum to one.
+struct Electorate {
+  DopplerRows rows;  ///< one row per cell
+  std::vector<double> weights;
+};
+
+/// One row of each of at most `most` cells, evenly over all cells. Half of the votes is spread evenly over the cells:
+/// the static scene fills more space than a crowd. The other half goes to the farthest cell of each direction sector:
+/// whatever moves has something static behind it, so what encloses the scene is static far more often than not,
+/// wherever and however the sensor is mounted.
+Electorate elect(const DopplerRows& rows, std::size_t most);
+
+}  // namespace dynamic_icp::ego_motion

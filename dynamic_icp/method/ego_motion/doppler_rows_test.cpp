@@ -1,0 +1,134 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
+
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::ego_motion {
+namespace {
+
+using Eigen::Vector3d;
+
+Scan random_scan(unsigned seed, std::size_t n, double extent_m) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  RawScan raw;
+  for (std::size_t i = 0; i < n; ++i) {
+    raw.points.emplace_back(extent_m * Vector3d(uniform(random), uniform(random), uniform(random)));
+    raw.doppler.push_back(static_cast<double>(i));  // tells the rows apart
+    raw.times.push_back(0.05 + 0.05 * uniform(random));
+  }
+  return Scan::from_raw(raw);
+}
+
+TEST(DopplerRows, OfNothingAreNone) {
+  const DopplerRows rows = sort_into_cells(Scan{}, 2.0, Workers(1));
+  EXPECT_EQ(rows.size(), 0u);
+  EXPECT_EQ(rows.cells(), 0u);
+  EXPECT_FALSE(rows.takes_time);
+  EXPECT_EQ(elect(rows, 100).rows.size(), 0u);
+}
+
+TEST(DopplerRows, CellsHoldWhatLiesInTheSameCube) {
+  const Scan scan = random_scan(1, 5000, 20.0);
+  const DopplerRows rows = sort_into_cells(scan, 2.0, Workers(1));
+  std::map<std::tuple<double, double, double>, std::vector<double>> expected;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const Vector3d cube = (scan.points()[i] / 2.0).array().floor();
+    expected[{cube.x(), cube.y(), cube.z()}].push_back(scan.doppler()[i]);
+  }
+  ASSERT_EQ(rows.cells(), expected.size());
+  ASSERT_EQ(rows.size(), scan.size());
+  for (std::size_t c = 0; c < rows.cells(); ++c) {
+    const auto i = static_cast<std::size_t>(rows.s[rows.first[c]]);
+    const Vector3d cube = (scan.points()[i] / 2.0).array().floor();
+    const std::vector<double> found(rows.s.begin() + rows.first[c], rows.s.begin() + rows.first[c + 1]);
+    EXPECT_EQ(found, (expected[{cube.x(), cube.y(), cube.z()}]));
+    EXPECT_NEAR(rows.range[c], scan.points()[i].norm(), 1e-12);
+  }
+}
+
+TEST(DopplerRows, KeepEachMeasurementWhole) {
+  const Scan scan = random_scan(2, 1000, 30.0);
+  const DopplerRows rows = sort_into_cells(scan, 2.0, Workers(1));
+  EXPECT_TRUE(rows.takes_time);
+  for (std::size_t row = 0; row < rows.size(); ++row) {
+    const auto i = static_cast<std::size_t>(rows.s[row]);
+    EXPECT_EQ(rows.u(row), scan.directions()[i]);
+    EXPECT_NEAR(rows.dt[row] + rows.reference_time_s, scan.times()[i], 1e-15);
+    EXPECT_LE(std::abs(rows.dt[row]), 0.5 * rows.duration_s + 1e-12);
+  }
+}
+
+TEST(DopplerRows, SmallRoomsGetSmallCells) {
+  EXPECT_GE(sort_into_cells(random_scan(3, 4000, 1.5), 2.0, Workers(1)).cells(), 300u);
+  // But a handful of points at one place stays a handful.
+  RawScan raw;
+  raw.points.assign(50, Vector3d(1.0, 2.0, 0.5));
+  raw.doppler.assign(50, 0.0);
+  EXPECT_EQ(sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1)).cells(), 1u);
+}
+
+TEST(DopplerRows, PointsAtAnyDistanceHaveACell) {
+  RawScan raw;
+  raw.points = {{1e5, 0, 0}, {-1e5, 1, 0}, {0, 0, 1e-9}};
+  raw.doppler = {1, 2, 3};
+  // Ten million cells away, where only 2^20 have a key of their own.
+  const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 0.01, Workers(1));
+  EXPECT_EQ(rows.size(), 3u);
+  EXPECT_EQ(rows.sectors, 3u);
+}
+
+TEST(Electorate, HasOneVotePerCellAndOneMorePerSectorForTheFarthest) {
+  // A near wall of many points and a far one above it, in the same sectors only where they overlap in direction.
+  const Scan scan = random_scan(4, 3000, 40.0);
+  const DopplerRows rows = sort_into_cells(scan, 2.0, Workers(1));
+  const Electorate voters = elect(rows, rows.cells());
+  ASSERT_EQ(voters.rows.size(), rows.cells());
+  EXPECT_NEAR(std::accumulate(voters.weights.begin(), voters.weights.end(), 0.0), 1.0, 1e-12);
+  const double cell_vote = 0.5 / static_cast<double>(rows.cells());
+  const double sector_vote = 0.5 / static_cast<double>(rows.sectors);
+  std::map<std::uint32_t, double> farthest;
+  for (std::size_t c = 0; c < rows.cells(); ++c) {
+    farthest[rows.sector[c]] = std::max(farthest[rows.sector[c]], rows.range[c]);
+  }
+  for (std::size_t c = 0; c < rows.cells(); ++c) {
+    const bool outermost = rows.range[c] == farthest[rows.sector[c]];
+    EXPECT_NEAR(voters.weights[c], cell_vote + (outermost ? sector_vote : 0.0), 1e-15);
+  }
+}
+
+TEST(Electorate, IsNoLargerThanAllowedAndTakesCellsEvenly) {
+  const DopplerRows rows = sort_into_cells(random_scan(5, 5000, 40.0), 2.0, Workers(1));
+  ASSERT_GT(rows.cells(), 1000u);
+  const Electorate voters = elect(rows, 500);
+  EXPECT_EQ(voters.rows.size(), 500u);
+  EXPECT_EQ(voters.rows.cells(), 500u);
+  EXPECT_NEAR(std::accumulate(voters.weights.begin(), voters.weights.end(), 0.0), 1.0, 1e-12);
+}
+
+TEST(SortIntoCells, UsesItsMemoryAgain) {
+  SortMemory memory;
+  DopplerRows reused;
+  for (const Scan& scan : {random_scan(6, 8000, 60.0), Scan{}, random_scan(7, 300, 5.0)}) {
+    sort_into_cells(scan, 2.0, Workers(2), memory, reused);
+    const DopplerRows fresh = sort_into_cells(scan, 2.0, Workers(1));
+    EXPECT_EQ(reused.first, fresh.first);
+    EXPECT_EQ(reused.s, fresh.s);
+    EXPECT_EQ(reused.ux, fresh.ux);
+    EXPECT_EQ(reused.dt, fresh.dt);
+    EXPECT_EQ(reused.sector, fresh.sector);
+    EXPECT_EQ(reused.range, fresh.range);
+    EXPECT_EQ(reused.sectors, fresh.sectors);
+    EXPECT_EQ(reused.takes_time, fresh.takes_time);
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::ego_motion

@@ -1,0 +1,55 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <string>
+
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
+#include "dynamic_icp/method/registration/correspondences.hpp"
+
+// Where the sensor's own motion was taken out of the Doppler before (s = u.v_object), no scan shows how the sensor
+// moves: its velocity is that of the alignment before, and as well known as a vehicle's acceleration allows.
+namespace dynamic_icp::odometry {
+
+/// Where no scan tells, a vehicle changes its velocity by no more than this.
+inline constexpr double kBlindAcceleration_mps2 = 3.0;
+
+/// For assumptions().
+std::string compensated_sentence();
+
+/// The frame in which the static scene of such a scan stands still: no velocity, with the scatter of the points that do
+/// not move by half a metre per second.
+ego_motion::EgoVelocity at_rest(const Scan& scan);
+
+/// Before the first motion: zero, give or take what any vehicle drives (30 m/s).
+ego_motion::EgoVelocity unknown_velocity();
+
+/// `dt_s` later: the same, with what an unknown acceleration adds.
+ego_motion::EgoVelocity goes_on(const ego_motion::EgoVelocity& velocity, double dt_s);
+
+/// The even velocity of a motion in `dt_s`, sensor axes; `position_covariance_map` (m^2) is of its end, in map axes.
+ego_motion::EgoVelocity velocity_of(const Eigen::Isometry3d& T_source_target, double dt_s,
+                                    const Eigen::Matrix3d& R_map_target,
+                                    const Eigen::Matrix3d& position_covariance_map);
+
+/// The first motion between two scans.
+struct FirstWay {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  bool is_clear = false;  ///< no other one fits nearly as well
+};
+
+/// The best of many starts ahead, back, to both sides, up and down, as far as a vehicle drives in `dt_s`: for two scans
+/// of which nothing else is known.
+FirstWay first_way(const Scan& source, const registration::Target& target, double dt_s, const Workers& workers);
+
+/// The same between scans without trees and normals.
+FirstWay first_way(const Scan& source, const Scan& target, double dt_s, const Workers& workers);
+
+/// T_source_target of a sensor that moves and turns evenly for `dt_s`, its velocity (m/s) and turn (rad/s) in its axes.
+Eigen::Isometry3d even_motion(const Eigen::Vector3d& velocity, const Eigen::Vector3d& omega, double dt_s);
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,106 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/odometry/compensated_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/odometry/dynamic_icp.hpp"
+#include "dynamic_icp/method/odometry/scan_to_scan_icp.hpp"
+
+#include "testing/synthetic_drive.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+using namespace synthetic;
+
+/// A scan whose sensor takes its own motion out of the Doppler, by the equations of the path.
+RawScan compensated_scan(const Drive& drive, int k) {
+  RawScan raw = drive.scan(k);
+  for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    const double time_s = k * drive.period_s + (raw.times.empty() ? 0.0 : raw.times[i]);
+    raw.doppler[i] += raw.points[i].normalized().dot(velocity_sensor(drive.path, time_s));
+  }
+  raw.doppler_kind = DopplerKind::kCompensated;
+  return raw;
+}
+
+std::vector<Frame> run(const Drive& drive, Odometry& odometry, int scans) {
+  std::vector<Frame> frames;
+  for (int k = 0; k < scans; ++k) {
+    frames.push_back(odometry.process(compensated_scan(drive, k)));
+  }
+  return frames;
+}
+
+TEST(CompensatedMotion, AVelocityIsThatOfTheMotion) {
+  const Vector3d velocity(10.0, 0.5, -0.1);
+  const Vector3d omega(0.01, -0.02, 0.4);
+  const Eigen::Isometry3d T = even_motion(velocity, omega, 0.1);
+  EXPECT_NEAR(T.translation().norm(), 0.1 * velocity.norm(), 1e-3);
+  const ego_motion::EgoVelocity found =
+      velocity_of(T, 0.1, Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity());
+  EXPECT_LT((found.velocity_sensor - velocity).norm(), 1e-9);
+  EXPECT_NEAR(found.covariance(0, 0), 1e-2, 1e-12) << "0.01 m in 0.1 s are 0.1 m/s";
+  EXPECT_NEAR(goes_on(found, 0.1).covariance(1, 1), 1e-2 + 0.09, 1e-12) << "3 m/s^2 for 0.1 s are 0.3 m/s";
+}
+
+TEST(CompensatedMotion, TheMapOdometryFollowsALivelyDriveAndItsObjects) {
+  for (const Sensor& sensor : {Sensor{}, sweeping()}) {
+    const Drive drive{street_with_cars(), lively(10.0), sensor};
+    MapOdometry odometry(with_ablation(), 2);
+    const std::vector<Frame> frames = run(drive, odometry, 16);
+    const MotionError error = rms_error(drive, frames, 3);
+    EXPECT_LT(error.move_m, 0.02) << sensor.sweep_s;
+    EXPECT_LT(error.turn_deg, 0.1) << sensor.sweep_s;
+    const Frame& last = frames.back();
+    EXPECT_EQ(last.ego.status, ego_motion::EgoVelocityStatus::kFromMotion);
+    EXPECT_LT((last.ego.velocity_sensor - velocity_sensor(drive.path, 1.5)).norm(), 0.5);
+    // The car ahead drives at 12 m/s over ground, whatever the sensor does.
+    bool is_found = false;
+    for (const tracking::TrackedObject& object : last.tracked) {
+      is_found = is_found || std::abs(object.velocity_sensor.norm() - 12.0) < 0.5;
+    }
+    EXPECT_TRUE(is_found);
+  }
+}
+
+TEST(CompensatedMotion, ATunnelIsHonestAboutWhatItDoesNotKnow) {
+  const Drive drive{tunnel(), circle(12.0, 0.0), {}};
+  MapOdometry odometry(with_ablation(), 1);
+  const std::vector<Frame> frames = run(drive, odometry, 6);
+  EXPECT_EQ(frames.back().status, FrameStatus::kDegenerate) << "smooth walls hold nothing along the way";
+}
+
+TEST(CompensatedMotion, ThePaperFollowsADrive) {
+  const Drive drive{street_with_cars(), lively(10.0), {}};
+  DynamicIcp odometry(preset("paper"), 2);
+  const std::vector<Frame> frames = run(drive, odometry, 12);
+  const MotionError error = rms_error(drive, frames, 2);
+  EXPECT_LT(error.move_m, 0.05);
+  EXPECT_LT(error.turn_deg, 0.3);
+  EXPECT_EQ(frames.back().alignment.doppler.count, 0u) << "no Doppler term";
+  EXPECT_EQ(frames.back().ego.status, ego_motion::EgoVelocityStatus::kFromMotion);
+}
+
+TEST(CompensatedMotion, DopplerIcpIsLeftWithItsGeometry) {
+  const Drive drive{street(), circle(1.0, 0.0), {}};
+  Surroundings surroundings;
+  surroundings.doppler_kind = DopplerKind::kCompensated;
+  ScanToScanIcp odometry(ScanToScanMethod::kDopplerIcp, preset("default"), surroundings, 1);
+  EXPECT_EQ(run(drive, odometry, 2).back().alignment.doppler.count, 0u);
+  ASSERT_EQ(odometry.assumptions().size(), 2u);
+  EXPECT_NE(odometry.assumptions()[1].find("compensated"), std::string::npos);
+}
+
+TEST(CompensatedMotion, IsSaid) {
+  for (const char* name : {"paper", "default"}) {
+    Surroundings surroundings;
+    EXPECT_TRUE(make_odometry("dynamic-icp", preset(name), surroundings, 1)->assumptions().empty());
+    surroundings.doppler_kind = DopplerKind::kCompensated;
+    EXPECT_EQ(make_odometry("dynamic-icp", preset(name), surroundings, 1)->assumptions().size(), 1u);
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::odometry

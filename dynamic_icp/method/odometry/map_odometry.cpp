@@ -1,0 +1,406 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/odometry/map_odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dynamic_icp/method/base/scan_limits.hpp"
+#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/odometry/compensated_motion.hpp"
+#include "dynamic_icp/method/odometry/frame_steps.hpp"
+#include "dynamic_icp/method/odometry/motion_uncertainty.hpp"
+#include "dynamic_icp/method/registration/gauss_newton.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+constexpr std::size_t kVelocitySamples = 3;
+constexpr std::size_t kBlock = 4096;
+
+// Fewer agree with a map only by chance: of the points on its patches, and of all. A sparse radar meets few patches in
+// the map of one scan (2 % of its points agree), and fits those well.
+constexpr double kLeastAgreement = 0.2;
+constexpr double kLeastMatch = 0.01;
+
+// 1/m^2, of a position that is known because the map begins with it.
+constexpr double kExactPosition = 1e12;
+
+// The usual share of points that agree with the map follows the last scans with this weight for the newest.
+constexpr double kUsualMatchGain = 0.2;
+
+// So does the deviation of patches from planes; below the least no surface is trusted.
+constexpr double kModelDeviationGain = 0.2;
+constexpr double kLeastModelDeviation_m = 0.001;
+
+// With the first turn known the first scan is made straight and the second aligned again: each round leaves about
+// a tenth of the error.
+constexpr int kStraighteningRounds = 4;
+constexpr double kStraighteningGate_m = 0.5;
+constexpr double kStraighteningGain = 0.5;
+constexpr double kStraight_rad_s = 3e-4;  // moves the end of a sweep of 0.1 s by 0.002 degrees
+
+// A displacement that is known no better is not known.
+constexpr double kUnknown_m = 100.0;
+
+registration::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
+  registration::SweepMotion sweep;
+  sweep.velocity = ego.velocity_sensor - middle_s * ego.acceleration_sensor;
+  sweep.acceleration = ego.acceleration_sensor;
+  return sweep;
+}
+
+double match(const registration::MapAlignment& found) {
+  return found.points > 0 ? found.matched / static_cast<double>(found.points) : 0.0;
+}
+
+/// Whether the alignment is worth nothing, given the usual share of points that agree.
+bool is_lost(const registration::MapAlignment& found, double least_match) {
+  return found.diverged || match(found) < least_match ||
+         found.matched < kLeastAgreement * static_cast<double>(found.on_planes);
+}
+
+/// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
+ego_motion::VelocityFilterConfig filter_for(const EgoMotionConfig& config, const ego_motion::EgoVelocity& ego) {
+  ego_motion::VelocityFilterConfig filter = config.filter;
+  filter.tau_0_mps = std::max(filter.tau_0_mps, config.static_deviations * ego.inlier_rms_mps);
+  return filter;
+}
+
+/// Those of `rows` that stand still.
+std::vector<std::uint32_t> still_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
+  std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
+  return rows;
+}
+
+}  // namespace
+
+MapOdometry::MapOdometry(const Config& config, int threads, DopplerKind expected)
+    : config_(config), workers_(threads), expected_(expected), map_(config.mapping), tracker_(config.tracking) {
+  check(config_);
+}
+
+std::vector<std::string> MapOdometry::assumptions() const {
+  return expected_ == DopplerKind::kCompensated ? std::vector{compensated_sentence()} : std::vector<std::string>{};
+}
+
+Frame MapOdometry::process(const RawScan& raw) {
+  check_order(raw, last_stamp_);
+  Frame frame;
+  frame.sweep = sweep_as_configured(raw, config_.sweep);
+  StageClock clock(frame.times);
+  const std::optional<RawScan> timed = retimed(raw, config_.sweep);
+  Scan& whole = memory_.whole;
+  std::vector<std::uint32_t>& thinned = memory_.thinned;
+  ego_motion::DopplerRows& rows = memory_.rows;
+  take_over(timed ? *timed : raw, config_.preprocess, workers_, whole, frame);
+  workers_.both([&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, thinned); },
+                [&] {
+                  ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
+                                              rows);
+                });
+  frame.points_used = thinned.size();
+  clock.finish(Stage::kPreprocess);
+  last_stamp_ = raw.stamp;
+  Moment now;
+  now.stamp_s = seconds_between(first_stamp_.value_or(raw.stamp), raw.stamp);
+  const std::optional<double> interval_s = state_ ? std::optional(now.stamp_s - state_->stamp_s) : std::nullopt;
+  const FrameStatus found = obstacle(thinned.size(), interval_s, config_);
+  frame.status = found;
+  if (is_skipped(found)) {
+    if (state_) {
+      extrapolate(now.stamp_s, found, frame);
+    }
+    return frame;
+  }
+  if (!first_stamp_) {
+    first_stamp_ = raw.stamp;
+  }
+  now.middle_s = rows.reference_time_s;
+  now.duration_s = rows.duration_s;
+  now.is_relative = whole.doppler_kind() == DopplerKind::kRelative;
+  now.filtered = estimate_ego(whole, rows, now.stamp_s);
+  now.ego = now.is_relative ? ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift) : now.filtered;
+  frame.ego = now.ego;
+  const ego_motion::EgoVelocity in_doppler = now.is_relative ? now.ego : at_rest(whole);
+  ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
+  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, in_doppler), workers_,
+                           memory_.is_moving);
+  now.still = whole.select(still_rows(thinned, memory_.is_moving));
+  clock.finish(Stage::kEgoMotion);
+
+  if (found == FrameStatus::kFirst) {
+    begin(now, Eigen::Isometry3d::Identity());
+  } else if (found == FrameStatus::kTimeGap) {
+    extrapolate(now.stamp_s, found, frame);
+    begin(now, frame.T_world_sensor);
+  } else {
+    if (!now.is_relative && state_->scans_in_map == 1) {
+      now.ego = first_velocity(now);
+    }
+    go_on(now, frame);
+  }
+  if (!now.is_relative) {
+    frame.ego = state_->filtered;
+  }
+  frame.twist = twist_at_stamp(state_->turn, frame.ego, now.middle_s);
+  clock.finish(Stage::kRegistration);
+
+  workers_.both([&] { frame.static_points = add_to_map(now); }, [&] { track_objects(frame); });
+  clock.finish(Stage::kDynamics);
+  return frame;
+}
+
+ego_motion::EgoVelocity MapOdometry::estimate_ego(const Scan& scan, const ego_motion::DopplerRows& rows,
+                                                  double stamp_s) const {
+  const EgoMotionConfig& config = config_.ego_motion;
+  if (scan.doppler_kind() == DopplerKind::kCompensated) {
+    return state_ ? goes_on(state_->filtered, stamp_s - state_->stamp_s) : unknown_velocity();
+  }
+  if (!config.use_consensus) {
+    const Eigen::Vector3d start = state_ ? state_->filtered.velocity_sensor : Eigen::Vector3d::Zero();
+    ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, start, config.regression, workers_);
+    ego.reference_time_s = rows.reference_time_s;
+    return ego;
+  }
+  const ego_motion::EgoPrior prior =
+      state_ ? ego_motion::predict(
+                   state_->filtered,
+                   std::min(stamp_s + rows.reference_time_s - state_->velocities.back().time_s, kMaxPrediction_s),
+                   config.drift)
+             : ego_motion::first_prior(config.drift);
+  return ego_motion::estimate_velocity(rows, prior, config.consensus, workers_);
+}
+
+/// A new map with this scan as its first, at a known place.
+void MapOdometry::begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor) {
+  map_.clear();
+  State state;
+  state.stamp_s = now.stamp_s;
+  state.model_deviation_m = state_ ? state_->model_deviation_m : config_.map_align.model_deviation_m;
+  state.filtered = now.filtered;
+  state.T_map_sensor = T_map_sensor;
+  state.position_information = kExactPosition * Eigen::Matrix3d::Identity();
+  state.turn = first_turn_state(config_.turn);
+  state.turn.R_map_sensor = T_map_sensor.linear();
+  state.sweep = straight_sweep(now.ego, now.middle_s);
+  state.first = now;
+  state.velocities = {
+      {now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, state.turn.R_map_sensor}};
+  state_ = std::move(state);
+}
+
+std::vector<VelocitySample> MapOdometry::velocities_with(const Moment& now) const {
+  std::vector<VelocitySample> samples = state_->velocities;
+  samples.push_back({now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, {}});
+  if (samples.size() > kVelocitySamples) {
+    samples.erase(samples.begin());
+  }
+  return samples;
+}
+
+/// Where the scan should be: the turn as it was expected, the way by the velocities of this and the last scans.
+registration::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
+  const double dt_s = now.stamp_s - state_->stamp_s;
+  const TurnState turn = predict(state_->turn, dt_s, config_.turn);
+  registration::MotionPrior prior;
+  prior.R_map_sensor = turn.R_map_sensor;
+  prior.sweep = straight_sweep(now.ego, now.middle_s);
+  prior.sweep.omega = turn.omega;
+  prior.sweep.alpha = turn.alpha;
+  prior.covariance = turn.covariance;
+  if (!now.is_relative) {
+    expect_even_motion(now, prior);
+    return prior;
+  }
+  std::vector<VelocitySample> samples = velocities_with(now);
+  const Eigen::Matrix3d R_stamp_middle = prior.sweep.rotation(now.middle_s);
+  samples.back().R_map_sensor = prior.R_map_sensor * R_stamp_middle;
+  const Displacement displacement = displacement_between(samples, state_->stamp_s, now.stamp_s);
+  prior.displacement_fixed = state_->T_map_sensor.translation() + displacement.fixed_map;
+  prior.displacement_turned = displacement.last_weight_s * (R_stamp_middle * now.ego.velocity_sensor);
+  const double integration_m = config_.use_displacement ? config_.displacement_deviation_mps * dt_s : kUnknown_m;
+  prior.translation_covariance = state_->position_covariance + displacement.covariance_map +
+                                 integration_m * integration_m * Eigen::Matrix3d::Identity();
+  return prior;
+}
+
+void MapOdometry::go_on(const Moment& now, Frame& frame) {
+  registration::MapAlignConfig config = config_.map_align;
+  config.model_deviation_m = state_->model_deviation_m;
+  const registration::MotionPrior prior = motion_prior(now);
+  registration::MapAlignment found = state_->scans_in_map == 1 ? align_second(now, prior)
+                                     : !now.is_relative
+                                         ? align_with_found_velocity(now, prior, config)
+                                         : registration::align_to_map(now.still, map_, prior, config, workers_);
+  const double least_match = std::max(kLeastMatch, config_.lost_match * state_->usual_match);
+  if (is_lost(found, least_match)) {
+    found = registration::search_and_align(now.still, map_, prior, config, workers_);
+  }
+  if (is_lost(found, least_match) || !is_plausible_motion(motion_to(found), now.stamp_s - state_->stamp_s)) {
+    lose(now, prior, frame);
+    return;
+  }
+  const Eigen::Matrix3d held = held_position(now, found);
+  if (!now.is_relative) {
+    keep_expected_where_nothing_holds(prior, held, found);
+  }
+  const ego_motion::EgoVelocity moved = now.is_relative ? now.filtered : found_velocity(now, found, held);
+  const TurnState expected = predict(state_->turn, now.stamp_s - state_->stamp_s, config_.turn);
+  const TurnState turn = turn_state(found, expected, now.duration_s, config_.turn);
+  describe(prior, found, held, turn.covariance.topLeftCorner<3, 3>(), registration::typical_distance(now.still), frame);
+
+  state_->usual_match = state_->scans_in_map == 1
+                            ? match(found)
+                            : state_->usual_match + kUsualMatchGain * (match(found) - state_->usual_match);
+  if (found.model_deviation_m) {
+    const double seen = std::max(kLeastModelDeviation_m, *found.model_deviation_m);
+    state_->model_deviation_m += kModelDeviationGain * (seen - state_->model_deviation_m);
+  }
+  state_->first = {};
+  state_->stamp_s = now.stamp_s;
+  state_->T_map_sensor = found.T_map_sensor;
+  state_->turn = turn;
+  state_->sweep = found.sweep;
+  state_->filtered = moved;
+  // The map is the mean of its last scans: a position drifts away from it only as long as it remembers.
+  const double memory = config_.mapping.memory_scans;
+  state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);
+  state_->position_information = held;
+  std::vector<VelocitySample> velocities = velocities_with(now);
+  velocities.back().R_map_sensor = found.T_map_sensor.linear() * found.sweep.rotation(now.middle_s);
+  state_->velocities = std::move(velocities);
+}
+
+/// What the frame says of an alignment.
+void MapOdometry::describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
+                           const Eigen::Matrix3d& held, const Eigen::Matrix3d& rotation_covariance, double length_m,
+                           Frame& frame) const {
+  MotionEvidence evidence;
+  evidence.source_rotation_covariance = state_->turn.covariance.topLeftCorner<3, 3>();
+  evidence.target_rotation_covariance = rotation_covariance;
+  evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
+  evidence.source_position_information = state_->position_information;
+  evidence.target_position_information = held;
+  evidence.displacement_turned = prior.displacement_turned;
+  registration::Alignment& alignment = frame.alignment;
+  alignment.iterations = found.iterations;
+  alignment.fitness = match(found);
+  alignment.inlier_rmse = found.rms_m;
+  alignment.correspondences = found.on_planes;
+  alignment.geometry = {found.on_planes, static_cast<std::size_t>(found.matched), found.rms_m};
+  alignment.length_m = length_m;
+  alignment.covariance = motion_covariance(evidence, found.T_map_sensor.linear());
+  alignment.degenerate = unknown_directions(*alignment.covariance, length_m, config_.unknown_deviation_m);
+  alignment.information_ratio = information_ratio(*alignment.covariance, length_m);
+  alignment.T_target_source = found.T_map_sensor.inverse() * state_->T_map_sensor;
+  alignment.status =
+      found.converged ? registration::AlignStatus::kConverged : registration::AlignStatus::kIterationLimit;
+  FrameStatus status = found.converged ? FrameStatus::kConverged : FrameStatus::kIterationLimit;
+  if (!alignment.degenerate.empty()) {
+    alignment.status = registration::AlignStatus::kDegenerate;
+    status = FrameStatus::kDegenerate;
+  }
+  set_motion(frame, status, state_->T_map_sensor, alignment.T_target_source);
+}
+
+/// Nothing fits the map: the motion is the one expected, and the map begins anew.
+void MapOdometry::lose(const Moment& now, const registration::MotionPrior& prior, Frame& frame) {
+  Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
+  T_map_sensor.linear() = prior.R_map_sensor;
+  T_map_sensor.translation() = prior.displacement_fixed + prior.R_map_sensor * prior.displacement_turned;
+  set_motion(frame, FrameStatus::kLost, state_->T_map_sensor, T_map_sensor.inverse() * state_->T_map_sensor);
+  MotionEvidence evidence;
+  evidence.target_rotation_covariance = prior.covariance.topLeftCorner<3, 3>();
+  evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
+  evidence.displacement_turned = prior.displacement_turned;
+  frame.alignment.covariance = motion_covariance(evidence, prior.R_map_sensor);
+  const registration::SweepMotion sweep = prior.sweep;
+  begin(now, T_map_sensor);
+  state_->turn.omega = sweep.omega;
+  state_->sweep.omega = sweep.omega;
+}
+
+/// The first scan was laid down as if the sensor did not turn. With the turn that the second shows it is laid down
+/// again, until both agree.
+registration::MapAlignment MapOdometry::align_second(const Moment& now, const registration::MotionPrior& prior) {
+  registration::MapAlignment found =
+      config_.search_start ? registration::search_and_align(now.still, map_, prior, config_.map_align, workers_)
+                           : registration::align_to_map(now.still, map_, prior, config_.map_align, workers_);
+  if (!state_->first.still.has_times()) {
+    return found;
+  }
+  const Moment& first = state_->first;
+  const double dt_s = now.stamp_s - first.stamp_s;
+  double gate_m = kStraighteningGate_m;
+  for (int round = 0; round < kStraighteningRounds; ++round, gate_m *= kStraighteningGain) {
+    const Eigen::Matrix3d R_first_now = state_->T_map_sensor.linear().transpose() * found.T_map_sensor.linear();
+    const Eigen::Vector3d mean_omega = log_so3(R_first_now) / dt_s;
+    if (round > 0 && (mean_omega - state_->sweep.omega).norm() < kStraight_rad_s) {
+      break;
+    }
+    state_->sweep.omega = mean_omega;
+    state_->turn.omega = mean_omega;
+    if (!now.is_relative) {
+      state_->sweep.velocity = log_se3(motion_to(found)).tail<3>() / dt_s;
+    }
+    state_->velocities.back().R_map_sensor = state_->T_map_sensor.linear() * state_->sweep.rotation(first.middle_s);
+    registration::MotionPrior straightened = motion_prior(now);
+    if (!now.is_relative) {
+      straightened.sweep.velocity = state_->sweep.velocity;
+    }
+    map_.clear();
+    state_->scans_in_map = 0;
+    add_to_map(first);
+    found = registration::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), gate_m,
+                                       config_.map_align, workers_);
+  }
+  return found;
+}
+
+/// Returns the points that were added, in sensor axes at the stamp.
+std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
+  std::vector<Eigen::Vector3d> points = registration::points_at_stamp(now.still, state_->sweep, workers_);
+  std::vector<Eigen::Vector3d> in_map(points.size());
+  workers_.for_each(points.size(), kBlock, [&](std::size_t i) { in_map[i] = state_->T_map_sensor * points[i]; });
+  map_.add(in_map, state_->T_map_sensor.translation(), workers_);
+  ++state_->scans_in_map;
+  return points;
+}
+
+/// Labels the points, tracks what moves, and counts both over the thinned scan.
+void MapOdometry::track_objects(Frame& frame) {
+  Scan& scan = memory_.whole;
+  const std::vector<std::uint8_t>& is_moving = memory_.is_moving;
+  workers_.for_each(scan.size(), kBlock,
+                    [&](std::size_t row) { frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0; });
+  std::vector<std::uint8_t> in_track(scan.size(), 0);
+  if (config_.dynamics.predict) {
+    scan = registration::undo_sweep(std::move(scan), state_->sweep, workers_);
+    for (tracking::TrackedObject& object :
+         tracker_.update(scan, memory_.radial, is_moving, frame.T_world_sensor, workers_)) {
+      const bool is_confirmed = object.status == tracking::TrackStatus::kConfirmed;
+      for (const std::uint32_t row : object.members) {
+        in_track[row] = 1;
+        if (is_confirmed) {
+          frame.labels[scan.records()[row]] = static_cast<std::int32_t>(object.id);
+        }
+      }
+      if (is_confirmed) {
+        frame.tracked.push_back(std::move(object));
+      }
+    }
+  }
+  for (const std::uint32_t row : memory_.thinned) {
+    if (is_moving[row] != 0) {
+      ++frame.dynamic_candidates;
+      frame.dynamic_clustered += in_track[row];
+      frame.dynamic_refined += frame.labels[scan.records()[row]] > 0 ? 1 : 0;
+    }
+  }
+}
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,55 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
+#include "dynamic_icp/method/odometry/frame.hpp"
+
+namespace dynamic_icp::odometry {
+
+/// A method over a stream of scans. The same scans give the same bits for any number of threads.
+class Odometry {
+ public:
+  virtual ~Odometry() = default;
+
+  /// Takes the next scan. Throws DataError when its stamp is not later than that of the scan before, and
+  /// std::invalid_argument when its columns differ in length; the state is unchanged then. No number in a scan makes it
+  /// throw: what cannot be a measurement is dropped and counted, and all numbers of the frame are finite. A scan that
+  /// cannot be aligned is no error: its frame says so.
+  virtual Frame process(const RawScan& raw) = 0;
+
+  /// What the method had to take for granted because it was not told, for all outputs; usually nothing.
+  [[nodiscard]] virtual std::vector<std::string> assumptions() const { return {}; }
+};
+
+/// What a method may know besides the scans.
+struct Surroundings {
+  std::optional<Eigen::Isometry3d> T_vehicle_sensor;  ///< mounting of the sensor, where the recording has it
+  /// What the Doppler of the scans will be, for `assumptions`; each scan says itself what is done with it.
+  DopplerKind doppler_kind = DopplerKind::kRelative;
+};
+
+/// dynamic-icp, doppler-icp, point-to-point, point-to-plane, gicp, kiss-icp.
+std::vector<std::string_view> method_names();
+
+/// Throws UsageError with the known names for any other.
+void check_method(std::string_view name);
+
+/// Whether the method of that name takes the Doppler into account: without any, its results are not its own.
+bool needs_doppler(std::string_view method);
+
+/// The method of that name. `threads` = 0 takes as many as the machine has. Throws UsageError with the known names, or
+/// when the configuration or the mounting is out of range.
+std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config,
+                                        const Surroundings& surroundings = {}, int threads = 0);
+
+}  // namespace dynamic_icp::odometry

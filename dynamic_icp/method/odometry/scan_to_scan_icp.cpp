@@ -1,0 +1,190 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/odometry/scan_to_scan_icp.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "dynamic_icp/method/odometry/frame_steps.hpp"
+#include "dynamic_icp/method/odometry/stage_clock.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+/// Moves a twist [omega; rho] to another frame.
+Matrix6d adjoint(const Eigen::Isometry3d& T) {
+  Matrix6d result = Matrix6d::Zero();
+  result.topLeftCorner<3, 3>() = T.linear();
+  result.bottomRightCorner<3, 3>() = T.linear();
+  result.bottomLeftCorner<3, 3>() = skew(T.translation()) * T.linear();
+  return result;
+}
+
+/// An alignment of scans in the frame of the vehicle, told in the frame of the sensor.
+void tell_in_sensor_frame(registration::Alignment& alignment, const Eigen::Isometry3d& T_vehicle_sensor) {
+  const Eigen::Isometry3d T_sensor_vehicle = T_vehicle_sensor.inverse();
+  alignment.T_target_source = T_sensor_vehicle * alignment.T_target_source * T_vehicle_sensor;
+  if (alignment.covariance) {
+    const Matrix6d A = adjoint(T_sensor_vehicle);
+    alignment.covariance = A * *alignment.covariance * A.transpose();
+  }
+  for (estimation::DegenerateDirection& direction : alignment.degenerate) {
+    Vector6d xi = direction.direction;
+    xi.head<3>() /= alignment.length_m;
+    xi = adjoint(T_sensor_vehicle) * xi;
+    xi.head<3>() *= alignment.length_m;
+    direction.direction = xi.normalized();
+  }
+}
+
+}  // namespace
+
+/// What is kept of a scan: the target of this alignment and the source of the next.
+struct ScanToScanIcp::Reference {
+  Scan scan;  // in the frame of the vehicle for Doppler-ICP, else of the sensor
+  preprocess::Normals normals;
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  Vector6d twist = Vector6d::Zero();  // of the last alignment, log(T_target_source) / dt, sensor frame
+};
+
+ScanToScanIcp::ScanToScanIcp(ScanToScanMethod method, const Config& config, const Surroundings& surroundings,
+                             int threads)
+    : method_(method), config_(config), workers_(threads), expected_(surroundings.doppler_kind) {
+  check(config_);
+  if (method == ScanToScanMethod::kDopplerIcp) {
+    T_vehicle_sensor_ = surroundings.T_vehicle_sensor;
+  }
+}
+
+ScanToScanIcp::~ScanToScanIcp() = default;
+
+std::vector<std::string> ScanToScanIcp::assumptions() const {
+  std::vector<std::string> sentences;
+  if (method_ == ScanToScanMethod::kDopplerIcp && !T_vehicle_sensor_) {
+    sentences.emplace_back(
+        "doppler-icp needs the mounting of the sensor and was given no calibration: the identity is taken");
+  }
+  if (method_ == ScanToScanMethod::kDopplerIcp && expected_ == DopplerKind::kCompensated) {
+    sentences.emplace_back(
+        "the Doppler is compensated: doppler-icp has no Doppler term then, only its robust point-to-plane term is "
+        "left");
+  }
+  return sentences;
+}
+
+Frame ScanToScanIcp::process(const RawScan& raw) {
+  check_order(raw, last_stamp_);
+  Frame frame;
+  StageClock clock(frame.times);
+  const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
+  clock.finish(Stage::kPreprocess);
+  last_stamp_ = raw.stamp;
+  const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_);
+  if (is_skipped(found)) {
+    continue_motion(frame, found);
+    return frame;
+  }
+  for (const std::uint32_t record : scan.records()) {
+    frame.labels[record] = 0;
+  }
+
+  auto now = std::make_unique<Reference>();
+  now->scan = T_vehicle_sensor_ ? scan.transformed(*T_vehicle_sensor_) : scan;
+  const spatial::KdTree tree(now->scan.points(), workers_);
+  if (method_ != ScanToScanMethod::kPointToPoint) {
+    now->normals = preprocess::estimate_normals(now->scan.points(), tree, config_.preprocess.normals, workers_);
+  }
+  clock.finish(Stage::kNormals);
+
+  if (found == FrameStatus::kNotRun) {
+    align_to_last(*now, tree, frame);
+  } else {
+    continue_motion(frame, found);
+  }
+  clock.finish(Stage::kRegistration);
+
+  now->T_world_sensor = frame.T_world_sensor;
+  if (last_) {
+    const double dt_s = *interval_s(raw.stamp);
+    now->twist = log_se3(frame.T_target_source) / dt_s;
+    tell_velocity_from_motion(frame, dt_s);
+  }
+  last_ = std::move(now);
+  return frame;
+}
+
+void ScanToScanIcp::align_to_last(const Reference& now, const spatial::KdTree& tree, Frame& frame) const {
+  const double dt_s = seconds_between(last_->scan.stamp(), frame.stamp);
+  const registration::Source source{last_->scan, last_->normals.vectors, last_->normals.valid};
+  const registration::Target target{now.scan, tree, now.normals.vectors, now.normals.valid};
+  Eigen::Isometry3d T_initial = predicted_motion(frame.stamp);
+  if (T_vehicle_sensor_) {
+    T_initial = *T_vehicle_sensor_ * T_initial * T_vehicle_sensor_->inverse();
+  }
+  frame.alignment = registration::align(source, target, T_initial, objective(now.scan.doppler_kind(), dt_s),
+                                        config_.registration.max_correspondence_distance_m,
+                                        stop_rule(config_.registration), workers_);
+  if (T_vehicle_sensor_) {
+    tell_in_sensor_frame(frame.alignment, *T_vehicle_sensor_);
+  }
+  const FrameStatus status = frame_status(frame.alignment, dt_s);
+  set_motion(frame, status, last_->T_world_sensor,
+             is_aligned(status) ? frame.alignment.T_target_source : predicted_motion(frame.stamp));
+}
+
+std::optional<double> ScanToScanIcp::interval_s(Stamp stamp) const {
+  return last_ ? std::optional(seconds_between(last_->scan.stamp(), stamp)) : std::nullopt;
+}
+
+void ScanToScanIcp::continue_motion(Frame& frame, FrameStatus status) const {
+  frame.status = status;
+  if (last_) {
+    set_motion(frame, status, last_->T_world_sensor, predicted_motion(frame.stamp));
+  }
+}
+
+Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
+  if (!config_.icp.constant_velocity_start) {
+    return Eigen::Isometry3d::Identity();
+  }
+  return exp_se3(prediction_time_s(last_->scan.stamp(), stamp) * last_->twist);
+}
+
+registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {
+  registration::Objective objective;
+  objective.doppler = registration::DopplerTerm::kNone;
+  objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
+  switch (method_) {
+    case ScanToScanMethod::kPointToPoint:
+      objective.geometry = registration::GeometryTerm::kPointToPoint;
+      break;
+    case ScanToScanMethod::kPointToPlane:
+      objective.geometry = registration::GeometryTerm::kPointToPlane;
+      break;
+    case ScanToScanMethod::kGicp:
+      objective.geometry = registration::GeometryTerm::kPlaneToPlane;
+      break;
+    case ScanToScanMethod::kDopplerIcp:
+      // What the sensor's own motion was taken out of cannot tell it.
+      objective.doppler = kind == DopplerKind::kRelative ? registration::DopplerTerm::kSensorVelocity
+                                                         : registration::DopplerTerm::kNone;
+      objective.doppler_weight = config_.doppler_icp.doppler_weight;
+      // Published: a row is scaled by the root of its share before the kernel sees it. A residual without that factor
+      // meets a kernel that is wider by it.
+      objective.tukey_geometry_m = config_.doppler_icp.tukey_geometry_m / std::sqrt(1.0 - objective.doppler_weight);
+      if (objective.doppler_weight > 0.0) {
+        objective.tukey_doppler_mps = config_.doppler_icp.tukey_doppler_mps / std::sqrt(objective.doppler_weight);
+      }
+      objective.tukey_doppler_from_iteration = config_.doppler_icp.robust_from_iteration;
+      objective.reject_doppler_mps = config_.doppler_icp.reject_doppler_mps;
+      objective.reject_from_iteration = config_.doppler_icp.robust_from_iteration;
+      objective.vehicle.dt_s = dt_s;
+      if (T_vehicle_sensor_) {
+        objective.vehicle.sensor_vehicle = T_vehicle_sensor_->translation();
+      }
+      break;
+  }
+  return objective;
+}
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,22 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "dynamic_icp/method/base/config_field.hpp"
+
+namespace dynamic_icp::registration {
+
+struct AlignConfig {
+  double doppler_weight = 0.2;     ///< lambda_v; 0 leaves the Doppler term out (ablation "w/o DR")
+  double tukey_geometry_m = 0.5;   ///< rho_g
+  double tukey_doppler_mps = 0.3;  ///< rho_v
+  double max_correspondence_distance_m = 0.3;
+  int max_iterations = 100;
+  double tolerance = 1e-5;  ///< on the change of fitness and of inlier RMSE (m)
+  int min_correspondences = 6;
+  double rank_tolerance = 1e-12;
+};
+
+ConfigFields fields(AlignConfig& config);
+
+}  // namespace dynamic_icp::registration

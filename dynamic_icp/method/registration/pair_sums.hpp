@@ -1,0 +1,33 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/estimation/normal_equations.hpp"
+#include "dynamic_icp/method/registration/objective.hpp"
+#include "dynamic_icp/method/registration/source_rows.hpp"
+
+namespace dynamic_icp::registration {
+
+/// What an iteration needs of some pairs: the equations of its step and how well they fit.
+struct PairSums {
+  estimation::NormalEquations equations;
+  std::size_t pairs = 0;
+  double squared_distances = 0.0;  ///< m^2, sum over the pairs
+
+  PairSums& operator+=(const PairSums& other);
+};
+
+/// Whether `sum_pairs` knows the terms of an objective: point to plane, with the rotation-only Doppler term or none,
+/// the same in all iterations.
+bool can_sum_pairs(const Objective& objective);
+
+/// The normal equations that `linearise` forms (but for rounding) from groups that lie where the pose of rotation `R`
+/// has moved them: the fast way for the inner loop.
+PairSums sum_pairs(std::span<const SourceRows> groups, const Eigen::Matrix3d& R, const Objective& objective);
+
+}  // namespace dynamic_icp::registration

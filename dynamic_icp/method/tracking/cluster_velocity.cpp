@@ -1,0 +1,77 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/cluster_velocity.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "dynamic_icp/method/estimation/median.hpp"
+#include "dynamic_icp/method/estimation/robust_kernel.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+constexpr int kIterations = 8;
+constexpr double kTukeyTuning = 4.685;  // 95 % efficiency for normal errors
+constexpr double kConvergence_mps = 1e-3;
+// Of the information sum u u^T, which is 1 per point along the line of sight: below this a direction counts as open.
+constexpr double kOpenInformation = 1e-5;
+
+/// The solution of A W = b in the directions that A constrains.
+Eigen::Vector3d solve_constrained(const Eigen::Matrix3d& A, const Eigen::Vector3d& b) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(A);
+  Eigen::Vector3d W = Eigen::Vector3d::Zero();
+  for (int i = 0; i < 3; ++i) {
+    if (eigen.eigenvalues()[i] > kOpenInformation) {
+      W += eigen.eigenvectors().col(i) * (eigen.eigenvectors().col(i).dot(b) / eigen.eigenvalues()[i]);
+    }
+  }
+  return W;
+}
+
+}  // namespace
+
+ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions, std::span<const double> radial,
+                                     double sigma_mps) {
+  ClusterVelocity result;
+  if (directions.empty()) {
+    return result;
+  }
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& u : directions) {
+    mean += u;
+  }
+  result.W = estimation::median({radial.begin(), radial.end()}) * mean.normalized();
+  std::vector<double> magnitudes(radial.size());
+  for (int iteration = 0; iteration < kIterations; ++iteration) {
+    for (std::size_t i = 0; i < radial.size(); ++i) {
+      magnitudes[i] = std::abs(radial[i] - directions[i].dot(result.W));
+    }
+    const double scale = std::max(sigma_mps, estimation::kDeviationPerMad * estimation::median(magnitudes));
+    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < radial.size(); ++i) {
+      const double w = estimation::tukey_weight(magnitudes[i], kTukeyTuning * scale);
+      A += w * directions[i] * directions[i].transpose();
+      b += w * radial[i] * directions[i];
+    }
+    const Eigen::Vector3d last = result.W;
+    result.W = solve_constrained(A, b);
+    result.information = A / (scale * scale);
+    result.spread_mps = scale;
+    if ((result.W - last).norm() < kConvergence_mps) {
+      break;
+    }
+  }
+  for (const Eigen::Vector3d& u : directions) {
+    result.signal_mps += u.dot(result.W) * u.dot(result.W);
+  }
+  result.signal_mps = std::sqrt(result.signal_mps / static_cast<double>(directions.size()));
+  return result;
+}
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,36 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/tracking/oriented_box.hpp"
+#include "dynamic_icp/method/tracking/sensor_motion.hpp"
+#include "dynamic_icp/method/tracking/track.hpp"
+#include "dynamic_icp/method/tracking/tracker_config.hpp"
+
+namespace dynamic_icp::tracking {
+
+/// What a track expects of its points in one scan; everything in world axes.
+struct Expectation {
+  OrientedBox box;               ///< at the stamp
+  Eigen::Vector3d velocity;      ///< m/s, of the centre
+  Eigen::Vector3d W;             ///< m/s: its points have the radial velocities u . W
+  Eigen::Matrix3d W_covariance;  ///< (m/s)^2
+  double gate_m = 0.0;           ///< distance from the box at which points may still be its own
+  double gate_mps = 0.0;         ///< deviation of their radial velocities, beyond the uncertainty of W
+
+  /// `predicted` is the track at the stamp.
+  Expectation(const Track& predicted, const SensorMotion& sensor, const TrackerConfig& config);
+
+  /// Distance from the box of a point measured `time_s` after the stamp.
+  [[nodiscard]] double outside(const Eigen::Vector3d& point_world, double time_s) const;
+
+  /// Deviation of a radial velocity from the expected one as a share of what is allowed.
+  [[nodiscard]] double deviation(const Eigen::Vector3d& direction_world, double radial_mps) const;
+
+  /// Whether some of its points may be as slow along the line of sight as what stands, though it moves.
+  [[nodiscard]] bool may_look_still(const Eigen::Vector3d& sensor_world, double slow_mps) const;
+};
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,215 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/moving_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <numeric>
+
+#include "dynamic_icp/method/spatial/cell_key.hpp"
+#include "dynamic_icp/method/spatial/disjoint_sets.hpp"
+#include "dynamic_icp/method/spatial/key_numbers.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kCellBlock = 128;
+constexpr double kWiderThanReach = 1.001;  // rounding must not put cells within reach two cubes apart
+
+void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& cell) {
+  cell.centroid += scan.points()[row];
+  cell.direction += scan.directions()[row];
+  cell.radial_mps += radial;
+  cell.time_s += scan.has_times() ? scan.times()[row] : 0.0;
+  ++cell.count;
+}
+
+/// The rows that move, ascending.
+std::vector<std::uint32_t> moving_rows(std::span<const std::uint8_t> is_moving, const Workers& workers) {
+  std::vector<std::uint32_t> end_of_block(Workers::block_count(is_moving.size(), kBlock));
+  workers.for_blocks(is_moving.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    end_of_block[block] = static_cast<std::uint32_t>(std::count_if(
+        is_moving.begin() + static_cast<std::ptrdiff_t>(begin), is_moving.begin() + static_cast<std::ptrdiff_t>(end),
+        [](std::uint8_t moving) { return moving != 0; }));
+  });
+  std::partial_sum(end_of_block.begin(), end_of_block.end(), end_of_block.begin());
+  std::vector<std::uint32_t> rows(end_of_block.empty() ? 0 : end_of_block.back());
+  workers.for_blocks(is_moving.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    std::uint32_t next = block == 0 ? 0 : end_of_block[block - 1];
+    for (std::size_t row = begin; row < end; ++row) {
+      if (is_moving[row] != 0) {
+        rows[next++] = static_cast<std::uint32_t>(row);
+      }
+    }
+  });
+  return rows;
+}
+
+/// From sums to means.
+void take_means(MovingCell& cell) {
+  const auto count = static_cast<double>(cell.count);
+  cell.centroid /= count;
+  cell.direction /= count;
+  cell.radial_mps /= count;
+  cell.time_s /= count;
+}
+
+/// Whether a cell may lie beside the gap where the radial velocity of its body passes zero.
+bool beside_gap(const MovingCell& cell, const GroupingConfig& config) {
+  return std::abs(cell.radial_mps) <= config.bridge_velocity_mps;
+}
+
+/// Whether two cells are neighbours on one body; `range` is that of the nearer one.
+bool linked(const MovingCell& a, const MovingCell& b, double range, const GroupingConfig& config) {
+  const bool gap = a.radial_mps * b.radial_mps < 0.0 && beside_gap(a, config) && beside_gap(b, config);
+  const double link = config.link_distance_m + config.link_growth * range;
+  const double longest = gap ? std::max(link, config.bridge_m) : link;
+  const double squared = (a.centroid - b.centroid).squaredNorm();
+  return squared <= longest * longest &&
+         std::abs(a.radial_mps - b.radial_mps) <= config.link_velocity_mps + config.link_shear_rps * std::sqrt(squared);
+}
+
+/// The cube itself and 13 of its 26 neighbours, so that each pair of cubes comes up once: differences of keys.
+std::vector<std::uint64_t> half_neighbourhood() {
+  std::vector<std::uint64_t> offsets;
+  for (std::int64_t x = -1; x <= 1; ++x) {
+    for (std::int64_t y = -1; y <= 1; ++y) {
+      for (std::int64_t z = -1; z <= 1; ++z) {
+        const std::int64_t offset = (x << 2 * spatial::kCellBits) + (y << spatial::kCellBits) + z;
+        if (offset >= 0) {
+          offsets.push_back(static_cast<std::uint64_t>(offset));
+        }
+      }
+    }
+  }
+  return offsets;
+}
+
+/// Calls visit(i, k) once for each pair of the chosen cells that are at most `reach_m` apart, and for some more.
+template <typename Visit>
+void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::uint32_t> chosen, double reach_m,
+                      const Visit& visit) {
+  const double cube_m = kWiderThanReach * reach_m;
+  spatial::KeyNumbers numbers(chosen.size());
+  std::vector<std::uint64_t> keys;
+  std::vector<std::vector<std::uint32_t>> cubes;
+  for (const std::uint32_t i : chosen) {
+    const std::uint64_t key = spatial::clamped_cell_key(cells[i].centroid / cube_m);
+    const std::uint32_t number = numbers.number_of(key);
+    if (number == cubes.size()) {
+      cubes.emplace_back();
+      keys.push_back(key);
+    }
+    cubes[number].push_back(i);
+  }
+  const std::vector<std::uint64_t> offsets = half_neighbourhood();
+  for (std::size_t cube = 0; cube < cubes.size(); ++cube) {
+    for (const std::uint64_t offset : offsets) {
+      const std::uint32_t other = numbers.find(keys[cube] + offset);
+      if (other == spatial::KeyNumbers::kNone) {
+        continue;
+      }
+      for (std::size_t a = 0; a < cubes[cube].size(); ++a) {
+        for (std::size_t b = other == cube ? a + 1 : 0; b < cubes[other].size(); ++b) {
+          visit(cubes[cube][a], cubes[other][b]);
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+ConfigFields fields(GroupingConfig& config) {
+  return {
+      {"cell_size_m", &config.cell_size_m, 0.01, 10.0, "m", "edge of the cubes that thin moving points for grouping"},
+      {"link_distance_m", &config.link_distance_m, 0.0, 100.0, "m",
+       "moving cells of one object are at most link_distance + link_growth * range apart"},
+      {"link_growth", &config.link_growth, 0.0, 1.0, "m/m", "growth of that distance with the range"},
+      {"link_velocity_mps", &config.link_velocity_mps, 0.0, 100.0, "m/s",
+       "radial velocities of neighbours on one object differ by at most link_velocity + link_shear * distance"},
+      {"link_shear_rps", &config.link_shear_rps, 0.0, 100.0, "(m/s)/m", "growth of that difference with the distance"},
+      {"bridge_m", &config.bridge_m, 0.0, 100.0, "m", "longest gap in an object where its radial velocity passes zero"},
+      {"bridge_velocity_mps", &config.bridge_velocity_mps, 0.0, 100.0, "m/s",
+       "largest radial speed of moving cells beside such a gap"},
+  };
+}
+
+MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
+                         const GroupingConfig& config, const Workers& workers) {
+  MovingCells result;
+  result.rows = moving_rows(is_moving, workers);
+  const std::size_t n = result.rows.size();
+  std::vector<std::uint64_t> keys(n);
+  workers.for_each(n, kBlock, [&](std::size_t i) {
+    keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
+  });
+  spatial::KeyNumbers numbers;
+  std::vector<std::uint32_t> first = {0};  // of each cell, among the points sorted by cell
+  result.cell_of.resize(n);
+  for (std::size_t i = 0; i < n; ++i) {
+    // Points that follow each other often share a cell.
+    const bool same = i > 0 && keys[i] == keys[i - 1];
+    const std::uint32_t cell = same ? result.cell_of[i - 1] : numbers.number_of(keys[i]);
+    if (cell + 1 == first.size()) {
+      first.push_back(0);
+    }
+    result.cell_of[i] = cell;
+    ++first[cell + 1];
+  }
+  std::partial_sum(first.begin(), first.end(), first.begin());
+  std::vector<std::uint32_t> rows_by_cell(n);
+  std::vector<std::uint32_t> filled(first.begin(), first.end() - 1);
+  for (std::size_t i = 0; i < n; ++i) {
+    rows_by_cell[filled[result.cell_of[i]]++] = result.rows[i];
+  }
+  result.cells.resize(filled.size());
+  workers.for_each(result.cells.size(), kCellBlock, [&](std::size_t cell) {
+    for (std::uint32_t k = first[cell]; k < first[cell + 1]; ++k) {
+      add_point(scan, rows_by_cell[k], radial[rows_by_cell[k]], result.cells[cell]);
+    }
+    take_means(result.cells[cell]);
+  });
+  return result;
+}
+
+std::vector<std::uint32_t> group_cells(std::span<const MovingCell> cells, const GroupingConfig& config) {
+  std::vector<std::uint32_t> all(cells.size());
+  std::iota(all.begin(), all.end(), 0u);
+  std::vector<std::uint32_t> slow;
+  std::vector<double> ranges(cells.size());
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    ranges[i] = cells[i].centroid.norm();
+    if (beside_gap(cells[i], config)) {
+      slow.push_back(i);
+    }
+  }
+  spatial::DisjointSets sets(cells.size());
+  const auto link = [&](std::uint32_t i, std::uint32_t k) {
+    if (linked(cells[i], cells[k], std::min(ranges[i], ranges[k]), config)) {
+      sets.unite(i, k);
+    }
+  };
+  const double farthest = cells.empty() ? 0.0 : *std::max_element(ranges.begin(), ranges.end());
+  const double longest = config.link_distance_m + config.link_growth * farthest;
+  visit_near_pairs(cells, all, std::max(longest, config.cell_size_m), link);
+  // Only bridges over gaps are longer.
+  if (config.bridge_m > longest) {
+    visit_near_pairs(cells, slow, config.bridge_m, link);
+  }
+  std::vector<std::uint32_t> number_of_root(cells.size(), ~0u);
+  std::vector<std::uint32_t> groups(cells.size());
+  std::uint32_t count = 0;
+  for (std::uint32_t i = 0; i < cells.size(); ++i) {
+    std::uint32_t& number = number_of_root[sets.find(i)];
+    if (number == ~0u) {
+      number = count++;
+    }
+    groups[i] = number;
+  }
+  return groups;
+}
+
+}  // namespace dynamic_icp::tracking

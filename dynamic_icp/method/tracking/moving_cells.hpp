@@ -1,0 +1,56 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/base/config_field.hpp"
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+
+namespace dynamic_icp::tracking {
+
+struct GroupingConfig {
+  double cell_size_m = 0.5;          ///< edge of the cubes that thin the points
+  double link_distance_m = 0.7;      ///< between cells of one object, at the sensor
+  double link_growth = 0.008;        ///< m per metre of range: points lie wider apart far away
+  double link_velocity_mps = 0.3;    ///< between radial velocities of neighbours
+  double link_shear_rps = 0.7;       ///< and so much more per metre between them: turning bodies
+  double bridge_m = 3.0;             ///< longest gap in a body where its radial velocity passes zero
+  double bridge_velocity_mps = 1.0;  ///< cells beside such a gap are at most so fast
+};
+
+ConfigFields fields(GroupingConfig& config);
+
+/// The moving points of a scan in one small cube.
+struct MovingCell {
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();   ///< m, sensor frame: mean of its points
+  Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< mean line of sight, about unit
+  double radial_mps = 0.0;                              ///< mean of the radial velocities over ground
+  double time_s = 0.0;                                  ///< mean time after the stamp; 0 without times
+  std::uint32_t count = 0;                              ///< number of its points
+};
+
+/// Cells in the order of their first points.
+struct MovingCells {
+  std::vector<MovingCell> cells;
+  std::vector<std::uint32_t> rows;     ///< of the scan: the moving ones, ascending
+  std::vector<std::uint32_t> cell_of;  ///< for each of these rows its cell
+};
+
+/// Sorts the rows with `is_moving` != 0 into cubes. A cube holds few points of anything else than one surface, so its
+/// mean stands for it. `radial` has one value per row.
+MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
+                         const GroupingConfig& config, const Workers& workers);
+
+/// A group number 0, 1, ... for each cell, in the order of the first cells: cells belong together when a chain of
+/// neighbours joins them, each link short enough for its range and without a jump of the radial velocity. Where the
+/// radial velocity of a crossing or turning body passes zero its points are not among the moving ones: slow cells with
+/// velocities of opposite signs may be linked across such a gap.
+std::vector<std::uint32_t> group_cells(std::span<const MovingCell> cells, const GroupingConfig& config);
+
+}  // namespace dynamic_icp::tracking

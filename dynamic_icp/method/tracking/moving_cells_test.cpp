@@ -1,0 +1,143 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/moving_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/random_source.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+const Workers kWorkers(2);
+
+Scan scan_of(const std::vector<Vector3d>& points) {
+  RawScan raw;
+  raw.points = points;
+  raw.doppler.assign(points.size(), 0.0);
+  return Scan::from_raw(raw);
+}
+
+MovingCell cell(const Vector3d& centroid, double radial) {
+  MovingCell result;
+  result.centroid = centroid;
+  result.radial_mps = radial;
+  return result;
+}
+
+TEST(MovingCells, NothingMovesNothingIsGathered) {
+  EXPECT_TRUE(gather_cells(Scan{}, {}, {}, {}, kWorkers).cells.empty());
+  const Scan scan = scan_of({{5, 0, 0}});
+  EXPECT_TRUE(gather_cells(scan, std::vector<double>{1.0}, std::vector<std::uint8_t>{0}, {}, kWorkers).cells.empty());
+  EXPECT_TRUE(group_cells({}, {}).empty());
+}
+
+TEST(MovingCells, HoldMeansAndRowsOfTheMovingPoints) {
+  const Scan scan = scan_of({{5.1, 0.1, 0.1}, {9.1, 0.1, 0.1}, {5.3, 0.3, 0.3}, {5.2, 0.2, 0.2}});
+  const std::vector<double> radial = {1.0, 7.0, 3.0, 50.0};
+  const MovingCells moving =
+      gather_cells(scan, radial, std::vector<std::uint8_t>{1, 1, 1, 0}, {.cell_size_m = 1.0}, kWorkers);
+  ASSERT_EQ(moving.cells.size(), 2u);
+  EXPECT_TRUE(moving.cells[0].centroid.isApprox(Vector3d(5.2, 0.2, 0.2), 1e-12));
+  EXPECT_EQ(moving.cells[0].radial_mps, 2.0);
+  EXPECT_EQ(moving.cells[0].count, 2u);
+  EXPECT_EQ(moving.rows, (std::vector<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(moving.cell_of, (std::vector<std::uint32_t>{0, 1, 0}));
+}
+
+TEST(MovingCells, CellsFloorBelowZero) {
+  const Scan scan = scan_of({{-0.1, 5, 0.1}, {0.1, 5, 0.1}});
+  EXPECT_EQ(gather_cells(scan, std::vector<double>{1, 1}, std::vector<std::uint8_t>{1, 1}, {}, kWorkers).cells.size(),
+            2u);
+}
+
+TEST(MovingCells, NeighboursWithOneVelocityAreOneGroup) {
+  const std::vector<MovingCell> cells = {cell({10, 0, 0}, 5), cell({20, 0, 0}, 5), cell({10.5, 0, 0}, 5.2)};
+  EXPECT_EQ(group_cells(cells, {}), (std::vector<std::uint32_t>{0, 1, 0}));
+}
+
+TEST(MovingCells, AJumpOfTheVelocityParts) {
+  const std::vector<MovingCell> cells = {cell({10, 0, 0}, 5), cell({10.5, 0, 0}, 8)};
+  EXPECT_EQ(group_cells(cells, {}), (std::vector<std::uint32_t>{0, 1}));
+}
+
+TEST(MovingCells, TheGapWhereTheVelocityPassesZeroIsBridged) {
+  EXPECT_EQ(group_cells(std::vector<MovingCell>{cell({30, 1, 0}, 0.4), cell({30, -1, 0}, -0.4)}, {}),
+            (std::vector<std::uint32_t>{0, 0}));
+  EXPECT_EQ(group_cells(std::vector<MovingCell>{cell({30, 1, 0}, 0.4), cell({30, -1, 0}, 0.4)}, {}),
+            (std::vector<std::uint32_t>{0, 1}))
+      << "no sign changes: nothing is missing between them";
+  EXPECT_EQ(group_cells(std::vector<MovingCell>{cell({30, 1, 0}, 4.0), cell({30, -1, 0}, -4.0)}, {}),
+            (std::vector<std::uint32_t>{0, 1}))
+      << "two that pass each other";
+}
+
+TEST(MovingCells, GroupsAreTheConnectedOnesOfAllPairs) {
+  const RandomSource random(23);
+  std::vector<MovingCell> cells;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const RandomSource one = random.fork(i);
+    cells.push_back(
+        cell({one.uniform(0, 5, 40), one.uniform(1, -10, 10), one.uniform(2, 0, 2)}, one.uniform(3, -1.5, 1.5)));
+  }
+  const GroupingConfig config;
+  std::vector<std::uint32_t> expected(cells.size());
+  for (std::uint32_t i = 0; i < expected.size(); ++i) {
+    expected[i] = i;
+  }
+  // Smallest labels spread over all pairs until nothing changes.
+  for (bool changed = true; changed;) {
+    changed = false;
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      for (std::size_t k = 0; k < cells.size(); ++k) {
+        const double range = std::min(cells[i].centroid.norm(), cells[k].centroid.norm());
+        const double distance = (cells[i].centroid - cells[k].centroid).norm();
+        const double ra = cells[i].radial_mps;
+        const double rb = cells[k].radial_mps;
+        const bool bridge = ra * rb < 0.0 && std::max(std::abs(ra), std::abs(rb)) <= config.bridge_velocity_mps;
+        const bool together =
+            distance <= (bridge ? config.bridge_m : config.link_distance_m + config.link_growth * range) &&
+            std::abs(cells[i].radial_mps - cells[k].radial_mps) <=
+                config.link_velocity_mps + config.link_shear_rps * distance;
+        if (together && expected[k] > expected[i]) {
+          expected[k] = expected[i];
+          changed = true;
+        }
+      }
+    }
+  }
+  const std::vector<std::uint32_t> groups = group_cells(cells, config);
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      ASSERT_EQ(groups[i] == groups[k], expected[i] == expected[k]) << i << " and " << k;
+    }
+  }
+}
+
+TEST(MovingCells, GroupsDoNotDependOnTheOrderOfTheCells) {
+  // Cells of all speeds, so that bridges count, in a wall across the x axis.
+  const RandomSource random(29);
+  std::vector<MovingCell> cells;
+  for (std::uint64_t i = 0; i < 600; ++i) {
+    const RandomSource one = random.fork(i);
+    cells.push_back(cell({30.0, one.uniform(0, -40, 40), one.uniform(1, -2, 12)}, one.uniform(2, -1.5, 1.5)));
+  }
+  const std::vector<MovingCell> reversed(cells.rbegin(), cells.rend());
+  const std::vector<std::uint32_t> groups = group_cells(cells, {});
+  const std::vector<std::uint32_t> of_reversed = group_cells(reversed, {});
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    for (std::size_t k = 0; k < i; ++k) {
+      ASSERT_EQ(groups[i] == groups[k], of_reversed[cells.size() - 1 - i] == of_reversed[cells.size() - 1 - k]);
+    }
+  }
+  EXPECT_GT(*std::max_element(groups.begin(), groups.end()), 10u);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking

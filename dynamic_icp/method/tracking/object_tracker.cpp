@@ -1,0 +1,375 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/object_tracker.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+
+#include "dynamic_icp/method/tracking/cell_groups.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr std::int32_t kNobody = -1;
+constexpr double kWidest = 2.0;    // new objects are not wider than so many vehicles
+constexpr double kSplinter = 0.1;  // a track with this share of the points of another may be a part of it
+constexpr double kSplinterVelocity_mps = 2.0;
+constexpr double kLeastSignal = 2.0;      // of the radial velocities of a new object over their spread
+constexpr std::size_t kFewestPoints = 3;  // of a sighting: a velocity has three unknowns
+
+double sweep_duration(const Scan& scan) {
+  return scan.times().empty() ? 0.0 : *std::max_element(scan.times().begin(), scan.times().end());
+}
+
+/// Whether a point that stands cannot be part of a body that makes it expect a radial velocity.
+bool contradicts(double expected_mps, double radial_mps, const TrackerConfig& config) {
+  return std::abs(expected_mps) > config.same_velocity_mps &&
+         std::abs(radial_mps - expected_mps) > config.same_velocity_mps;
+}
+
+/// The cells' means in world axes.
+void place_cells(TrackingInput& input) {
+  for (const MovingCell& cell : input.moving.cells) {
+    input.cell_points.push_back(input.sensor.T_world_sensor * cell.centroid);
+    input.cell_directions.push_back(input.sensor.direction_world(cell.direction, cell.time_s));
+  }
+}
+
+}  // namespace
+
+/// A track with what is known of it besides its motion.
+struct ObjectTracker::Entry {
+  std::int64_t id;
+  Track track;      ///< at the mean time of its last sighting
+  Track predicted;  ///< at the stamp of the present scan, with what that scan shows
+  bool confirmed = false;
+  int age = 0;
+  int seen = 0;
+  int missed = 0;
+  std::vector<std::uint32_t> members = {};
+};
+
+ObjectTracker::ObjectTracker(const TrackerConfig& config) : config_(config) { check_fields(fields(config_)); }
+ObjectTracker::~ObjectTracker() = default;
+ObjectTracker::ObjectTracker(ObjectTracker&&) noexcept = default;
+ObjectTracker& ObjectTracker::operator=(ObjectTracker&&) noexcept = default;
+
+std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<const double> radial,
+                                                 std::span<const std::uint8_t> is_moving,
+                                                 const Eigen::Isometry3d& T_world_sensor, const Workers& workers) {
+  if (radial.size() != scan.size() || is_moving.size() != scan.size()) {
+    throw std::invalid_argument("radial velocities and moving flags must have one value per point of the scan");
+  }
+  if (!std::all_of(radial.begin(), radial.end(), [](double r) { return std::isfinite(r); }) ||
+      !T_world_sensor.matrix().allFinite()) {
+    throw std::invalid_argument("radial velocities and the pose of the sensor must be finite");
+  }
+  if (last_stamp_ && scan.stamp() <= *last_stamp_) {
+    throw std::invalid_argument("scans must come in the order of their stamps");
+  }
+  first_stamp_ = first_stamp_.value_or(scan.stamp());
+  const SensorMotion sensor =
+      last_stamp_ ? continued_motion(T_world_last_, T_world_sensor, seconds_between(*last_stamp_, scan.stamp()))
+                  : SensorMotion{T_world_sensor};
+  last_stamp_ = scan.stamp();
+  T_world_last_ = T_world_sensor;
+
+  std::optional<RangeImage> view;
+  MovingCells moving;
+  std::vector<std::uint32_t> groups;
+  workers.both([&] { view.emplace(scan, workers); },
+               [&] {
+                 moving = gather_cells(scan, radial, is_moving, config_.grouping, workers);
+                 groups = group_cells(moving.cells, config_.grouping);
+               });
+  TrackingInput input{scan,
+                      radial,
+                      is_moving,
+                      sensor,
+                      seconds_between(*first_stamp_, scan.stamp()),
+                      sweep_duration(scan),
+                      std::move(moving),
+                      std::move(groups),
+                      {},
+                      {},
+                      std::move(*view)};
+  place_cells(input);
+  std::vector<Expectation> expected;
+  for (Entry& entry : entries_) {
+    entry.predicted = entry.track;
+    entry.predicted.predict(input.stamp_s, config_.track);
+    expected.emplace_back(entry.predicted, sensor, config_);
+  }
+  std::vector<std::int32_t> owner(input.moving.cells.size(), kNobody);
+  assign(input, expected, owner);
+  adopt(input, expected, owner);
+  collect_members(input, expected, owner, workers);
+  give_birth(input, owner, workers);
+  bury();
+  std::vector<TrackedObject> objects;
+  for (const Entry& entry : entries_) {
+    objects.push_back(report(entry, sensor));
+  }
+  return objects;
+}
+
+/// Gives each cell to the track whose box and velocity fit it best.
+void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectation> expectations,
+                           std::vector<std::int32_t>& owner) const {
+  std::vector<double> best(owner.size(), 1.0);
+  for (std::size_t k = 0; k < expectations.size(); ++k) {
+    const Expectation& expected = expectations[k];
+    const double reach = 0.5 * expected.box.size.norm() + expected.gate_m;
+    for (std::size_t i = 0; i < owner.size(); ++i) {
+      const MovingCell& cell = input.moving.cells[i];
+      const Vector3d& point = input.cell_points[i];
+      if ((point - cell.time_s * expected.velocity - expected.box.centre).squaredNorm() > reach * reach) {
+        continue;
+      }
+      const double score = std::max(expected.outside(point, cell.time_s) / expected.gate_m,
+                                    expected.deviation(input.cell_directions[i], cell.radial_mps));
+      if (score < best[i]) {
+        best[i] = score;
+        owner[i] = static_cast<std::int32_t>(k);
+      }
+    }
+  }
+}
+
+/// Cells that are linked to those of a track and not far from its box become part of it: sides that come into view.
+void ObjectTracker::adopt(const TrackingInput& input, std::span<const Expectation> expectations,
+                          std::vector<std::int32_t>& owner) const {
+  std::vector<std::vector<std::int32_t>> owners_of_group;
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    if (input.groups[i] >= owners_of_group.size()) {
+      owners_of_group.resize(input.groups[i] + 1);
+    }
+    std::vector<std::int32_t>& owners = owners_of_group[input.groups[i]];
+    if (owner[i] != kNobody && std::find(owners.begin(), owners.end(), owner[i]) == owners.end()) {
+      owners.push_back(owner[i]);
+    }
+  }
+  for (std::size_t i = 0; i < owner.size(); ++i) {
+    if (owner[i] != kNobody) {
+      continue;
+    }
+    const MovingCell& cell = input.moving.cells[i];
+    double nearest = config_.growth_m;
+    for (const std::int32_t k : owners_of_group[input.groups[i]]) {
+      const Expectation& expected = expectations[static_cast<std::size_t>(k)];
+      const double outside = expected.outside(input.cell_points[i], cell.time_s);
+      if (outside < nearest && expected.deviation(input.cell_directions[i], cell.radial_mps) < 2.0) {
+        nearest = outside;
+        owner[i] = k;
+      }
+    }
+  }
+}
+
+/// Adds to slow tracks the points in their boxes that are not among the moving ones but move as they do.
+void ObjectTracker::gather_still(const TrackingInput& input, std::span<const Expectation> expectations,
+                                 const Workers& workers) {
+  std::vector<std::size_t> slow;
+  std::vector<Expectation> expected;
+  for (std::size_t k = 0; k < entries_.size(); ++k) {
+    if (expectations[k].may_look_still(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
+      slow.push_back(k);
+      expected.push_back(expectations[k]);
+    }
+  }
+  std::vector<std::vector<std::uint32_t>> still(slow.size());
+  std::vector<std::size_t> contradictions(slow.size(), 0);
+  visit_still_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+    if (contradicts(expected[i].W.dot(direction), input.radial[row], config_)) {
+      ++contradictions[i];
+    } else if (expected[i].deviation(direction, input.radial[row]) < 1.0) {
+      still[i].push_back(row);
+    }
+  });
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    std::vector<std::uint32_t>& members = entries_[slow[i]].members;
+    if (contradictions[i] > members.size() + still[i].size()) {
+      members.clear();
+      continue;
+    }
+    const auto middle = static_cast<std::ptrdiff_t>(members.size());
+    members.insert(members.end(), still[i].begin(), still[i].end());
+    std::inplace_merge(members.begin(), members.begin() + middle, members.end());
+  }
+}
+
+/// Lets each track take in its points.
+void ObjectTracker::collect_members(const TrackingInput& input, std::span<const Expectation> expectations,
+                                    const std::vector<std::int32_t>& owner, const Workers& workers) {
+  for (Entry& entry : entries_) {
+    entry.members.clear();
+  }
+  for (std::size_t i = 0; i < input.moving.rows.size(); ++i) {
+    const std::int32_t k = owner[input.moving.cell_of[i]];
+    if (k != kNobody) {
+      entries_[static_cast<std::size_t>(k)].members.push_back(input.moving.rows[i]);
+    }
+  }
+  gather_still(input, expectations, workers);
+  workers.for_each(entries_.size(), 1, [&](std::size_t k) {
+    Entry& entry = entries_[k];
+    ++entry.age;
+    if (entry.members.size() < kFewestPoints) {
+      ++entry.missed;
+      entry.members.clear();
+      return;
+    }
+    Track corrected = entry.track;
+    corrected.correct(make_sighting(input.scan, input.radial, entry.members, input.sensor, &input.view), input.stamp_s,
+                      config_.track);
+    if (corrected.best().spread_mps() > config_.max_spread_mps) {
+      ++entry.missed;
+      entry.members.clear();
+      return;
+    }
+    entry.track = corrected;
+    entry.predicted = std::move(corrected);
+    entry.predicted.predict(input.stamp_s, config_.track);
+    entry.missed = 0;
+    ++entry.seen;
+    const bool seen_often =
+        entry.seen >= config_.confirm_scans || entry.members.size() >= static_cast<std::size_t>(config_.confirm_points);
+    entry.confirmed = entry.confirmed || (seen_often && is_credible(entry));
+  });
+}
+
+/// Whether the velocity is worth reporting: known well enough, or as well as it will be.
+bool ObjectTracker::is_credible(const Entry& entry) const {
+  const double variance = entry.track.velocity_covariance().topLeftCorner<2, 2>().trace();
+  return variance < config_.confirm_deviation_mps * config_.confirm_deviation_mps ||
+         entry.seen >= config_.confirm_anyway_scans;
+}
+
+/// Groups nobody owns become tracks.
+void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner,
+                               const Workers& workers) {
+  std::vector<std::uint32_t> unowned;
+  for (std::uint32_t cell = 0; cell < owner.size(); ++cell) {
+    if (owner[cell] == kNobody) {
+      unowned.push_back(cell);
+    }
+  }
+  std::vector<Entry> newborn;
+  std::vector<Expectation> expectations;
+  std::vector<CellGroup> groups =
+      vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
+  std::vector<std::optional<Track>> tracks(groups.size());
+  workers.for_each(groups.size(), 1, [&](std::size_t i) {
+    tracks[i].emplace(make_sighting(input.scan, input.radial, groups[i].rows, input.sensor, &input.view), input.stamp_s,
+                      config_.track);
+  });
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    const Track& track = *tracks[i];
+    // Errors around zero have more spread than signal.
+    const double spread = track.best().spread_mps();
+    const bool plausible = track.box().size.y() <= kWidest * config_.track.largest_width_m;
+    if (plausible && spread <= config_.max_spread_mps && track.best().signal_mps() >= kLeastSignal * spread) {
+      newborn.push_back({0, track, track});
+      newborn.back().predicted.predict(input.stamp_s, config_.track);
+      newborn.back().members = std::move(groups[i].rows);
+      expectations.emplace_back(newborn.back().predicted, input.sensor, config_);
+    }
+  }
+  // Where many points stand still, some that seem to move are errors of measurement.
+  std::vector<std::size_t> contradictions(newborn.size(), 0);
+  visit_still_points(input, expectations, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+    contradictions[i] += contradicts(expectations[i].W.dot(direction), input.radial[row], config_) ? 1 : 0;
+  });
+  for (std::size_t i = 0; i < newborn.size(); ++i) {
+    Entry& entry = newborn[i];
+    const std::size_t points = entry.members.size();
+    if (contradictions[i] > points) {
+      continue;
+    }
+    entry.id = next_id_++;
+    entry.age = 1;
+    entry.seen = 1;
+    const bool seen_often = points >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
+    entry.confirmed = seen_often && is_credible(entry);
+    entries_.push_back(std::move(entry));
+  }
+}
+
+/// Whether two tracks are one body: one has its centre in the box of the other, or it is a splinter beside it that
+/// moves as it does.
+bool ObjectTracker::are_one(const Entry& a, const Entry& b) const {
+  const bool a_is_smaller = a.members.size() < b.members.size();
+  const Entry& small = a_is_smaller ? a : b;
+  const Entry& large = a_is_smaller ? b : a;
+  const Vector3d apart = small.predicted.motion().velocity() - large.predicted.motion().velocity();
+  // What coasts has no points: it is hidden, not a part.
+  const bool splinter =
+      !small.members.empty() &&
+      static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size()) &&
+      apart.norm() < kSplinterVelocity_mps;
+  const double reach = splinter ? config_.growth_m : 0.0;
+  return distance_outside(large.predicted.box(), small.predicted.motion().position()) <= reach ||
+         distance_outside(small.predicted.box(), large.predicted.motion().position()) <= 0.0;
+}
+
+/// Ends tracks that stand and those not seen for long, tentative ones at once, and makes one of those that share a
+/// place.
+void ObjectTracker::bury() {
+  std::vector<Entry> living;
+  for (Entry& entry : entries_) {
+    const bool lost = entry.missed > (entry.confirmed ? config_.coast_scans : 0);
+    if (lost || entry.track.motion().velocity().norm() < config_.least_speed_mps) {
+      continue;
+    }
+    const auto same =
+        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_one(older, entry); });
+    if (same == living.end()) {
+      living.push_back(std::move(entry));
+    } else if (entry.members.size() > same->members.size()) {
+      // The name of the older one goes on with the state of what is seen more of.
+      same->track = entry.track;
+      same->predicted = entry.predicted;
+      same->members = std::move(entry.members);
+      same->confirmed = same->confirmed || entry.confirmed;
+      same->missed = entry.missed;
+    }
+  }
+  entries_ = std::move(living);
+}
+
+TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sensor) const {
+  const Track& track = entry.predicted;
+  const MotionFilter& motion = track.motion();
+  const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
+  const Eigen::Matrix3d R = T_sensor_world.linear();
+  TrackedObject object;
+  object.id = entry.id;
+  object.status = !entry.confirmed   ? TrackStatus::kTentative
+                  : entry.missed > 0 ? TrackStatus::kCoasting
+                                     : TrackStatus::kConfirmed;
+  object.velocity_sensor = R * motion.velocity();
+  object.covariance = R * track.velocity_covariance() * R.transpose();
+  object.yaw_rate_rps = motion.yaw_rate();
+  object.yaw_rate_variance = motion.covariance()(6, 6);
+  object.box = track.box();
+  object.box.centre = T_sensor_world * object.box.centre;
+  object.box.axes = R * object.box.axes;
+  object.centroid = object.box.centre;
+  object.extent = aligned_extent(object.box);
+  // Not of unit length: straight above the sensor it is zero, and nothing counts as observed.
+  const Vector3d across = R.col(2).cross(object.centroid);
+  const double deviation = config_.tangential_deviation_mps;
+  object.tangential_observed = across.dot(object.covariance * across) < deviation * deviation * across.squaredNorm();
+  object.age_scans = entry.age;
+  object.scans_seen = entry.seen;
+  object.members = entry.members;
+  return object;
+}
+
+}  // namespace dynamic_icp::tracking

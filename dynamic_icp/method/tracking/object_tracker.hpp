@@ -1,0 +1,73 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/tracking/sensor_motion.hpp"
+#include "dynamic_icp/method/tracking/still_points.hpp"
+#include "dynamic_icp/method/tracking/tracked_object.hpp"
+#include "dynamic_icp/method/tracking/tracker_config.hpp"
+
+namespace dynamic_icp::tracking {
+
+/// Follows moving things from scan to scan.
+///
+/// In each scan every track predicts its box; moving points in it with the predicted radial velocity are its own. What
+/// is left is grouped, and groups with enough points become new tracks. Objects that cross the line of sight have no
+/// radial velocity and are no "moving" points: slow tracks look for their points among the others too.
+///
+/// The world's z axis is taken as up, to within some degrees. Results do not depend on the number of threads.
+class ObjectTracker {
+ public:
+  /// Throws UsageError when the configuration is out of range.
+  explicit ObjectTracker(const TrackerConfig& config);
+  ~ObjectTracker();
+  ObjectTracker(ObjectTracker&&) noexcept;
+  ObjectTracker& operator=(ObjectTracker&&) noexcept;
+
+  /// All tracks at the stamp of the scan, in the order of their birth, tentative ones too: report those that are
+  /// confirmed.
+  ///
+  /// The points of the scan are where they were measured, in the sensor frame at its stamp (deskewed); lines of sight
+  /// are as measured. `radial`: for each row the velocity of the point itself along its line of sight over ground
+  /// (m/s). `is_moving`: for each row nonzero where that is too much for noise. Throws std::invalid_argument when
+  /// these differ in length or are not finite, and when the stamp is not later than that of the scan before.
+  std::vector<TrackedObject> update(const Scan& scan, std::span<const double> radial,
+                                    std::span<const std::uint8_t> is_moving, const Eigen::Isometry3d& T_world_sensor,
+                                    const Workers& workers);
+
+ private:
+  struct Entry;
+
+  // `expectations`: of each of the entries, in their order.
+  void assign(const TrackingInput& input, std::span<const Expectation> expectations,
+              std::vector<std::int32_t>& owner) const;
+  void adopt(const TrackingInput& input, std::span<const Expectation> expectations,
+             std::vector<std::int32_t>& owner) const;
+  void collect_members(const TrackingInput& input, std::span<const Expectation> expectations,
+                       const std::vector<std::int32_t>& owner, const Workers& workers);
+  void gather_still(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers);
+  void give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner, const Workers& workers);
+  [[nodiscard]] bool is_credible(const Entry& entry) const;
+  [[nodiscard]] bool are_one(const Entry& a, const Entry& b) const;
+  void bury();
+  [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor) const;
+
+  TrackerConfig config_;
+  std::vector<Entry> entries_;
+  std::int64_t next_id_ = 1;
+  std::optional<Stamp> first_stamp_;
+  std::optional<Stamp> last_stamp_;
+  Eigen::Isometry3d T_world_last_ = Eigen::Isometry3d::Identity();
+};
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,174 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/tracking/object_tracker.hpp"
+
+#include "testing/boxes_in_view.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+// What depends on how the sensor moves and on what hides what.
+
+using Eigen::Vector3d;
+using Objects = std::vector<TrackedObject>;
+
+constexpr double kPeriod_s = 0.1;
+
+/// Driving 8 m/s in a circle, 0.3 rad/s, tilted by two degrees.
+Eigen::Isometry3d turning_and_tilted(double t) {
+  constexpr double kSpeed = 8.0;
+  constexpr double kTurn = 0.3;
+  const double heading = 0.7 + kTurn * t;
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = exp_so3({0.0, 0.0, heading}) * exp_so3({0.03, -0.04, 0.0});
+  T.translation() = kSpeed / kTurn * Vector3d(std::sin(heading) - std::sin(0.7), std::cos(0.7) - std::cos(heading), 0);
+  return T;
+}
+
+/// A box that stands.
+MovingBox block(const Vector3d& centre, const Vector3d& size) {
+  return {{centre, Eigen::Matrix3d::Identity(), size}, Vector3d::Zero(), 0.0};
+}
+
+TEST(ObjectTrackerView, ASensorThatMovesTurnsTiltsAndSweepsSeesTheTruth) {
+  const Traffic traffic = [](double t) {
+    return std::vector<MovingBox>{car(14 + 5 * t, 13 + 5.5 * t, std::atan2(5.5, 5.0), std::hypot(5.5, 5.0))};
+  };
+  for (const double sweep : {0.0, kPeriod_s}) {
+    ObjectTracker tracker{TrackerConfig{}};
+    const Viewing viewing{turning_and_tilted, sweep};
+    for (int k = 0; k < 20; ++k) {
+      const double t = k * kPeriod_s;
+      const View view = view_of(traffic, t, viewing);
+      const Eigen::Isometry3d T_world_sensor = turning_and_tilted(t);
+      const Objects objects = confirmed(step(tracker, view, T_world_sensor));
+      if (k < 8) {
+        continue;
+      }
+      ASSERT_EQ(objects.size(), 1u) << "scan " << k;
+      const MovingBox truth = traffic(t)[0];
+      const Vector3d velocity = T_world_sensor.linear().transpose() * truth.velocity;
+      const Vector3d centre = T_world_sensor.inverse() * truth.box.centre;
+      EXPECT_LT((objects[0].velocity_sensor - velocity).norm(), 0.1) << "scan " << k << " sweep " << sweep;
+      EXPECT_LT((objects[0].centroid - centre).norm(), 0.2) << "scan " << k << " sweep " << sweep;
+      EXPECT_LT((objects[0].box.axes.col(0) - velocity.normalized()).norm(), 0.03) << "scan " << k;
+    }
+  }
+}
+
+TEST(ObjectTrackerView, ACarOfWhichHardlyAnythingMovesAlongTheLineOfSightIsFollowed) {
+  const Traffic traffic = [](double t) {
+    return std::vector<MovingBox>{car(30, -6 + 4.5 * t, 0.5 * std::numbers::pi, 4.5)};
+  };
+  ObjectTracker tracker{TrackerConfig{}};
+  int nearly_still = 0;
+  for (int k = 0; k < 24; ++k) {
+    const double t = k * kPeriod_s;
+    const View view = view_of(traffic(t), t);
+    const Objects objects = confirmed(step(tracker, view));
+    const std::vector<std::uint32_t> rows = rows_on(view, 0);
+    const auto moving = std::count_if(rows.begin(), rows.end(), [&](auto row) { return view.is_moving[row] != 0; });
+    if (static_cast<double>(moving) > 0.2 * static_cast<double>(rows.size())) {
+      continue;
+    }
+    ++nearly_still;
+    ASSERT_EQ(objects.size(), 1u) << "scan " << k;
+    EXPECT_EQ(objects[0].id, 1);
+    EXPECT_GT(objects[0].members.size(), rows.size() * 3 / 5) << "scan " << k;
+    EXPECT_LT((objects[0].velocity_sensor - traffic(t)[0].velocity).norm(), 0.5) << "scan " << k;
+    EXPECT_LT((objects[0].centroid - traffic(t)[0].box.centre).norm(), 0.4) << "scan " << k;
+  }
+  EXPECT_GE(nearly_still, 3);
+}
+
+TEST(ObjectTrackerView, AWallWhereACrossingCarShouldBeIsNotTheCar) {
+  // It is gone when it has some radial velocity again. Of the wall in its place only a part fits that velocity.
+  const auto traffic = [](double t) {
+    return std::vector<MovingBox>{t < 1.85 ? car(30, -6 + 4.5 * t, 0.5 * std::numbers::pi, 4.5)
+                                           : block({29.6, 3.0, -0.75}, {1, 12, 1.5})};
+  };
+  ObjectTracker tracker{TrackerConfig{}};
+  for (int k = 0; k < 22; ++k) {
+    const std::size_t cars = k * kPeriod_s < 1.85 ? 1 : 0;
+    const Objects objects = confirmed(step(tracker, view_of(traffic(k * kPeriod_s), k * kPeriod_s)));
+    if (k >= 5) {
+      EXPECT_EQ(objects.size(), cars) << "scan " << k;
+    }
+  }
+}
+
+TEST(ObjectTrackerView, PartsThatComeIntoViewAreNoMotion) {
+  // Behind the edge of a wall most of the car is hidden at first: its rear end seems to stand there.
+  const Traffic traffic = [](double t) {
+    return std::vector<MovingBox>{car(20, 2.5 + 5 * t, 0.5 * std::numbers::pi, 5), block({10, -2, 0}, {1, 6.8, 3})};
+  };
+  ObjectTracker tracker{TrackerConfig{}};
+  for (int k = 0; k < 12; ++k) {
+    const double t = k * kPeriod_s;
+    const View view = view_of(traffic(t), t);
+    const Objects objects = confirmed(step(tracker, view));
+    ASSERT_EQ(objects.size(), 1u) << "scan " << k;
+    EXPECT_EQ(objects[0].id, 1);
+    const MovingBox truth = traffic(t)[0];
+    EXPECT_LT((objects[0].velocity_sensor - truth.velocity).norm(), 0.7) << "scan " << k;
+    EXPECT_GT(objects[0].members.size(), rows_on(view, 0).size() * 4 / 5) << "scan " << k;
+    // The front is where it is, however much of the rear is seen.
+    const OrientedBox& box = objects[0].box;
+    const Vector3d front = box.centre + 0.5 * box.size.x() * box.axes.col(0);
+    EXPECT_NEAR(front.y(), truth.box.centre.y() + 2.2, 0.25) << "scan " << k;
+  }
+}
+
+TEST(ObjectTrackerView, AFastCarInASlowSweepIsOne) {
+  // It comes 2.5 m nearer from the first ray to the last.
+  const Traffic traffic = [](double t) { return std::vector<MovingBox>{car(60 - 25 * t, 4, std::numbers::pi, 25)}; };
+  ObjectTracker tracker{TrackerConfig{}};
+  Viewing viewing;
+  viewing.sweep_s = kPeriod_s;
+  for (int k = 0; k < 16; ++k) {
+    const View view = view_of(traffic, k * kPeriod_s, viewing);
+    const Objects objects = step(tracker, view);
+    ASSERT_EQ(objects.size(), 1u) << "scan " << k;
+    EXPECT_EQ(objects[0].id, 1);
+    EXPECT_GT(objects[0].members.size(), rows_on(view, 0).size() * 9 / 10) << "scan " << k;
+  }
+}
+
+TEST(ObjectTrackerView, ASmallPartBesideABodyIsNoObjectOfItsOwn) {
+  // Too far from the side of the car for a link between cells, but within the growth of its box. At first sight, with
+  // other noise each time.
+  MovingBox part = block({12.9, -1.2, -0.7}, {0.2, 0.2, 1.0});
+  part.velocity = {8, 0, 0};
+  for (int k = 0; k < 8; ++k) {
+    const View view = view_of({car(15, -3, 0.0, 8), part}, k * kPeriod_s);
+    ASSERT_GE(rows_on(view, 1).size(), 10u) << "enough for an object";
+    ObjectTracker tracker{TrackerConfig{}};
+    EXPECT_EQ(step(tracker, view).size(), 1u) << "noise " << k;
+  }
+}
+
+TEST(ObjectTrackerView, PointsThatSeemToMoveAmongMoreThatStandAreNoObject) {
+  // Every third point of a wall of 2 x 2 m has the Doppler of one rigid body.
+  for (const std::uint32_t every : {1u, 3u}) {
+    View view = view_of({block({15, 0, 0}, {0.5, 2, 2})}, 0.0, 0.0);
+    std::uint32_t points = 0;
+    for (const std::uint32_t row : rows_on(view, 0)) {
+      if (points++ % every == 0) {
+        view.radial[row] = view.scan.directions()[row].dot(Vector3d(5, 1, 0));
+        view.is_moving[row] = 1;
+      }
+    }
+    ASSERT_GT(points, 200u);
+    ObjectTracker tracker{TrackerConfig{}};
+    EXPECT_EQ(step(tracker, view).size(), every == 1 ? 1u : 0u) << "every " << every;
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking

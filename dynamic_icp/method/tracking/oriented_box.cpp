@@ -1,0 +1,100 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/oriented_box.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+namespace dynamic_icp::tracking {
+namespace {
+
+constexpr std::size_t kFewestPointsOfAYaw = 5;
+constexpr std::size_t kMostPointsOfAYaw = 200;
+constexpr double kCoarseStep_rad = 0.052;  // 3 degrees
+constexpr double kFineStep_rad = 0.0087;   // half a degree
+constexpr double kNearestToEdge_m = 0.05;  // closer than the noise of the range is not better
+
+/// The value that has `rank` others before it.
+double ranked(std::vector<double>& values, std::size_t rank) {
+  const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+/// Sum of 1 / d over the points, with the distance d of each to the nearest side of the rectangle around them.
+double closeness(const Eigen::Array2Xd& points, double yaw) {
+  const double c = std::cos(yaw);
+  const double s = std::sin(yaw);
+  const Eigen::ArrayXd along = (c * points.row(0) + s * points.row(1)).transpose();
+  const Eigen::ArrayXd across = (c * points.row(1) - s * points.row(0)).transpose();
+  const Eigen::ArrayXd to_ends = (along - along.minCoeff()).min(along.maxCoeff() - along);
+  const Eigen::ArrayXd to_sides = (across - across.minCoeff()).min(across.maxCoeff() - across);
+  return to_ends.min(to_sides).max(kNearestToEdge_m).inverse().sum();
+}
+
+/// The best of the yaws within `range` of `middle`, a step apart.
+double best_yaw(const Eigen::Array2Xd& points, double middle, double range, double step) {
+  const int steps = std::max(1, static_cast<int>(std::ceil(range / step)));
+  double best = middle;
+  double highest = closeness(points, middle);
+  for (int i = 1; i <= steps; ++i) {
+    for (const double yaw : {middle - i * range / steps, middle + i * range / steps}) {
+      const double score = closeness(points, yaw);
+      if (score > highest) {
+        highest = score;
+        best = yaw;
+      }
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+Eigen::Matrix3d upright_axes(double yaw_rad) {
+  const double c = std::cos(yaw_rad);
+  const double s = std::sin(yaw_rad);
+  Eigen::Matrix3d axes;
+  axes << c, -s, 0.0, s, c, 0.0, 0.0, 0.0, 1.0;
+  return axes;
+}
+
+double distance_outside(const OrientedBox& box, const Eigen::Vector3d& point) {
+  const Eigen::Vector3d q = box.axes.transpose() * (point - box.centre);
+  return (q.cwiseAbs() - 0.5 * box.size).cwiseMax(0.0).norm();
+}
+
+Eigen::Vector3d aligned_extent(const OrientedBox& box) { return box.axes.cwiseAbs() * box.size; }
+
+Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,
+                    double trim) {
+  if (points.empty()) {
+    return {};
+  }
+  std::vector<double> values;
+  values.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) {
+    values.push_back((point - origin).dot(axis));
+  }
+  const auto rank = static_cast<std::size_t>(trim * static_cast<double>(values.size() - 1));
+  const double low = ranked(values, rank);
+  return {low, ranked(values, values.size() - 1 - rank)};
+}
+
+std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, double near_yaw_rad, double range_rad) {
+  if (points.size() < kFewestPointsOfAYaw) {
+    return std::nullopt;
+  }
+  const std::size_t stride = (points.size() + kMostPointsOfAYaw - 1) / kMostPointsOfAYaw;
+  Eigen::Array2Xd plane(2, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
+  for (Eigen::Index i = 0; i < plane.cols(); ++i) {
+    // Relative to one of them: coordinates in the world may be large.
+    plane.col(i) = (points[static_cast<std::size_t>(i) * stride] - points.front()).head<2>();
+  }
+  const double coarse = best_yaw(plane, near_yaw_rad, range_rad, kCoarseStep_rad);
+  return best_yaw(plane, coarse, kCoarseStep_rad, kFineStep_rad);
+}
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,121 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/range_image.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <limits>
+#include <span>
+
+#include "dynamic_icp/method/base/simd.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+constexpr std::size_t kBlock = 512;
+constexpr int kColumns = 720;
+constexpr int kRows = 120;
+constexpr double kSlopePerRow = 0.0175;  // a degree
+constexpr double kLeast_m = 1e-12;       // nothing is divided by less
+
+struct Cell {
+  int column = 0;
+  int row = 0;
+};
+
+/// A measure of the azimuth that grows with it from 0 to 4 in one turn, without an arc tangent.
+DYNAMIC_ICP_INLINE double turn_measure(double x, double y) {
+  const double sum = std::abs(x) + std::abs(y);
+  const double a = y / (sum > kLeast_m ? sum : kLeast_m);
+  const double right = y < 0.0 ? 4.0 + a : a;
+  return x < 0.0 ? 2.0 - a : right;
+}
+
+DYNAMIC_ICP_INLINE Cell cell_of(double x, double y, double z) {
+  const double across = std::sqrt(x * x + y * y);
+  const double row = z / (across > kLeast_m ? across : kLeast_m) * (1.0 / kSlopePerRow) + 0.5 * kRows;
+  const double not_above = row < kRows - 1.0 ? row : kRows - 1.0;
+  const int column = static_cast<int>(turn_measure(x, y) * (0.25 * kColumns));
+  return {column < kColumns ? column : kColumns - 1, static_cast<int>(not_above > 0.0 ? not_above : 0.0)};
+}
+
+Cell cell_of(const Eigen::Vector3d& point) { return cell_of(point.x(), point.y(), point.z()); }
+
+std::size_t place(int column, int row) { return static_cast<std::size_t>(column * kRows + row); }
+
+/// Of up to kBlock points: the columns, the places in the image and the squared ranges (m^2).
+void find_cells(std::span<const Eigen::Vector3d> points, std::uint16_t* columns, std::uint32_t* places,
+                float* squared) {
+  std::array<double, kBlock> x;
+  std::array<double, kBlock> y;
+  std::array<double, kBlock> z;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    x[i] = points[i].x();
+    y[i] = points[i].y();
+    z[i] = points[i].z();
+  }
+  std::array<Cell, kBlock> cells;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      cells[i] = cell_of(x[i], y[i], z[i]);
+      squared[i] = static_cast<float>(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
+    }
+  });
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    columns[i] = static_cast<std::uint16_t>(cells[i].column);
+    places[i] = static_cast<std::uint32_t>(place(cells[i].column, cells[i].row));
+  }
+}
+
+}  // namespace
+
+double RangeImage::cell_width() { return 8.0 / kColumns; }  // where the measure grows most slowly, at 45 degrees
+
+RangeImage::RangeImage(const Scan& scan, const Workers& workers)
+    : nearest_squared_(static_cast<std::size_t>(kColumns * kRows), std::numeric_limits<float>::infinity()),
+      column_seen_(kColumns, 0),
+      columns_(scan.size()) {
+  std::vector<std::uint32_t> places(scan.size());
+  std::vector<float> squared(scan.size());
+  workers.for_blocks(scan.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    find_cells(std::span(scan.points()).subspan(begin, end - begin), &columns_[begin], &places[begin], &squared[begin]);
+  });
+  for (std::size_t row = 0; row < scan.size(); ++row) {
+    float& nearest = nearest_squared_[places[row]];
+    nearest = std::min(nearest, squared[row]);
+    column_seen_[columns_[row]] = 1;
+  }
+}
+
+int RangeImage::column_count() { return kColumns; }
+
+RangeImage::ColumnRange RangeImage::columns_around(const Eigen::Vector3d& centre, double radius_m) {
+  const double distance = std::sqrt(centre.x() * centre.x() + centre.y() * centre.y());
+  if (radius_m >= 0.9 * distance) {
+    return {0, kColumns};
+  }
+  // A radian is at most kColumns / 4 columns.
+  const int half = static_cast<int>(std::ceil(std::asin(radius_m / distance) * (0.25 * kColumns))) + 1;
+  return {(cell_of(centre).column - half + kColumns) % kColumns, std::min(kColumns, 2 * half + 1)};
+}
+
+bool RangeImage::hides(const Eigen::Vector3d& point, double clearance_m) const {
+  const Cell cell = cell_of(point);
+  bool column_seen = false;
+  for (const int step : {-1, 0, 1}) {
+    column_seen =
+        column_seen || 0 != column_seen_[static_cast<std::size_t>((cell.column + step + kColumns) % kColumns)];
+  }
+  if (!column_seen) {
+    return true;
+  }
+  float nearest = std::numeric_limits<float>::infinity();
+  for (int row = std::max(0, cell.row - 1); row <= std::min(kRows - 1, cell.row + 1); ++row) {
+    nearest = std::min(nearest, nearest_squared_[place(cell.column, row)]);
+  }
+  return std::sqrt(nearest) < point.norm() - clearance_m;
+}
+
+}  // namespace dynamic_icp::tracking

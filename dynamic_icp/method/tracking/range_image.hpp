@@ -1,0 +1,50 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+
+namespace dynamic_icp::tracking {
+
+/// How far one sees in each direction: the range of the nearest point in cells of about half a degree by one degree.
+/// Tells the true end of a body from the place where something nearer begins to hide it.
+///
+/// Made for bodies on the ground around the sensor: what is seen more than 46 degrees above or below its horizontal
+/// plane shares the outermost cells, and the edge of the field of view is known sideways only.
+class RangeImage {
+ public:
+  /// From the points of a scan, in the sensor frame.
+  RangeImage(const Scan& scan, const Workers& workers);
+
+  /// Whether what is at `point` (m, sensor frame) is hidden, or would be: something at least `clearance_m` nearer is
+  /// seen in its direction, or nothing is seen above and below it either, as beyond the edge of the field of view.
+  [[nodiscard]] bool hides(const Eigen::Vector3d& point, double clearance_m) const;
+
+  /// The column of each row of the scan; columns go round with the azimuth.
+  [[nodiscard]] const std::vector<std::uint16_t>& columns() const { return columns_; }
+
+  /// Columns that may hold points within `radius_m` of `centre`: `first`, `first` + 1, ..., `count` of them, modulo
+  /// `column_count`.
+  struct ColumnRange {
+    int first = 0;
+    int count = 0;
+  };
+  [[nodiscard]] static ColumnRange columns_around(const Eigen::Vector3d& centre, double radius_m);
+  [[nodiscard]] static int column_count();
+
+  /// Width of a cell at a distance of one metre, m: what is closer together may share one.
+  static double cell_width();
+
+ private:
+  std::vector<float> nearest_squared_;  ///< m^2, column by column; infinite where nothing is seen
+  std::vector<char> column_seen_;
+  std::vector<std::uint16_t> columns_;
+};
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,77 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/range_image.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+/// A wall of directions `from` to `to` (degrees of azimuth) at a range.
+void add_wall(RawScan& raw, double from, double to, double range) {
+  for (double azimuth = from; azimuth <= to; azimuth += 0.2) {
+    for (double elevation = -5.0; elevation <= 5.0; elevation += 0.5) {
+      const double a = azimuth * std::numbers::pi / 180.0;
+      const double e = elevation * std::numbers::pi / 180.0;
+      raw.points.emplace_back(range * Vector3d(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e)));
+      raw.doppler.push_back(0.0);
+    }
+  }
+}
+
+Vector3d at(double azimuth, double range) {
+  return range *
+         Vector3d(std::cos(azimuth * std::numbers::pi / 180.0), std::sin(azimuth * std::numbers::pi / 180.0), 0.0);
+}
+
+TEST(RangeImage, NearThingsHideWhatIsBehindThem) {
+  RawScan raw;
+  add_wall(raw, -60.0, 60.0, 50.0);
+  add_wall(raw, -10.0, 10.0, 20.0);
+  const RangeImage image(Scan::from_raw(raw), Workers(1));
+  EXPECT_TRUE(image.hides(at(5.0, 30.0), 1.0));
+  EXPECT_FALSE(image.hides(at(5.0, 20.5), 1.0)) << "within the clearance";
+  EXPECT_FALSE(image.hides(at(5.0, 10.0), 1.0)) << "before it";
+  EXPECT_FALSE(image.hides(at(15.0, 30.0), 1.0)) << "beside it";
+  EXPECT_TRUE(image.hides(at(15.0, 60.0), 1.0));
+}
+
+TEST(RangeImage, BeyondTheFieldOfViewAllIsHidden) {
+  RawScan raw;
+  add_wall(raw, -60.0, 60.0, 50.0);
+  const RangeImage image(Scan::from_raw(raw), Workers(1));
+  EXPECT_TRUE(image.hides(at(65.0, 10.0), 1.0));
+  EXPECT_TRUE(image.hides(at(180.0, 10.0), 1.0));
+  EXPECT_TRUE(RangeImage(Scan{}, Workers(1)).hides(at(0.0, 10.0), 1.0));
+}
+
+TEST(RangeImage, ColumnsAroundAPlaceHoldAllPointsThere) {
+  RawScan raw;
+  for (double azimuth = 0.0; azimuth < 360.0; azimuth += 0.1) {
+    raw.points.push_back(at(azimuth, 20.0));
+    raw.doppler.push_back(0.0);
+  }
+  const Scan scan = Scan::from_raw(raw);
+  const RangeImage image(scan, Workers(3));
+  for (double azimuth = 0.0; azimuth < 360.0; azimuth += 7.0) {
+    const Vector3d centre = at(azimuth, 21.0);
+    const RangeImage::ColumnRange range = RangeImage::columns_around(centre, 3.0);
+    for (std::size_t row = 0; row < scan.size(); ++row) {
+      const int offset = (image.columns()[row] - range.first + RangeImage::column_count()) % RangeImage::column_count();
+      if ((scan.points()[row] - centre).norm() <= 3.0) {
+        EXPECT_LT(offset, range.count) << "azimuth " << azimuth << " row " << row;
+      }
+    }
+    EXPECT_LT(range.count, RangeImage::column_count() / 8);
+  }
+  EXPECT_EQ(RangeImage::columns_around(at(0.0, 1.0), 3.0).count, RangeImage::column_count()) << "the sensor is inside";
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,35 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/sensor_motion.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/se3.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(SensorMotion, GoesOnAsBefore) {
+  // Turning by 0.05 rad and moving 1 m between two scans 0.1 s apart.
+  Eigen::Isometry3d earlier = Eigen::Isometry3d::Identity();
+  earlier.linear() = exp_so3({0, 0, 0.3});
+  Eigen::Isometry3d now = earlier;
+  now.linear() = earlier.linear() * exp_so3({0, 0, 0.05});
+  now.translation() = Vector3d(1, 0, 0);
+  const SensorMotion motion = continued_motion(earlier, now, 0.1);
+  EXPECT_TRUE(motion.position(0.1).isApprox(Vector3d(2, 0, 0), 1e-12));
+  const Vector3d u = Vector3d(1, 0.2, 0.1).normalized();
+  EXPECT_TRUE(motion.direction_world(u, 0.1).isApprox(exp_so3({0, 0, 0.4}) * u, 1e-4)) << "second order in 0.05 rad";
+  EXPECT_TRUE(motion.direction_world(u, 0.0).isApprox(exp_so3({0, 0, 0.35}) * u, 1e-12));
+}
+
+TEST(SensorMotion, AtRestNothingChanges) {
+  const SensorMotion motion;
+  EXPECT_EQ(motion.position(0.1), Vector3d::Zero());
+  EXPECT_EQ(motion.direction_world(Vector3d::UnitX(), 0.1), Vector3d::UnitX());
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,37 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/tracking/range_image.hpp"
+#include "dynamic_icp/method/tracking/sensor_motion.hpp"
+
+namespace dynamic_icp::tracking {
+
+/// What one scan shows of one object, in world axes.
+struct Sighting {
+  std::vector<Eigen::Vector3d> points;      ///< m, where each was measured
+  std::vector<Eigen::Vector3d> directions;  ///< lines of sight, unit
+  std::vector<double> radial;               ///< m/s, radial velocities over ground
+  std::vector<double> times;                ///< s after the stamp of the scan
+  double mean_time_s = 0.0;
+  Eigen::Vector3d sensor = Eigen::Vector3d::Zero();                  ///< where the sensor was at the mean time
+  Eigen::Isometry3d T_sensor_world = Eigen::Isometry3d::Identity();  ///< at the stamp
+  const RangeImage* view = nullptr;                                  ///< of the whole scan; none: nothing is hidden
+};
+
+/// The rows of the scan (at least one) as a sighting; of many an evenly spread part, for more would not make it better.
+Sighting make_sighting(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
+                       const SensorMotion& sensor, const RangeImage* view);
+
+/// The points where they would be seen at the mean time if all moved with `velocity` (m/s, world).
+Sighting at_mean_time(Sighting sighting, const Eigen::Vector3d& velocity);
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,44 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/tracking/oriented_box.hpp"
+
+namespace dynamic_icp::tracking {
+
+enum class TrackStatus {
+  kTentative,  ///< seen too rarely yet to be believed
+  kConfirmed,  ///< seen in this scan
+  kCoasting,   ///< believed, but without points in this scan: where and how fast it should be
+};
+
+std::string_view to_string(TrackStatus status);
+
+/// One moving thing at the stamp of a scan, from all scans in which it was seen. Vectors are in the axes of the sensor
+/// frame of that scan.
+struct TrackedObject {
+  std::int64_t id = 0;  ///< 1, 2, ... in the order of birth; never used again
+  TrackStatus status = TrackStatus::kTentative;
+  /// m/s over ground, of the centre of the box: a turning body has another velocity elsewhere.
+  Eigen::Vector3d velocity_sensor = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the velocity, (m/s)^2
+  double yaw_rate_rps = 0.0;                             ///< about the world's z axis
+  double yaw_rate_variance = 0.0;                        ///< (rad/s)^2
+  /// Whether the velocity across the line of sight is known to TrackerConfig::tangential_deviation_mps. Where it is
+  /// not, only the part of the velocity along the line of sight should be used.
+  bool tangential_observed = false;
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< m, sensor frame: centre of the box
+  Eigen::Vector3d extent = Eigen::Vector3d::Zero();    ///< m, the box along the axes of the sensor frame
+  OrientedBox box;                                     ///< sensor frame; the first axis points where it moves
+  int age_scans = 0;                                   ///< scans since birth, 1 in the scan of birth
+  int scans_seen = 0;                                  ///< of these, with points
+  std::vector<std::uint32_t> members;                  ///< its rows of the scan, ascending
+};
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,57 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/tracker_config.hpp"
+
+namespace dynamic_icp::tracking {
+
+ConfigFields fields(TrackConfig& config) {
+  ConfigFields all = {
+      {"doppler_sigma_mps", &config.doppler_sigma_mps, 1e-4, 10.0, "m/s", "noise of the Doppler of one point"},
+      {"doppler_floor_mps", &config.doppler_floor_mps, 0.0, 10.0, "m/s",
+       "error of the Doppler that all points of an object share"},
+      {"sway_rps", &config.sway_rps, 0.0, 10.0, "rad/s", "roll and pitch rates of objects, taken as noise"},
+      {"face_sigma_m", &config.face_sigma_m, 1e-3, 10.0, "m", "noise of where a side of an object is seen"},
+      {"face_sigma_growth", &config.face_sigma_growth, 0.0, 1.0, "m/m", "growth of that noise with the range"},
+      {"yaw_sigma_rad", &config.yaw_sigma_rad, 1e-4, 3.0, "rad",
+       "difference between the direction of an object's sides and of its motion"},
+      {"prior_speed_mps", &config.prior_speed_mps, 0.1, 1000.0, "m/s", "typical horizontal speed of new objects"},
+      {"prior_climb_mps", &config.prior_climb_mps, 0.01, 1000.0, "m/s", "typical vertical speed of new objects"},
+      {"prior_yaw_rate_rps", &config.prior_yaw_rate_rps, 1e-3, 100.0, "rad/s", "typical yaw rate of new objects"},
+      {"vehicle_width_m", &config.vehicle_width_m, 0.0, 100.0, "m", "objects at least this wide count as vehicles"},
+      {"largest_width_m", &config.largest_width_m, 0.0, 100.0, "m", "greatest likely width of vehicles"},
+      {"vehicle_length_m", &config.vehicle_length_m, 0.0, 100.0, "m",
+       "length of vehicles of which no more has been seen"},
+  };
+  append_fields(all, "motion", fields(config.motion));
+  return all;
+}
+
+ConfigFields fields(TrackerConfig& config) {
+  ConfigFields all = {
+      {"min_points", &config.min_points, 1, 1e6, "", "moving points that make an object"},
+      {"confirm_points", &config.confirm_points, 1, 1e6, "", "moving points that confirm an object at first sight"},
+      {"confirm_scans", &config.confirm_scans, 1, 1000, "", "scans in which a smaller object must be seen"},
+      {"confirm_deviation_mps", &config.confirm_deviation_mps, 0.0, 1000.0, "m/s",
+       "an object is confirmed when the deviation of its horizontal velocity is below this"},
+      {"confirm_anyway_scans", &config.confirm_anyway_scans, 1, 1000, "",
+       "or when it has been seen in so many scans, however well its velocity is known"},
+      {"coast_scans", &config.coast_scans, 0, 1000, "", "scans for which an object is kept without points"},
+      {"max_spread_mps", &config.max_spread_mps, 0.0, 100.0, "m/s",
+       "points are no object when their radial velocities differ by more from those of a rigid body"},
+      {"same_velocity_mps", &config.same_velocity_mps, 0.0, 100.0, "m/s",
+       "still points in the box of a new object contradict it when their radial velocity deviates more"},
+      {"least_speed_mps", &config.least_speed_mps, 0.0, 100.0, "m/s", "objects slower than this count as standing"},
+      {"gate_m", &config.gate_m, 0.0, 100.0, "m", "distance of points from the predicted box of their object"},
+      {"gate_mps", &config.gate_mps, 0.0, 100.0, "m/s", "deviation of their radial velocity from its prediction"},
+      {"growth_m", &config.growth_m, 0.0, 100.0, "m", "distance from the box up to which it takes in linked points"},
+      {"slow_mps", &config.slow_mps, 0.0, 100.0, "m/s",
+       "objects with less radial speed are looked for among static points too"},
+      {"tangential_deviation_mps", &config.tangential_deviation_mps, 0.0, 1000.0, "m/s",
+       "largest deviation at which the velocity across the line of sight counts as observed"},
+  };
+  append_fields(all, "grouping", fields(config.grouping));
+  append_fields(all, "track", fields(config.track));
+  return all;
+}
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,203 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/conversion/conversion.hpp"
+
+#include <array>
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/conversion/column_types.hpp"
+#include "dynamic_icp/recording/conversion/targets.hpp"
+#include "dynamic_icp/recording/evaluation/association.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/tum.hpp"
+
+namespace dynamic_icp::conversion {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::int64_t kDicpPeriod_ns = 100'000'000;  // what its reader assumes without poses
+
+struct Layout {
+  std::string_view name;
+  Target target;
+  void (*write_scan)(const fs::path& folder, const std::string& stem, const ScanToWrite& scan, Notes& notes);
+};
+
+constexpr std::array<Layout, 4> kLayouts = {{{"dicp", Target::kDicp, write_dicp_scan},
+                                             {"npz", Target::kNpz, write_npz_scan},
+                                             {"pcd", Target::kPcd, write_pcd_scan},
+                                             {"ply", Target::kPly, write_ply_scan}}};
+
+const Layout& layout_of(Target target) { return kLayouts[static_cast<std::size_t>(target)]; }
+
+void write_text(const fs::path& path, const std::string& text) {
+  formats::write_bytes(path, std::as_bytes(std::span(text)));
+}
+
+class Converter {
+ public:
+  Converter(const datasets::Dataset& dataset, const ScanRange& range, Target target, const fs::path& folder,
+            const std::function<void()>& progress)
+      : dataset_(dataset), range_(range), target_(target), folder_(folder), progress_(progress) {}
+
+  std::vector<std::string> convert() {
+    note_what_is_not_of_points();
+    // Read twice: a column has one type in all files, the smallest that holds every number of the recording, and no
+    // recording fits into memory.
+    for (std::size_t i = range_.begin; i < range_.end; ++i) {
+      types_.add(dataset_.scan(i), dataset_.columns(i));
+      advance();
+    }
+    for (std::size_t i = range_.begin; i < range_.end; ++i) {
+      const RawScan scan = dataset_.scan(i);
+      const std::vector<datasets::PointColumn> columns = dataset_.columns(i);
+      layout_of(target_).write_scan(folder_, stem(i), {scan, columns, types_}, notes_);
+      if (!scan.warning.empty()) {
+        notes_.add(scan.warning);
+      }
+      advance();
+    }
+    if (target_ == Target::kDicp) {
+      write_dicp_poses();
+    } else if (!dataset_.ground_truth().empty()) {
+      write_poses(dataset_.ground_truth());
+    }
+    return notes_.sentences();
+  }
+
+ private:
+  void advance() const {
+    if (progress_) {
+      progress_();
+    }
+  }
+
+  [[nodiscard]] std::string stem(std::size_t index) const {
+    if (target_ == Target::kDicp) {
+      return fmt::format("{:05}", index - range_.begin + 1);
+    }
+    const std::int64_t ns = dataset_.stamp(index).ns;
+    if (ns < 0) {
+      throw DataError(fmt::format("{}: is at {} s, expected a time from 0 on: names of files have no sign",
+                                  dataset_.scan_file(index).string(), format_seconds(dataset_.stamp(index))));
+    }
+    return fmt::format("{:019}", ns);
+  }
+
+  void note_what_is_not_of_points() {
+    const std::string_view name = layout_of(target_).name;
+    if (dataset_.doppler_kind() == DopplerKind::kCompensated) {
+      notes_.add(fmt::format("that the Doppler is compensated is left out: {} does not say it, the reader must be told",
+                             name));
+    }
+    if (range_.begin < range_.end && dataset_.boxes(range_.begin)) {
+      notes_.add(fmt::format("the boxes of objects are left out: {} has no place for them", name));
+    }
+    if (target_ != Target::kDicp && dataset_.T_vehicle_sensor()) {
+      notes_.add(fmt::format("the mounting of the sensor on the vehicle is left out: {} has no place for it", name));
+    }
+  }
+
+  void write_poses(const formats::Trajectory& poses) const {
+    const fs::path path = folder_ / "ref_poses.txt";
+    write_text(path, formats::format_tum(poses, path.string()));
+  }
+
+  /// The truth at the stamp of every scan; nothing where a scan has none.
+  [[nodiscard]] std::optional<evaluation::Association> truth_of_scans() const {
+    if (dataset_.ground_truth().empty()) {
+      return std::nullopt;
+    }
+    formats::Trajectory scans;
+    for (std::size_t i = range_.begin; i < range_.end; ++i) {
+      scans.push_back({dataset_.stamp(i), Eigen::Isometry3d::Identity()});
+    }
+    try {
+      evaluation::Association truth = evaluation::associate(scans, dataset_.ground_truth());
+      return truth.size() == scans.size() ? std::optional(std::move(truth)) : std::nullopt;
+    } catch (const DataError&) {
+      return std::nullopt;  // no scan has a pose
+    }
+  }
+
+  /// Poses of the vehicle where the mounting is known: they carry the stamps as well.
+  void write_dicp_poses() {
+    const std::optional<Eigen::Isometry3d> T_vehicle_sensor = dataset_.T_vehicle_sensor();
+    if (T_vehicle_sensor) {
+      write_calibration(*T_vehicle_sensor);
+    }
+    const std::optional<evaluation::Association> truth = truth_of_scans();
+    if (!truth) {
+      bool at_the_period = true;
+      for (std::size_t i = range_.begin; i < range_.end; ++i) {
+        const auto number = static_cast<std::int64_t>(i - range_.begin);
+        at_the_period = at_the_period && dataset_.stamp(i).ns == number * kDicpPeriod_ns;
+      }
+      if (!dataset_.ground_truth().empty()) {
+        notes_.add("the ground truth is left out: dicp needs a pose for every scan, and some scans have none");
+      }
+      if (!at_the_period) {
+        notes_.add("the times of the scans are left out: dicp keeps them with the poses of every scan");
+      }
+      return;
+    }
+    if (truth->exact_count < truth->size()) {
+      notes_.add(fmt::format("{} of {} poses are interpolated: dicp has poses at the times of scans only",
+                             truth->size() - truth->exact_count, truth->size()));
+    }
+    formats::Trajectory poses = truth->reference;
+    for (std::size_t i = 0; i < poses.size(); ++i) {
+      poses[i].stamp = dataset_.stamp(range_.begin + i);
+    }
+    if (T_vehicle_sensor) {
+      const Eigen::Isometry3d T_sensor_vehicle = T_vehicle_sensor->inverse();
+      for (formats::StampedPose& pose : poses) {
+        pose.T_world_sensor = pose.T_world_sensor * T_sensor_vehicle;
+      }
+    }
+    write_poses(poses);
+  }
+
+  void write_calibration(const Eigen::Isometry3d& T_vehicle_sensor) const {
+    const Eigen::Vector3d t = T_vehicle_sensor.translation();
+    const Eigen::Quaterniond q(T_vehicle_sensor.linear());
+    const nlohmann::ordered_json json = {{"T_V_to_S",
+                                          {{"translation", {{"x", t.x()}, {"y", t.y()}, {"z", t.z()}}},
+                                           {"quaternion", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}}}};
+    write_text(folder_ / "calibration.json", json.dump(2) + "\n");
+  }
+
+  const datasets::Dataset& dataset_;
+  const ScanRange range_;
+  const Target target_;
+  const fs::path& folder_;
+  const std::function<void()>& progress_;
+  ColumnTypes types_;
+  Notes notes_;
+};
+
+}  // namespace
+
+Target find_target(std::string_view name) {
+  std::string known;
+  for (const Layout& layout : kLayouts) {
+    if (layout.name == name) {
+      return layout.target;
+    }
+    known += fmt::format(" {}", layout.name);
+  }
+  throw UsageError(fmt::format("cannot convert to '{}'; known are:{}", name, known));
+}
+
+std::vector<std::string> convert(const datasets::Dataset& dataset, const ScanRange& range, Target target,
+                                 const fs::path& folder, const std::function<void()>& progress) {
+  return Converter(dataset, range, target, folder, progress).convert();
+}
+
+}  // namespace dynamic_icp::conversion

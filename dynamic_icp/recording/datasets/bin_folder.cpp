@@ -1,0 +1,87 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/bin_folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <system_error>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
+#include "dynamic_icp/recording/datasets/record_dataset.hpp"
+#include "dynamic_icp/recording/datasets/record_guess.hpp"
+#include "dynamic_icp/recording/formats/record_file.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+using formats::RecordLayout;
+
+constexpr std::array<const RecordLayout*, 8> kCandidates = {
+    &formats::kAeva29,   &formats::kAeva25,   &formats::kBoreas40, &formats::kBoreas28, &formats::kBoreas28BeamThenTime,
+    &formats::kBoreas24, &formats::kXyzdTime, &formats::kXyzd};
+
+bool is_velodyne(const fs::path& folder) { return same_name(folder, "velodyne") && holds_files(folder, ".bin"); }
+
+/// The first file with content; throws DataError when there is none.
+fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& files) {
+  const auto found = std::find_if(files.begin(), files.end(), [](const fs::path& file) {
+    std::error_code unknown_size;
+    return fs::file_size(file, unknown_size) > 0 && !unknown_size;
+  });
+  if (found == files.end()) {
+    throw DataError(fmt::format("{}: all *.bin files are empty: nothing tells what they are", folder.string()));
+  }
+  return *found;
+}
+
+[[noreturn]] void refuse(const fs::path& file, const std::string& content) {
+  if (const std::string other = without_doppler(content); !other.empty()) {
+    throw DataError(fmt::format("{}: {}", file.string(), other));
+  }
+  std::string names;
+  for (const RecordLayout* layout : kCandidates) {
+    names += fmt::format("\n  {}, {} bytes{}", layout->name, layout->bytes,
+                         content.size() % layout->bytes == 0 ? "" : ": does not divide the size");
+  }
+  throw DataError(fmt::format("{}: {} bytes that look like no records of points with Doppler. Tried:{}", file.string(),
+                              content.size(), names));
+}
+
+}  // namespace
+
+fs::path find_bin_folder(const fs::path& input) {
+  return holds_files(input, ".bin") ? input : find_folder(input, is_velodyne);
+}
+
+std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptions& options) {
+  if (is_velodyne(named_path(folder))) {
+    throw DataError(fmt::format(
+        "{}: looks like KITTI, whose fourth number is the reflectance and not Doppler (--format dicp reads it "
+        "as Doppler all the same)",
+        folder.string()));
+  }
+  StampedFiles scans = stamped_files(folder, ".bin", options.period_s);
+  const fs::path first = first_with_points(folder, scans.files);
+  const RecordLayout* const layout = guess_layout(first, kCandidates);
+  if (layout == nullptr) {
+    refuse(first, formats::read_whole_file(first, formats::kMaxRecordFileBytes));
+  }
+  RecordRecording recording;
+  recording.format = "bin";
+  recording.files = std::move(scans.files);
+  recording.stamps = std::move(scans.stamps);
+  recording.assumptions = std::move(scans.assumptions);
+  recording.layout_of = [layout](const fs::path&, Stamp) -> const RecordLayout& { return *layout; };
+  recording.assumptions.push_back(fmt::format("only *.bin files: read as records of {} bytes ({}), as {} looks like",
+                                              layout->bytes, layout->name, first.filename().string()));
+  return make_record_dataset(std::move(recording));
+}
+
+}  // namespace dynamic_icp::datasets

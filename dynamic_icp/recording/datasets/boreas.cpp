@@ -1,0 +1,175 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/boreas.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <utility>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
+#include "dynamic_icp/recording/datasets/numbered_files.hpp"
+#include "dynamic_icp/recording/datasets/record_dataset.hpp"
+#include "dynamic_icp/recording/datasets/record_guess.hpp"
+#include "dynamic_icp/recording/formats/text_lines.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+using formats::RecordLayout;
+
+constexpr std::array<const RecordLayout*, 5> kCandidates = {&formats::kBoreas40, &formats::kBoreas28,
+                                                            &formats::kBoreas28BeamThenTime, &formats::kBoreas24,
+                                                            &formats::kBoreas32};
+
+/// The lines of a file that hold something, each with its place for messages.
+std::vector<std::pair<std::string, std::string>> lines_of(const fs::path& path) {
+  const std::string text = formats::read_text_file(path);
+  std::vector<std::pair<std::string, std::string>> lines;
+  std::string_view rest = text;
+  std::size_t number = 1;
+  for (std::optional<std::string_view> line = formats::take_line(rest); line; line = formats::take_line(rest)) {
+    if (!formats::words_of(*line).empty()) {
+      lines.emplace_back(fmt::format("{}: line {}", path.string(), number), *line);
+    }
+    ++number;
+  }
+  return lines;
+}
+
+void check_rows(const fs::path& path, std::size_t rows, std::size_t scans) {
+  if (rows != scans) {
+    throw DataError(fmt::format("{}: {} lines for {} scans, expected one per scan", path.string(), rows, scans));
+  }
+}
+
+bool holds_frames(const fs::path& folder) {
+  return holds_files(child(folder, "frames"), ".bin") && !child(folder, "timestamps.txt").empty();
+}
+
+bool is_boreas(const fs::path& folder) {
+  const bool is_rt = holds_files(child(folder, "aeva"), ".bin") &&
+                     (!child(folder, "applanix").empty() || !child(folder, "calib").empty());
+  return is_rt || (holds_frames(folder) && !child(folder, "aeva_poses.txt").empty());
+}
+
+/// The folder above when the input is that of the scans itself.
+fs::path find_above(const fs::path& input, bool (*wanted)(const fs::path&)) {
+  const fs::path whole = named_path(input);
+  if ((same_name(whole, "aeva") || same_name(whole, "frames")) && wanted(whole.parent_path())) {
+    return whole.parent_path();
+  }
+  return find_folder(input, wanted);
+}
+
+/// Told by the first scan with points; where its content is no help, by the size alone.
+const RecordLayout& layout_of(const std::vector<fs::path>& files) {
+  const auto holds_points = [](const fs::path& file) {
+    std::error_code unknown_size;
+    return fs::file_size(file, unknown_size) > 0 && !unknown_size;
+  };
+  const auto first = std::find_if(files.begin(), files.end(), holds_points);
+  if (first == files.end()) {
+    return *kCandidates.front();
+  }
+  if (const RecordLayout* const guess = guess_layout(*first, kCandidates)) {
+    return *guess;
+  }
+  const auto fits = std::find_if(kCandidates.begin(), kCandidates.end(), [&](const RecordLayout* layout) {
+    return fs::file_size(*first) % layout->bytes == 0;
+  });
+  return fits == kCandidates.end() ? *kCandidates.front() : **fits;
+}
+
+RecordRecording aeva_recording(const fs::path& folder, const OpenOptions& options) {
+  StampedFiles scans = stamped_files(child(folder, "aeva"), ".bin", options.period_s);
+  RecordRecording recording;
+  recording.files = std::move(scans.files);
+  recording.stamps = std::move(scans.stamps);
+  recording.assumptions = std::move(scans.assumptions);
+  const RecordLayout& layout = layout_of(recording.files);
+  recording.layout_of = [&layout](const fs::path&, Stamp) -> const RecordLayout& { return layout; };
+  if (&layout != &formats::kBoreas40) {
+    recording.assumptions.push_back(fmt::format(
+        "the scans are read as records of {} bytes (Boreas-Aeva); the tables of Doppler bias of that data set are not "
+        "applied",
+        layout.bytes));
+  }
+  if (const fs::path poses = child(folder, "applanix/aeva_poses.csv"); !poses.empty()) {
+    recording.truth = {read_boreas_poses(poses), poses};
+  }
+  const fs::path T_applanix_lidar = child(folder, "calib/T_applanix_lidar.txt");
+  const fs::path T_aeva_lidar = child(folder, "calib/T_aeva_lidar.txt");
+  if (!T_applanix_lidar.empty() && !T_aeva_lidar.empty()) {
+    recording.T_vehicle_sensor = read_boreas_matrix(T_applanix_lidar) * read_boreas_matrix(T_aeva_lidar).inverse();
+  }
+  return recording;
+}
+
+RecordRecording frames_recording(const fs::path& folder) {
+  RecordRecording recording;
+  recording.files = numbered_files(child(folder, "frames"), ".bin");
+  recording.layout_of = [](const fs::path&, Stamp) -> const RecordLayout& { return formats::kXyzdTime; };
+  const fs::path times = child(folder, "timestamps.txt");
+  recording.stamps = read_boreas_times(times);
+  check_rows(times, recording.stamps.size(), recording.files.size());
+  const fs::path poses = child(folder, "aeva_poses.txt");
+  if (poses.empty()) {
+    return recording;
+  }
+  const auto pose_lines = lines_of(poses);
+  check_rows(poses, pose_lines.size(), recording.files.size());
+  for (std::size_t i = 0; i < pose_lines.size(); ++i) {
+    const auto& [place, line] = pose_lines[i];
+    recording.truth.poses.push_back({recording.stamps[i], rigid_transform(numbers_in(line, place), place)});
+  }
+  recording.truth = {near_origin(std::move(recording.truth.poses)), poses};
+  return recording;
+}
+
+}  // namespace
+
+std::vector<Stamp> read_boreas_times(const fs::path& path) {
+  std::vector<Stamp> stamps;
+  for (const auto& [place, line] : lines_of(path)) {
+    const std::vector<std::string_view> words = formats::words_of(line);
+    const std::optional<Stamp> stamp = parse_seconds(words.front());
+    if (words.size() != 1 || !stamp) {
+      throw DataError(fmt::format("{}: is {}, expected one time in seconds", place, formats::quoted_text(line)));
+    }
+    if (!stamps.empty() && *stamp <= stamps.back()) {
+      throw DataError(fmt::format("{}: the time {} comes after {}, expected increasing times", place,
+                                  format_seconds(*stamp), format_seconds(stamps.back())));
+    }
+    stamps.push_back(*stamp);
+  }
+  return stamps;
+}
+
+Eigen::Isometry3d read_boreas_matrix(const fs::path& path) {
+  std::string text = formats::read_text_file(path);
+  std::replace(text.begin(), text.end(), '\n', ' ');
+  return rigid_transform(numbers_in(text, path.string()), path.string());
+}
+
+fs::path find_boreas(const fs::path& input) { return find_above(input, is_boreas); }
+
+fs::path find_boreas_scans(const fs::path& input) {
+  return find_above(
+      input, [](const fs::path& folder) { return holds_files(child(folder, "aeva"), ".bin") || holds_frames(folder); });
+}
+
+std::unique_ptr<Dataset> open_boreas(const fs::path& folder, const OpenOptions& options) {
+  RecordRecording recording =
+      holds_files(child(folder, "aeva"), ".bin") ? aeva_recording(folder, options) : frames_recording(folder);
+  recording.format = "boreas";
+  return make_record_dataset(std::move(recording));
+}
+
+}  // namespace dynamic_icp::datasets

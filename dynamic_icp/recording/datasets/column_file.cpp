@@ -1,0 +1,105 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/column_file.hpp"
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+constexpr const char* kPoints = "points";
+constexpr const char* kDoppler = "doppler";
+
+/// The column as an array; integers get the one type that holds them all.
+formats::NpyArray array_of(const formats::PlyColumn& column) {
+  const formats::NpyType type = column.type == formats::PlyType::kFloat32   ? formats::NpyType::kFloat32
+                                : column.type == formats::PlyType::kFloat64 ? formats::NpyType::kFloat64
+                                                                            : formats::NpyType::kInt64;
+  formats::NpyArray array{type, {column.values.size()}, {}, {}};
+  array.bytes.reserve(column.values.size() * formats::size_of(type));
+  for (const double value : column.values) {
+    if (type == formats::NpyType::kInt64) {
+      formats::append_value(array.bytes, static_cast<std::int64_t>(value));
+    } else if (type == formats::NpyType::kFloat32) {
+      formats::append_value(array.bytes, static_cast<float>(value));
+    } else {
+      formats::append_value(array.bytes, value);
+    }
+  }
+  return array;
+}
+
+const formats::PlyElement& vertices(const formats::PlyFile& file, const std::filesystem::path& path) {
+  const formats::PlyElement* const found = file.find("vertex");
+  if (found == nullptr) {
+    throw DataError(fmt::format("{}: has no element 'vertex', expected one with the points", path.string()));
+  }
+  return *found;
+}
+
+}  // namespace
+
+ColumnFile::ColumnFile(ColumnFileKind kind, const std::filesystem::path& path) : path_(path) {
+  switch (kind) {
+    case ColumnFileKind::kNpz: {
+      const formats::NpzFile& npz = file_.emplace<formats::NpzFile>(path);
+      for (std::string& name : npz.names()) {
+        std::string reason = npz.why_no_numbers(name);
+        if (reason.empty()) {
+          names_.push_back(std::move(name));
+        } else {
+          unusable_.push_back(std::move(reason));
+        }
+      }
+      break;
+    }
+    case ColumnFileKind::kPcd:
+      names_ = file_.emplace<formats::PcdFile>(path).names();
+      break;
+    case ColumnFileKind::kPly:
+      for (const formats::PlyColumn& column :
+           vertices(file_.emplace<formats::PlyFile>(formats::read_ply(path)), path).columns) {
+        if (!column.is_list) {
+          names_.push_back(column.name);
+        }
+      }
+      break;
+    case ColumnFileKind::kNpyPair:
+      file_ = NpyPair{path};
+      names_ = {kPoints, kDoppler};
+      break;
+  }
+}
+
+std::filesystem::path ColumnFile::doppler_file(const std::filesystem::path& points) {
+  return points.parent_path() / (points.stem().string() + "_dop.npy");
+}
+
+std::string ColumnFile::warning() const {
+  const auto* const pcd = std::get_if<formats::PcdFile>(&file_);
+  return pcd == nullptr ? "" : pcd->warning();
+}
+
+formats::NpyArray ColumnFile::read(const std::string& name) const {
+  if (const auto* const npz = std::get_if<formats::NpzFile>(&file_)) {
+    return npz->read(name);
+  }
+  if (const auto* const pcd = std::get_if<formats::PcdFile>(&file_)) {
+    return pcd->read(name);
+  }
+  if (const auto* const pair = std::get_if<NpyPair>(&file_)) {
+    return formats::read_npy(name == kPoints ? pair->points : doppler_file(pair->points));
+  }
+  const formats::PlyColumn* const column = vertices(std::get<formats::PlyFile>(file_), path_).find(name);
+  if (column == nullptr || column->is_list) {
+    throw DataError(fmt::format("{}: has no property '{}' of vertices", path_.string(), name));
+  }
+  formats::NpyArray array = array_of(*column);
+  array.origin = fmt::format("{}: property '{}'", path_.string(), name);
+  return array;
+}
+
+}  // namespace dynamic_icp::datasets

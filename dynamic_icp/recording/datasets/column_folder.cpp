@@ -1,0 +1,296 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/column_folder.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/column_file.hpp"
+#include "dynamic_icp/recording/datasets/field_names.hpp"
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
+#include "dynamic_icp/recording/datasets/foreign_numbers.hpp"
+#include "dynamic_icp/recording/datasets/numbered_files.hpp"
+#include "dynamic_icp/recording/datasets/point_times.hpp"
+#include "dynamic_icp/recording/datasets/scan_stamps.hpp"
+#include "dynamic_icp/recording/datasets/truth_search.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kDopplerEnding = "_dop.npy";
+constexpr std::size_t kScansSearchedForTimes = 20;
+
+std::string_view extension(ColumnFileKind kind) {
+  switch (kind) {
+    case ColumnFileKind::kNpz:
+      return ".npz";
+    case ColumnFileKind::kPcd:
+      return ".pcd";
+    case ColumnFileKind::kPly:
+      return ".ply";
+    case ColumnFileKind::kNpyPair:
+      break;
+  }
+  return ".npy";
+}
+
+/// The name of the layout, as --format takes it.
+std::string_view format_name(ColumnFileKind kind) {
+  return kind == ColumnFileKind::kNpyPair ? "npz" : extension(kind).substr(1);
+}
+
+bool is_npy_pair(const fs::path& points) {
+  return points.extension() == ".npy" && fs::is_regular_file(points) &&
+         fs::is_regular_file(ColumnFile::doppler_file(points));
+}
+
+/// The arrays of one file, each read once.
+class Arrays {
+ public:
+  Arrays(const ColumnFile& file, const fs::path& path) : file_(file), path_(path) {}
+
+  const formats::NpyArray& get(const FieldColumn& field) {
+    auto found = arrays_.find(field.array);
+    if (found == arrays_.end()) {
+      found = arrays_.emplace(field.array, file_.read(field.array)).first;
+    }
+    const formats::NpyArray& array = found->second;
+    if (field.whole && formats::columns_of(array) != 1) {
+      throw DataError(fmt::format("{}: has {} columns, expected one", array.origin, formats::columns_of(array)));
+    }
+    rows_ = arrays_.size() == 1 ? formats::rows_of(array) : rows_;
+    if (formats::rows_of(array) != rows_) {
+      throw DataError(fmt::format("{}: array '{}' of shape ({}) has {} rows, expected {} as in the others",
+                                  path_.string(), field.array, fmt::join(array.shape, ", "), formats::rows_of(array),
+                                  rows_));
+    }
+    return array;
+  }
+
+  std::vector<double> values(const FieldColumn& field) { return formats::column_as_doubles(get(field), field.column); }
+
+  std::vector<Eigen::Vector3d> vectors(const std::array<FieldColumn, 3>& fields) {
+    const std::vector<double> x = values(fields[0]);
+    const std::vector<double> y = values(fields[1]);
+    const std::vector<double> z = values(fields[2]);
+    std::vector<Eigen::Vector3d> vectors(x.size());
+    for (std::size_t i = 0; i < x.size(); ++i) {
+      vectors[i] = {x[i], y[i], z[i]};
+    }
+    return vectors;
+  }
+
+ private:
+  const ColumnFile& file_;
+  const fs::path& path_;
+  std::map<std::string, formats::NpyArray> arrays_;
+  std::size_t rows_ = 0;
+};
+
+class ColumnDataset final : public Dataset {
+ public:
+  ColumnDataset(ColumnFileKind kind, const fs::path& found, const OpenOptions& options) : kind_(kind) {
+    if (!options.sensors.empty()) {
+      throw UsageError(fmt::format("{} has no sensors to choose from, sensor '{}' was asked for", format_name(kind),
+                                   options.sensors.front()));
+    }
+    const bool is_folder = fs::is_directory(found);
+    const fs::path folder = is_folder ? found : fs::absolute(found).parent_path();
+    files_ = is_folder ? scan_files(found) : std::vector<fs::path>{found};
+    if (is_folder && kind_ == ColumnFileKind::kNpyPair) {
+      say_what_has_no_doppler(found);
+    }
+    find_stamps(folder, options.period_s);
+    const ColumnFile first(kind_, files_.front());
+    fields_ = map_fields(first.names(), options.fields, files_.front().string(), first.unusable());
+    assumptions_.insert(assumptions_.end(), fields_.assumptions.begin(), fields_.assumptions.end());
+    find_time_unit(options.period_s);
+    if (folder.filename().string().find("compensated") != std::string::npos) {
+      doppler_kind_ = DopplerKind::kCompensated;
+      assumptions_.push_back(
+          fmt::format("the Doppler is taken as compensated, by the name of the folder {}", folder.filename().string()));
+    }
+  }
+
+  [[nodiscard]] std::string_view format() const override { return format_name(kind_); }
+  [[nodiscard]] std::size_t size() const override { return files_.size(); }
+  [[nodiscard]] Stamp stamp(std::size_t index) const override { return stamps_.at(index); }
+  [[nodiscard]] fs::path scan_file(std::size_t index) const override { return files_.at(index); }
+  [[nodiscard]] DopplerKind doppler_kind() const override { return doppler_kind_; }
+  [[nodiscard]] const formats::Trajectory& ground_truth() const override { return truth_.poses; }
+  [[nodiscard]] fs::path ground_truth_file() const override { return truth_.file; }
+  [[nodiscard]] const std::vector<std::string>& assumptions() const override { return assumptions_; }
+
+  [[nodiscard]] RawScan scan(std::size_t index) const override {
+    const fs::path& path = files_.at(index);
+    const ColumnFile file(kind_, path);
+    Arrays arrays(file, path);
+    RawScan raw;
+    raw.stamp = stamps_[index];
+    raw.doppler_kind = doppler_kind_;
+    raw.warning = file.warning();
+    raw.points = arrays.vectors(fields_.point);
+    raw.doppler = arrays.values(fields_.doppler);
+    refuse_foreign_numbers(raw, path);
+    if (fields_.time) {
+      raw.times = times_after(raw.stamp, arrays.get(*fields_.time), time_unit_);
+    }
+    if (fields_.line_of_sight) {
+      raw.directions = arrays.vectors(*fields_.line_of_sight);
+    }
+    return raw;
+  }
+
+  [[nodiscard]] std::vector<PointColumn> columns(std::size_t index) const override {
+    const fs::path& path = files_.at(index);
+    const ColumnFile file(kind_, path);
+    Arrays arrays(file, path);
+    const std::size_t points = formats::rows_of(arrays.get(fields_.doppler));
+    std::vector<PointColumn> columns;
+    for (const std::string& name : file.names()) {
+      if (fields_.uses(name)) {
+        continue;
+      }
+      const formats::NpyArray array = file.read(name);
+      const bool of_points = (array.shape.size() == 1 || array.shape.size() == 2) && array.shape.front() == points;
+      for (std::size_t k = 0; of_points && k < formats::columns_of(array); ++k) {
+        columns.push_back({formats::columns_of(array) == 1 ? name : fmt::format("{}[{}]", name, k),
+                           formats::column_as_doubles(array, k),
+                           array.type != formats::NpyType::kFloat32 && array.type != formats::NpyType::kFloat64});
+      }
+    }
+    return columns;
+  }
+
+ private:
+  [[nodiscard]] std::vector<fs::path> scan_files(const fs::path& folder) const {
+    const bool pairs = kind_ == ColumnFileKind::kNpyPair;
+    std::vector<fs::path> files = numbered_files(folder, pairs ? kDopplerEnding : extension(kind_));
+    if (pairs) {
+      for (fs::path& file : files) {
+        const std::string name = file.filename().string();
+        file = folder / (name.substr(0, name.size() - kDopplerEnding.size()) + ".npy");
+      }
+    }
+    if (files.empty()) {
+      throw DataError(
+          fmt::format("{}: no *{} has a number in its name to order the scans by; name one file for a "
+                      "single scan",
+                      folder.string(), extension(kind_)));
+    }
+    return files;
+  }
+
+  void say_what_has_no_doppler(const fs::path& folder) {
+    std::vector<fs::path> alone;
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+      const fs::path& path = entry.path();
+      if (path.extension() == ".npy" && !path.filename().string().ends_with(kDopplerEnding) && !is_npy_pair(path)) {
+        alone.push_back(path);
+      }
+    }
+    if (!alone.empty()) {
+      const fs::path& first = *std::min_element(alone.begin(), alone.end());
+      assumptions_.push_back(
+          fmt::format("{}: {} of the *.npy have no *{} beside them and are left out, this is the first", first.string(),
+                      alone.size(), kDopplerEnding));
+    }
+  }
+
+  void find_stamps(const fs::path& folder, double period_s) {
+    StampedFiles stamped = stamped_files(files_, period_s);
+    files_ = std::move(stamped.files);
+    stamps_ = std::move(stamped.stamps);
+    std::vector<std::string>& said = stamped.assumptions;
+    const bool are_indices = stamped.are_indices;
+    truth_ = search_truth(folder, stamps_, are_indices, assumptions_);
+    if (are_indices && !truth_.poses.empty()) {
+      std::transform(truth_.poses.begin(), truth_.poses.end(), stamps_.begin(),
+                     [](const formats::StampedPose& pose) { return pose.stamp; });
+      said = {fmt::format("the names of the scans are no times: those of the poses are taken, one for one")};
+    }
+    assumptions_.insert(assumptions_.end(), said.begin(), said.end());
+  }
+
+  /// The first scans may be empty.
+  void find_time_unit(double period_s) {
+    if (!fields_.time) {
+      return;
+    }
+    const std::size_t most = std::min(files_.size(), kScansSearchedForTimes);
+    for (std::size_t i = 0; i < most; ++i) {
+      const ColumnFile file(kind_, files_[i]);
+      Arrays arrays(file, files_[i]);
+      const formats::NpyArray& column = arrays.get(*fields_.time);
+      time_unit_ = time_unit(fields_.time->array, column, period_s);
+      if (formats::rows_of(column) > 0) {
+        break;
+      }
+    }
+    if (!time_unit_.assumption.empty()) {
+      assumptions_.push_back(time_unit_.assumption);
+    }
+  }
+
+  ColumnFileKind kind_;
+  std::vector<fs::path> files_;
+  std::vector<Stamp> stamps_;
+  FieldMap fields_;
+  TimeUnit time_unit_;
+  DopplerKind doppler_kind_ = DopplerKind::kRelative;
+  Truth truth_;
+  std::vector<std::string> assumptions_;
+};
+
+bool holds_npy_pairs(const fs::path& folder) {
+  std::error_code ignored;
+  for (fs::directory_iterator entry(folder, ignored); !ignored && entry != fs::directory_iterator();
+       entry.increment(ignored)) {
+    if (is_npy_pair(entry->path())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+fs::path find_files_of(ColumnFileKind kind, const fs::path& input) {
+  if (fs::is_regular_file(input)) {
+    return input.extension() == extension(kind) ? input : fs::path();
+  }
+  return find_folder(input, [&](const fs::path& folder) { return holds_files(folder, extension(kind)); });
+}
+
+}  // namespace
+
+fs::path find_npz(const fs::path& input) {
+  if (is_npy_pair(input)) {
+    return input;
+  }
+  const fs::path found = find_files_of(ColumnFileKind::kNpz, input);
+  return found.empty() && fs::is_directory(input) ? find_folder(input, holds_npy_pairs) : found;
+}
+
+fs::path find_pcd(const fs::path& input) { return find_files_of(ColumnFileKind::kPcd, input); }
+
+fs::path find_ply(const fs::path& input) { return find_files_of(ColumnFileKind::kPly, input); }
+
+std::unique_ptr<Dataset> open_npz(const fs::path& found, const OpenOptions& options) {
+  const bool pairs = fs::is_directory(found) ? !holds_files(found, ".npz") : found.extension() == ".npy";
+  return std::make_unique<ColumnDataset>(pairs ? ColumnFileKind::kNpyPair : ColumnFileKind::kNpz, found, options);
+}
+
+std::unique_ptr<Dataset> open_pcd(const fs::path& found, const OpenOptions& options) {
+  return std::make_unique<ColumnDataset>(ColumnFileKind::kPcd, found, options);
+}
+
+std::unique_ptr<Dataset> open_ply(const fs::path& found, const OpenOptions& options) {
+  return std::make_unique<ColumnDataset>(ColumnFileKind::kPly, found, options);
+}
+
+}  // namespace dynamic_icp::datasets

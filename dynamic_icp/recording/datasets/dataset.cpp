@@ -1,0 +1,159 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/dataset.hpp"
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/aeva_folder.hpp"
+#include "dynamic_icp/recording/datasets/aevascenes.hpp"
+#include "dynamic_icp/recording/datasets/bin_folder.hpp"
+#include "dynamic_icp/recording/datasets/boreas.hpp"
+#include "dynamic_icp/recording/datasets/column_folder.hpp"
+#include "dynamic_icp/recording/datasets/dicp.hpp"
+#include "dynamic_icp/recording/datasets/helipr.hpp"
+#include "dynamic_icp/recording/datasets/hercules.hpp"
+#include "dynamic_icp/recording/datasets/not_a_recording.hpp"
+#include "dynamic_icp/recording/formats/file_kind.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// One row a layout: how it is recognised and how it is opened.
+struct Layout {
+  std::string_view name;
+  std::string_view looks_like;
+  fs::path (*find)(const fs::path& input);  ///< the folder to open; empty when the input is not of this layout
+  std::unique_ptr<Dataset> (*open)(const fs::path& folder, const OpenOptions& options);
+  fs::path (*find_named)(const fs::path& input) = nullptr;  ///< instead of `find` when the user names the layout
+  bool has_choices = false;                                 ///< it looks at fields and sensors of the options itself
+};
+
+// The first that finds something is taken.
+constexpr Layout kLayouts[] = {
+    {"dicp", "a folder with point_clouds/*.bin", find_dicp, open_dicp, find_dicp_scans},
+    {"hercules", "LiDAR/Aeva/*.bin with PR_GT/ or Radar/, or of 2024 and later", find_hercules, open_hercules,
+     find_aeva_folder},
+    {"helipr", "LiDAR/Aeva/*.bin otherwise", find_helipr, open_helipr, find_aeva_folder},
+    {"boreas", "aeva/*.bin with applanix/ or calib/; frames/*.bin with timestamps.txt and aeva_poses.txt", find_boreas,
+     open_boreas, find_boreas_scans},
+    {"aevascenes", "sequence.json beside pointcloud_compensated/ or pointcloud_raw/", find_aevascenes, open_aevascenes,
+     nullptr, true},
+    // What any data set may hold comes last.
+    {"npz", "*.npz, or <name>.npy with <name>_dop.npy", find_npz, open_npz, nullptr, true},
+    {"pcd", "*.pcd", find_pcd, open_pcd, nullptr, true},
+    {"ply", "*.ply", find_ply, open_ply, nullptr, true},
+    {"bin", "a folder of *.bin whose records are told by their content", find_bin_folder, open_bin_folder},
+};
+
+std::string looked_for() {
+  std::string text;
+  for (const Layout& layout : kLayouts) {
+    text += fmt::format("\n  {}: {}", layout.name, layout.looks_like);
+  }
+  return text;
+}
+
+std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& folder, const OpenOptions& options) {
+  if (!layout.has_choices && !(options.fields.empty() && options.sensors.empty())) {
+    throw UsageError(
+        fmt::format("{} has neither columns with names nor several sensors to choose from; '{}' was asked for",
+                    layout.name, options.fields.empty() ? options.sensors.front() : options.fields.begin()->first));
+  }
+  return layout.open(folder, options);
+}
+
+/// Whether a path is the other one or lies in it.
+bool lies_in(const fs::path& path, const fs::path& folder) {
+  const fs::path below =
+      fs::absolute(path).lexically_normal().lexically_relative(fs::absolute(folder).lexically_normal());
+  return !below.empty() && *below.begin() != "..";
+}
+
+/// What the layout finds. One that finds several folders throws, which counts for the first layout only: within a
+/// recording of another layout they mean nothing.
+fs::path find_or_nothing(const Layout& layout, const fs::path& input, bool is_first) {
+  try {
+    return layout.find(input);
+  } catch (const DataError&) {
+    if (is_first) {
+      throw;
+    }
+    return {};
+  }
+}
+
+/// A layout and the folder to open.
+struct Match {
+  const Layout* layout = nullptr;  ///< null: none
+  fs::path folder;
+};
+
+/// The first layout that finds something. Throws DataError when that lies below the input and another layout finds
+/// something beside it: which one is meant is not for us to choose. What lies in a recording is part of it.
+Match match_any(const fs::path& input) {
+  Match match;
+  for (const Layout& layout : kLayouts) {
+    fs::path found = find_or_nothing(layout, input, match.layout == nullptr);
+    if (found.empty()) {
+      continue;
+    }
+    if (match.layout == nullptr) {
+      match = {&layout, std::move(found)};
+      if (lies_in(input, match.folder)) {
+        return match;
+      }
+    } else if (!lies_in(found, match.folder) && !lies_in(match.folder, found)) {
+      throw NotARecording(fmt::format("{}: holds several recordings, name one of them:\n  {} ({})\n  {} ({})",
+                                      input.string(), match.folder.string(), match.layout->name, found.string(),
+                                      layout.name));
+    }
+  }
+  return match;
+}
+
+/// What the layout of that name finds. Throws UsageError when there is no such layout.
+Match match_named(const fs::path& input, const std::string& format) {
+  for (const Layout& layout : kLayouts) {
+    if (layout.name == format) {
+      fs::path found = (layout.find_named != nullptr ? layout.find_named : layout.find)(input);
+      return found.empty() ? Match{} : Match{&layout, std::move(found)};
+    }
+  }
+  throw UsageError(fmt::format("unknown format '{}'; known are: auto{}", format, looked_for()));
+}
+
+}  // namespace
+
+std::vector<std::string> known_formats() {
+  std::vector<std::string> names;
+  for (const Layout& layout : kLayouts) {
+    names.emplace_back(layout.name);
+  }
+  return names;
+}
+
+std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& options) {
+  std::error_code fault;
+  const fs::file_status status = fs::status(input, fault);
+  if (status.type() == fs::file_type::not_found) {
+    throw DataError(fmt::format("{}: no such file or folder", input.string()));
+  }
+  if (fault) {  // a link to itself, a folder that must not be entered
+    throw DataError(fmt::format("{}: cannot be opened: {}", input.string(), fault.message()));
+  }
+  formats::refuse_irregular(input);
+  const Match match = options.format == "auto" ? match_any(input) : match_named(input, options.format);
+  if (match.layout != nullptr) {
+    return open_as(*match.layout, match.folder, options);
+  }
+  if (const std::string obstacle = known_obstacle(input); !obstacle.empty()) {
+    throw NotARecording(obstacle);
+  }
+  throw NotARecording(
+      fmt::format("{}: not a recording of a known layout. Looked for:{}", input.string(), looked_for()));
+}
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,198 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/field_names.hpp"
+
+#include <algorithm>
+#include <span>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/parse_number.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+using Aliases = std::span<const std::string_view>;
+
+constexpr std::array<std::string_view, 4> kPoints = {"points", "xyz", "pts", "positions"};
+constexpr std::array<std::string_view, 13> kDoppler = {"doppler",    "velocity",     "radial_velocity",
+                                                       "radial_vel", "v_radial",     "doppler_velocity",
+                                                       "dopplers",   "velocity_mps", "vel",
+                                                       "v_r",        "vr",           "rv",
+                                                       "v"};
+constexpr std::array<std::string_view, 9> kTime = {"time_offset_ns", "time_offset_s", "offset_time", "t",
+                                                   "time_stamp",     "timestamp",     "time",        "time_offset",
+                                                   "time_offsets"};
+constexpr std::array<std::string_view, 2> kLineOfSight = {"los", "directions"};
+constexpr std::array<std::string_view, 6> kKeys = {"x", "y", "z", "doppler", "time", "los"};
+
+/// Names that go without saying.
+bool is_obvious(std::string_view name) {
+  return name == "doppler" || name == "time_offset_ns" || name == "time_offset_s";
+}
+
+std::string lower(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
+}
+
+class FieldFinder {
+ public:
+  FieldFinder(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
+              const std::string& origin, const std::vector<std::string>& unusable)
+      : names_(names), wanted_(wanted), origin_(origin), unusable_(unusable) {}
+
+  FieldMap find() {
+    for (const auto& [key, column] : wanted_) {
+      if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+        throw UsageError(fmt::format("field '{}' = '{}': expected one of: {}", key, column, fmt::join(kKeys, ", ")));
+      }
+    }
+    find_point();
+    find_doppler();
+    map_.time = find_column("time", kTime);
+    find_line_of_sight();
+    return std::move(map_);
+  }
+
+ private:
+  /// The name in the file that is, but for its case, the one given.
+  [[nodiscard]] const std::string* same_as(std::string_view name) const {
+    const auto exact = std::find(names_.begin(), names_.end(), name);
+    const auto found = exact != names_.end() ? exact : std::find_if(names_.begin(), names_.end(), [&](const auto& own) {
+      return lower(own) == lower(name);
+    });
+    return found == names_.end() ? nullptr : &*found;
+  }
+
+  [[nodiscard]] std::string there_are() const {
+    std::string text = names_.empty() ? "there are none" : fmt::format("there are: {}", fmt::join(names_, ", "));
+    for (const std::string& reason : unusable_) {
+      text += "; " + reason;
+    }
+    return text;
+  }
+
+  /// The column that the user names, for instance "range" or "points[3]".
+  [[nodiscard]] std::optional<FieldColumn> wanted_column(const std::string& key) const {
+    const auto asked = wanted_.find(key);
+    if (asked == wanted_.end()) {
+      return std::nullopt;
+    }
+    const std::string& text = asked->second;
+    if (const std::string* name = same_as(text)) {
+      return FieldColumn{*name, 0, true};
+    }
+    const std::size_t bracket = text.rfind('[');
+    if (bracket != std::string::npos && text.back() == ']') {
+      const std::string* name = same_as(text.substr(0, bracket));
+      const std::optional<std::size_t> column =
+          parse_number<std::size_t>(std::string_view(text).substr(bracket + 1, text.size() - bracket - 2));
+      if (name != nullptr && column) {
+        return FieldColumn{*name, *column, false};
+      }
+    }
+    throw DataError(fmt::format("{}: no column '{}' for {}; {}", origin_, text, key, there_are()));
+  }
+
+  /// The first of the aliases that is there, told where it is not the obvious one.
+  std::optional<FieldColumn> find_column(const std::string& key, Aliases aliases) {
+    if (std::optional<FieldColumn> asked = wanted_column(key)) {
+      return asked;
+    }
+    std::vector<std::string> found;
+    for (const std::string_view alias : aliases) {
+      if (const std::string* name = same_as(alias)) {
+        found.push_back(*name);
+      }
+    }
+    if (found.empty()) {
+      return std::nullopt;
+    }
+    if (!is_obvious(lower(found.front())) || found.size() > 1) {
+      std::string sentence = fmt::format("column '{}' is taken for {}", found.front(), key);
+      if (found.size() > 1) {
+        sentence += fmt::format("; there is also: {}", fmt::join(std::span(found).subspan(1), ", "));
+      }
+      map_.assumptions.push_back(sentence);
+    }
+    return FieldColumn{found.front(), 0, true};
+  }
+
+  void find_point() {
+    constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
+    const std::string* array = nullptr;
+    for (std::size_t k = 0; k < kPoints.size() && array == nullptr; ++k) {
+      array = same_as(kPoints[k]);
+    }
+    for (std::size_t k = 0; k < kAxes.size(); ++k) {
+      const std::string* const axis = same_as(kAxes[k]);
+      if (const std::optional<FieldColumn> asked = wanted_column(std::string(kAxes[k]))) {
+        map_.point[k] = *asked;
+      } else if (axis != nullptr) {
+        map_.point[k] = {*axis, 0, true};
+      } else if (array != nullptr) {
+        map_.point[k] = {*array, k, false};
+      } else {
+        throw DataError(fmt::format("{}: no column for {}, expected x, y and z, or one of {} with all three; {}",
+                                    origin_, kAxes[k], fmt::join(kPoints, ", "), there_are()));
+      }
+    }
+  }
+
+  void find_doppler() {
+    const std::optional<FieldColumn> found = find_column("doppler", kDoppler);
+    if (!found) {
+      throw DataError(fmt::format("{}: no column of Doppler velocities, expected one of: {}; {}", origin_,
+                                  fmt::join(kDoppler, ", "), there_are()));
+    }
+    map_.doppler = *found;
+  }
+
+  void find_line_of_sight() {
+    if (const std::optional<FieldColumn> asked = wanted_column("los")) {
+      map_.line_of_sight = {{{asked->array, 0, false}, {asked->array, 1, false}, {asked->array, 2, false}}};
+      return;
+    }
+    for (const std::string_view alias : kLineOfSight) {
+      if (const std::string* name = same_as(alias)) {
+        map_.line_of_sight = {{{*name, 0, false}, {*name, 1, false}, {*name, 2, false}}};
+        return;
+      }
+    }
+    const std::string* const x = same_as("los_x");
+    const std::string* const y = same_as("los_y");
+    const std::string* const z = same_as("los_z");
+    if (x != nullptr && y != nullptr && z != nullptr) {
+      map_.line_of_sight = {{{*x, 0, true}, {*y, 0, true}, {*z, 0, true}}};
+    }
+  }
+
+  const std::vector<std::string>& names_;
+  const std::map<std::string, std::string>& wanted_;
+  const std::string& origin_;
+  const std::vector<std::string>& unusable_;
+  FieldMap map_;
+};
+
+}  // namespace
+
+bool FieldMap::uses(const std::string& array) const {
+  bool used = array == doppler.array || (time && array == time->array);
+  for (std::size_t k = 0; k < point.size(); ++k) {
+    used = used || array == point[k].array || (line_of_sight && array == (*line_of_sight)[k].array);
+  }
+  return used;
+}
+
+FieldMap map_fields(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
+                    const std::string& origin, const std::vector<std::string>& unusable) {
+  return FieldFinder(names, wanted, origin, unusable).find();
+}
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,93 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/field_names.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+using Names = std::vector<std::string>;
+using Wanted = std::map<std::string, std::string>;
+
+FieldMap map(const Names& names, const Wanted& wanted = {}) { return map_fields(names, wanted, "scan.pcd"); }
+
+std::string message(const Names& names, const Wanted& wanted = {}) {
+  try {
+    map(names, wanted);
+  } catch (const DataError& error) {
+    return error.what();
+  }
+  return "no error";
+}
+
+TEST(FieldNames, ObviousNamesGoWithoutSaying) {
+  const FieldMap fields = map({"z", "y", "x", "intensity", "time_offset_ns", "doppler"});
+  EXPECT_EQ(fields.point[0], (FieldColumn{"x", 0, true}));
+  EXPECT_EQ(fields.point[2], (FieldColumn{"z", 0, true}));
+  EXPECT_EQ(fields.doppler.array, "doppler");
+  EXPECT_EQ(fields.time->array, "time_offset_ns");
+  EXPECT_FALSE(fields.line_of_sight);
+  EXPECT_TRUE(fields.assumptions.empty()) << fields.assumptions[0];
+}
+
+TEST(FieldNames, ArraysOfVectors) {
+  const FieldMap fields = map({"points", "doppler", "los", "time_offsets"});
+  EXPECT_EQ(fields.point[1], (FieldColumn{"points", 1, false}));
+  EXPECT_EQ((*fields.line_of_sight)[2], (FieldColumn{"los", 2, false}));
+  EXPECT_EQ(fields.time->array, "time_offsets");
+  EXPECT_EQ(map({"xyz", "v"}).point[0].array, "xyz");
+  EXPECT_EQ((*map({"x", "y", "z", "v", "los_x", "los_y", "los_z"}).line_of_sight)[1].array, "los_y");
+}
+
+TEST(FieldNames, TheFirstOfTheListIsTakenAndTold) {
+  // In the order of the list, not of the file.
+  const FieldMap fields = map({"x", "y", "z", "vr", "Radial_Velocity", "vel"});
+  EXPECT_EQ(fields.doppler.array, "Radial_Velocity");
+  ASSERT_EQ(fields.assumptions.size(), 1u);
+  EXPECT_EQ(fields.assumptions[0], "column 'Radial_Velocity' is taken for doppler; there is also: vel, vr");
+  EXPECT_EQ(map({"X", "Y", "Z", "VELOCITY"}).doppler.array, "VELOCITY");
+  EXPECT_EQ(map({"x", "y", "z", "v", "v_r"}).doppler.array, "v_r");
+}
+
+TEST(FieldNames, WhatOnlyLooksLikeDopplerIsNotTaken) {
+  const std::string text = message({"x", "y", "z", "v_r_compensated", "vx", "velocity0", "intensity", "h"});
+  EXPECT_NE(text.find("scan.pcd: no column of Doppler velocities"), std::string::npos) << text;
+  EXPECT_NE(text.find("there are: x, y, z, v_r_compensated, vx, velocity0, intensity, h"), std::string::npos) << text;
+}
+
+TEST(FieldNames, MissingCoordinatesAreNamed) {
+  EXPECT_NE(message({"x", "z", "doppler"}).find("no column for y"), std::string::npos);
+  EXPECT_NE(message({}).find("no column for x"), std::string::npos);
+}
+
+TEST(FieldNames, TheUserGoesFirst) {
+  const FieldMap fields =
+      map({"x", "y", "z", "doppler", "h", "stamp"}, {{"doppler", "h"}, {"time", "stamp"}, {"x", "y"}, {"y", "X"}});
+  EXPECT_EQ(fields.doppler.array, "h");
+  EXPECT_EQ(fields.time->array, "stamp");
+  EXPECT_EQ(fields.point[0].array, "y");
+  EXPECT_EQ(fields.point[1].array, "x");
+  EXPECT_TRUE(fields.assumptions.empty());
+  EXPECT_EQ(map({"points"}, {{"doppler", "points[3]"}}).doppler, (FieldColumn{"points", 3, false}));
+  EXPECT_EQ((*map({"points", "v", "rays"}, {{"los", "rays"}}).line_of_sight)[1].array, "rays");
+}
+
+TEST(FieldNames, WrongWishesAreErrors) {
+  EXPECT_THROW(map({"x", "y", "z", "v"}, {{"dopler", "v"}}), UsageError);
+  const std::string text = message({"x", "y", "z", "v"}, {{"doppler", "speed"}});
+  EXPECT_NE(text.find("no column 'speed' for doppler; there are: x, y, z, v"), std::string::npos) << text;
+  EXPECT_NE(message({"points", "v"}, {{"doppler", "points[x]"}}).find("'points[x]'"), std::string::npos);
+  EXPECT_NE(message({"points", "v"}, {{"doppler", "pints[0]"}}).find("'pints[0]'"), std::string::npos);
+}
+
+TEST(FieldNames, KnowsWhatIsUsed) {
+  const FieldMap fields = map({"points", "doppler", "los", "t", "line"});
+  EXPECT_TRUE(fields.uses("points") && fields.uses("doppler") && fields.uses("los") && fields.uses("t"));
+  EXPECT_FALSE(fields.uses("line"));
+}
+
+}  // namespace
+}  // namespace dynamic_icp::datasets

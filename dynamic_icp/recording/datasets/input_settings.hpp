@@ -1,0 +1,38 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "dynamic_icp/recording/datasets/correction.hpp"
+#include "dynamic_icp/recording/datasets/open_options.hpp"
+
+namespace dynamic_icp::datasets {
+
+/// All that a user may say about an input. As names and texts it goes from the command line to run.json, to the runs of
+/// a benchmark, and back when figures open the recording again.
+struct InputSettings {
+  OpenOptions open;
+  Correction correction;
+  bool doppler_sign_is_said = false;  ///< which it is stands in the correction; what was said is not refused
+};
+
+/// Takes over one of them:
+///   format NAME, field.NAME COLUMN, lidar.NUMBER NAME, period S, doppler-sign away|towards,
+///   doppler-kind relative|compensated, doppler-scale F, point-scale F, time-scale F,
+///   columns: x, y, z and doppler with commas, in the order in which they are stored.
+/// Throws UsageError naming the setting, its value and what was expected.
+void set(InputSettings& settings, const std::string& name, const std::string& text);
+
+/// Those that were said and are not the default, so that `set` makes the same settings of them; but not the format.
+std::vector<std::pair<std::string, std::string>> texts(const InputSettings& settings);
+
+/// `open_dataset`, then `corrected`; throws as they do.
+std::unique_ptr<Dataset> open_input(const std::filesystem::path& input, const InputSettings& settings);
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,77 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+using Texts = std::vector<std::pair<std::string, std::string>>;
+
+TEST(InputSettings, NothingSaidIsNoText) { EXPECT_EQ(texts({}), Texts{}); }
+
+TEST(InputSettings, WhatWasSaidComesBackFromItsTexts) {
+  const Texts said = {{"field.doppler", "v_r"},
+                      {"field.x", "px"},
+                      {"lidar.1", "front"},
+                      {"lidar.2", "rear"},
+                      {"period", "0.05"},
+                      {"doppler-sign", "towards"},
+                      {"doppler-kind", "compensated"},
+                      {"doppler-scale", "0.001"},
+                      {"point-scale", "0.1"},
+                      {"time-scale", "0.8333333333333334"},
+                      {"columns", "doppler,x,y,z"}};
+  InputSettings settings;
+  for (const auto& [name, text] : said) {
+    set(settings, name, text);
+  }
+  EXPECT_EQ(settings.open.fields.at("x"), "px");
+  EXPECT_EQ(settings.open.sensors, (std::vector<std::string>{"front", "rear"}));
+  EXPECT_EQ(settings.open.period_s, 0.05);
+  EXPECT_TRUE(settings.correction.doppler_is_towards);
+  EXPECT_EQ(settings.correction.doppler_kind, DopplerKind::kCompensated);
+  EXPECT_EQ(settings.correction.time_scale, 0.8333333333333334);
+  EXPECT_EQ(settings.correction.columns, (std::array{1, 2, 3, 0})) << "x is the second of the stored columns";
+  EXPECT_EQ(texts(settings), said);
+}
+
+TEST(InputSettings, TheUsualSignCountsAsSaid) {
+  InputSettings settings;
+  set(settings, "doppler-sign", "away");
+  EXPECT_TRUE(settings.doppler_sign_is_said);
+  EXPECT_EQ(settings.correction, Correction{});
+  EXPECT_EQ(texts(settings), (Texts{{"doppler-sign", "away"}}));
+}
+
+TEST(InputSettings, WrongTextsAreNamed) {
+  const Texts wrong = {{"period", "0"},
+                       {"period", "nan"},
+                       {"period", "ten"},
+                       {"doppler-sign", "up"},
+                       {"doppler-kind", "raw"},
+                       {"doppler-scale", "0"},
+                       {"doppler-scale", "-1"},
+                       {"point-scale", "inf"},
+                       {"time-scale", "1e30"},
+                       {"columns", "x,y,z"},
+                       {"columns", "x,y,z,speed"},
+                       {"columns", "x,x,z,doppler"},
+                       {"columns", "x,y,z,doppler,x"},
+                       {"colour", "red"}};
+  for (const auto& [name, text] : wrong) {
+    InputSettings settings;
+    try {
+      set(settings, name, text);
+      FAIL() << name << " " << text;
+    } catch (const UsageError& error) {
+      EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,34 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamic_icp/recording/datasets/dataset.hpp"
+#include "dynamic_icp/recording/datasets/scan_stamps.hpp"
+#include "dynamic_icp/recording/datasets/truth.hpp"
+#include "dynamic_icp/recording/formats/point_records.hpp"
+
+namespace dynamic_icp::datasets {
+
+/// A recording of one file of records per scan, found and looked through by the reader of its layout.
+struct RecordRecording {
+  std::string_view format;
+  std::vector<std::filesystem::path> files;  ///< at least one
+  std::vector<Stamp> stamps;                 ///< of each
+  std::function<const formats::RecordLayout&(const std::filesystem::path& file, Stamp stamp)> layout_of;
+  Truth truth;
+  std::optional<Eigen::Isometry3d> T_vehicle_sensor;
+  std::vector<std::string> assumptions;
+};
+
+/// The recording as a dataset. Its scans throw DataError for numbers that were never measured (record_guess.hpp).
+std::unique_ptr<Dataset> make_record_dataset(RecordRecording recording);
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,125 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/diagnosis/column_scores.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/recording/datasets/correction.hpp"
+#include "dynamic_icp/recording/diagnosis/scan_look.hpp"
+
+namespace dynamic_icp::diagnosis {
+namespace {
+
+constexpr std::size_t kMostPoints = 30000;
+constexpr double kFarthest_m = 1000.0;
+constexpr double kFarthestInCentimetres = 3e4;  // beyond, they are millimetres
+constexpr double kNearest_m = 0.5;
+constexpr double kFastest_mps = 150.0;
+constexpr double kFastestInCentimetres = 3000.0;
+constexpr double kMostShare = 0.95;
+
+// A column is called the Doppler only where it is explained this well, and the one in its place this much worse.
+constexpr double kStaticShare = 0.3;  // more than half of the points may be traffic
+constexpr double kGoodResidual_mps = 0.15;
+constexpr double kTimesWorse = 2.5;
+
+/// A ray that met nothing, as some sensors write it: zeros fit to any velocity, in whatever order the columns are.
+bool is_void(const Eigen::Vector3d& point, double doppler) {
+  return (point.array() == 0.0).count() + (doppler == 0.0 ? 1 : 0) >= 3;
+}
+
+/// Points evenly over the scan: a few thousand tell.
+RawScan thinned(const RawScan& scan) {
+  RawScan few;
+  few.stamp = scan.stamp;
+  const std::size_t step = scan.points.size() / kMostPoints + 1;
+  for (std::size_t i = 0; i < scan.points.size(); i += step) {
+    if (!is_void(scan.points[i], scan.doppler[i])) {
+      few.points.push_back(scan.points[i]);
+      few.doppler.push_back(scan.doppler[i]);
+    }
+  }
+  return few;
+}
+
+double static_residual(const RawScan& raw, const Workers& workers) {
+  const Scan scan = Scan::from_raw(raw);
+  const ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, {}, workers);
+  std::vector<double> residuals = ego_motion::compensated_doppler(scan, ego.velocity_sensor);
+  for (double& residual : residuals) {
+    residual = std::abs(residual);
+  }
+  return quantile(std::move(residuals), kStaticShare);
+}
+
+}  // namespace
+
+UnitGuess guess_units(std::span<const RawScan> scans) {
+  std::vector<double> far;
+  std::vector<double> fast;
+  for (const RawScan& raw : scans) {
+    const Scan scan = Scan::from_raw(thinned(raw));
+    std::vector<double> ranges;
+    std::vector<double> speeds;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      ranges.push_back(scan.points()[i].norm());
+      speeds.push_back(std::abs(scan.doppler()[i]));
+    }
+    if (!ranges.empty()) {
+      far.push_back(quantile(std::move(ranges), kMostShare));
+      fast.push_back(quantile(std::move(speeds), kMostShare));
+    }
+  }
+  UnitGuess units;
+  const double farthest = quantile(std::move(far), 0.5);
+  const double fastest = quantile(std::move(fast), 0.5);
+  if (farthest > kFarthest_m) {
+    units.points = farthest > kFarthestInCentimetres ? 0.001 : 0.01;
+  } else if (farthest > 0.0 && farthest < kNearest_m) {
+    units.points = 1000.0;
+  }
+  if (fastest > kFastest_mps) {
+    units.doppler = fastest > kFastestInCentimetres ? 0.001 : 0.01;
+  }
+  return units;
+}
+
+ColumnScores score_columns(std::span<const RawScan> scans, const Workers& workers) {
+  ColumnScores scores;
+  for (int column = 0; column < 4; ++column) {
+    std::vector<double> residuals;
+    for (const RawScan& scan : scans) {
+      const RawScan few = prepared(thinned(scan), column, {});
+      // Each order of columns has its own guess: what is taken for the Doppler may be millimetres.
+      const UnitGuess units = guess_units(std::span(&few, 1));
+      residuals.push_back(static_residual(prepared(few, 3, units), workers));
+    }
+    scores.residual.at(static_cast<std::size_t>(column)) = quantile(std::move(residuals), 0.5);
+  }
+  const auto best = std::min_element(scores.residual.begin(), scores.residual.end());
+  if (scores.residual[3] > kTimesWorse * *best) {
+    scores.likely_doppler = static_cast<int>(best - scores.residual.begin());
+    scores.doppler = *best < kGoodResidual_mps ? scores.likely_doppler : 3;
+  }
+  return scores;
+}
+
+std::array<int, 4> with_doppler_last(int doppler) {
+  std::array<int, 4> order = {0, 1, 2, 3};
+  std::stable_partition(order.begin(), order.end(), [&](int column) { return column != doppler; });
+  return order;
+}
+
+RawScan prepared(RawScan scan, int doppler, const UnitGuess& units) {
+  datasets::Correction correction;
+  correction.columns = with_doppler_last(doppler);
+  correction.point_scale = units.points;
+  correction.doppler_scale = units.doppler;
+  return datasets::corrected(std::move(scan), correction);
+}
+
+}  // namespace dynamic_icp::diagnosis

@@ -1,0 +1,155 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <string_view>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/questions.hpp"
+
+namespace dynamic_icp::diagnosis {
+namespace {
+
+constexpr double kClearlyFlat = 0.5;  // spread of the flat axis over that of the z axis
+constexpr double kFlat = 0.35;
+constexpr double kLooksAhead = 0.4;  // length of the mean line of sight
+constexpr double kAlongAxis = 0.9;   // cosine
+constexpr double kMoving_mps = 1.0;
+constexpr double kUnexplained_mps = 0.25;
+
+struct View {
+  Eigen::Vector3d spread = Eigen::Vector3d::Zero();
+  Eigen::Vector3d looks = Eigen::Vector3d::Zero();
+  Eigen::Vector3d moves = Eigen::Vector3d::Zero();
+};
+
+/// Means over the looks, with the remaining columns as x, y, z in their order.
+View mean_view(const Evidence& evidence) {
+  View view;
+  const double count = std::max(1.0, static_cast<double>(evidence.looks.size()));
+  for (const ScanLook& look : evidence.looks) {
+    view.spread += look.look_spread / count;
+    view.looks += look.look_direction / count;
+    if (look.has_velocity()) {
+      view.moves += look.ego.velocity_sensor / count;
+    }
+  }
+  return view;
+}
+
+/// The axis that is up: z, but where another one is clearly flatter than z.
+int up_axis(const View& view) {
+  int flattest = 2;
+  view.spread.minCoeff(&flattest);
+  const bool is_clear = view.spread[flattest] < kFlat && view.spread[flattest] < kClearlyFlat * view.spread[2];
+  return is_clear ? flattest : 2;
+}
+
+/// The axis along which the sensor both looks and moves; nothing where there is none.
+std::optional<int> forward_axis(const View& view, int up) {
+  if (view.looks.norm() < kLooksAhead || view.moves.norm() < kMoving_mps) {
+    return std::nullopt;
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    if (axis != up && std::abs(view.looks.normalized()[axis]) > kAlongAxis &&
+        std::abs(view.moves.normalized()[axis]) > kAlongAxis) {
+      return axis;
+    }
+  }
+  return std::nullopt;
+}
+
+/// Whether another one may be named to be the Doppler.
+bool has_named_columns(const datasets::Dataset& dataset) {
+  return dataset.format() == "npz" || dataset.format() == "pcd" || dataset.format() == "ply";
+}
+
+std::string stored_order(const Evidence& evidence, int up, std::optional<int> forward) {
+  std::array<std::string_view, 3> names = {"", "", ""};
+  names.at(static_cast<std::size_t>(up)) = "z";
+  if (forward) {
+    names.at(static_cast<std::size_t>(*forward)) = "x";
+  }
+  for (std::string_view& name : names) {
+    if (name.empty()) {
+      const bool has_x = std::find(names.begin(), names.end(), "x") != names.end();
+      name = has_x ? "y" : "x";
+    }
+  }
+  const std::array<int, 4> order = with_doppler_last(evidence.columns.doppler);
+  std::array<std::string_view, 4> stored;
+  const auto stored_column = [&](std::size_t k) {
+    return static_cast<std::size_t>(evidence.applied.columns.at(static_cast<std::size_t>(order[k])));
+  };
+  for (std::size_t k = 0; k < 3; ++k) {
+    stored.at(stored_column(k)) = names[k];
+  }
+  stored.at(stored_column(3)) = "doppler";
+  return fmt::format("{}", fmt::join(stored, ","));
+}
+
+}  // namespace
+
+Finding columns(const Evidence& evidence) {
+  Finding finding{Question::kColumns, Verdict::kOk, ""};
+  const View view = mean_view(evidence);
+  const int up = up_axis(view);
+  const std::optional<int> forward = forward_axis(view, up);
+  const ColumnScores& scores = evidence.columns;
+  finding.evidence = {{"residual_of_column_1_mps", scores.residual[0]},
+                      {"residual_of_column_2_mps", scores.residual[1]},
+                      {"residual_of_column_3_mps", scores.residual[2]},
+                      {"residual_of_column_4_mps", scores.residual[3]},
+                      {"spread_x", view.spread.x()},
+                      {"spread_y", view.spread.y()},
+                      {"spread_z", view.spread.z()}};
+  const std::string order = stored_order(evidence, up, forward);
+  if (evidence.looks.empty()) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = "there are no scans";
+  } else if (scores.doppler != 3) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = fmt::format(
+        "column {} is the Doppler: a velocity explains it to {:.2f} m/s, the last column only to {:.2f}",
+        scores.doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.doppler)), scores.residual[3]);
+    finding.fix = "--columns " + order;
+  } else if (const std::optional<NoDoppler> none = no_doppler(evidence); none && !none->is_zero) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = "the column taken for the Doppler is none: " + none->sentence;
+    finding.fix = has_named_columns(*evidence.dataset) ? "--field doppler=COLUMN" : "";
+    finding.evidence.insert(finding.evidence.end(), none->evidence.begin(), none->evidence.end());
+  } else if (scores.likely_doppler != 3) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence = fmt::format(
+        "column {} may be the Doppler: a velocity explains it to {:.2f} m/s and the last column to {:.2f}, neither "
+        "well; "
+        "if so, --columns says what is where",
+        scores.likely_doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.likely_doppler)),
+        scores.residual[3]);
+  } else if (up != 2) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence =
+        fmt::format("column {} is up and down: the sensor sees least along it; or the sensor lies on its side", up + 1);
+    finding.fix = "--columns " + order;
+  } else if (forward && *forward == 1) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence =
+        "the sensor looks and moves along y: x and y may have changed places, or the axes are not x ahead, y left";
+    finding.fix = "--columns " + order;
+  } else if (scores.residual[3] > kUnexplained_mps) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = fmt::format(
+        "a velocity explains no column well, the last one to {:.2f} m/s: most of what is seen moves, or the columns "
+        "are "
+        "in another order",
+        scores.residual[3]);
+  } else {
+    finding.sentence = "x, y, z, Doppler";
+  }
+  return finding;
+}
+
+}  // namespace dynamic_icp::diagnosis

@@ -1,0 +1,87 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <optional>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
+#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/questions.hpp"
+
+namespace dynamic_icp::diagnosis {
+namespace {
+
+constexpr double kStill_mps = 0.5;
+constexpr double kMoves_mps = 1.0;
+constexpr double kShareLeft = 0.25;
+
+bool expects_compensated(const Evidence& evidence) {
+  return evidence.dataset->doppler_kind() == DopplerKind::kCompensated;
+}
+
+Finding relative(const Evidence& evidence, double speed) {
+  Finding finding{Question::kDopplerKind, Verdict::kOk, ""};
+  finding.sentence = fmt::format("relative: the static scene moves by {:.1f} m/s", speed);
+  if (expects_compensated(evidence)) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence += ", but the Doppler is said to be compensated";
+    finding.fix = "--doppler-kind relative";
+  }
+  return finding;
+}
+
+Finding compensated(const Evidence& evidence, const Comparison& reference) {
+  Finding finding{Question::kDopplerKind, Verdict::kOk, ""};
+  finding.sentence = fmt::format("compensated: the static scene stands still while the sensor moves at {:.1f} m/s {}",
+                                 reference.reference_speed_mps, reference_name(evidence, reference));
+  if (!expects_compensated(evidence)) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence += "; its own motion was taken out of the Doppler already";
+    finding.fix = "--doppler-kind compensated";
+  }
+  return finding;
+}
+
+/// Where nothing is measured nothing moves by it: as good as compensated, as long as no point is asked.
+Finding without_doppler(const Evidence& evidence, const NoDoppler& none) {
+  Finding finding{Question::kDopplerKind, Verdict::kWrong, "there is no Doppler: " + none.sentence};
+  if (none.may_stand) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = none.sentence + ": it stands still, or there is no Doppler";
+  } else if (expects_compensated(evidence) && none.is_zero) {
+    finding.verdict = Verdict::kSuspicious;
+  } else if (none.is_zero) {
+    finding.fix = "--doppler-kind compensated";
+  }
+  finding.evidence = none.evidence;
+  return finding;
+}
+
+}  // namespace
+
+Finding doppler_kind(const Evidence& evidence) {
+  const double speed = evidence.doppler_speed_mps().value_or(0.0);
+  const Comparison* reference = evidence.reference();
+  Finding finding{Question::kDopplerKind, Verdict::kCannotTell, ""};
+  if (const std::optional<NoDoppler> none = no_doppler(evidence)) {
+    return without_doppler(evidence, *none);
+  }
+  if (speed > kMoves_mps) {
+    finding = relative(evidence, speed);
+  } else if (reference != nullptr && speed < kStill_mps && speed < kShareLeft * reference->reference_speed_mps) {
+    finding = compensated(evidence, *reference);
+  } else {
+    finding.sentence = fmt::format(
+        "{} is assumed: {}", expects_compensated(evidence) ? "compensated" : "relative",
+        reference == nullptr ? why_unknown(evidence)
+                             : fmt::format("the static scene moves by {:.1f} m/s, the sensor at {:.1f} m/s {}", speed,
+                                           reference->reference_speed_mps, reference_name(evidence, *reference)));
+  }
+  finding.evidence = {{"doppler_speed_mps", speed}};
+  if (reference != nullptr) {
+    finding.evidence.emplace_back("reference_speed_mps", reference->reference_speed_mps);
+  }
+  return finding;
+}
+
+}  // namespace dynamic_icp::diagnosis

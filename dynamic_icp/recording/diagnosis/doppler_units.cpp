@@ -1,0 +1,48 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <fmt/format.h>
+
+#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
+#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/questions.hpp"
+#include "dynamic_icp/recording/diagnosis/speed_ratio.hpp"
+
+namespace dynamic_icp::diagnosis {
+
+Finding doppler_units(const Evidence& evidence) {
+  Finding finding{Question::kDopplerUnits, Verdict::kOk, ""};
+  std::vector<double> fast;
+  for (const ScanLook& look : evidence.looks) {
+    fast.push_back(look.fast_mps / evidence.units.doppler);
+  }
+  const double as_stored = quantile(std::move(fast), 0.5);
+  finding.evidence = {{"doppler_95_percent", as_stored}};
+  const std::optional<SpeedRatio> speed = speed_ratio(evidence);
+  if (speed) {
+    finding.evidence.emplace_back("ratio", speed->ratio);
+  }
+  if (const std::optional<NoDoppler> none = no_doppler(evidence); none && !none->is_zero) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = "the last column is no Doppler";
+  } else if (evidence.looks.empty() || as_stored == 0.0) {
+    finding.verdict = evidence.looks.empty() ? Verdict::kCannotTell : Verdict::kSuspicious;
+    finding.sentence = evidence.looks.empty() ? "there are no scans" : "nearly all Doppler values are zero";
+  } else if (speed && !speed->unit.empty()) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = fmt::format("the Doppler is {:.4g} times the speed {}: it is in {}", speed->ratio,
+                                   reference_name(evidence, *speed->reference), speed->unit);
+    finding.fix = fmt::format("--doppler-scale {:.6g}", evidence.applied.doppler_scale / speed->unit_factor);
+  } else if (evidence.units.doppler != 1.0) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = fmt::format("Doppler of {:.0f} cannot be m/s", as_stored);
+    finding.fix = fmt::format("--doppler-scale {:g}", evidence.applied.doppler_scale * evidence.units.doppler);
+  } else if (!speed) {
+    finding.verdict = Verdict::kCannotTell;
+    finding.sentence = fmt::format("m/s are assumed: 95 % of the points are slower than {:.1f}", as_stored);
+  } else {
+    finding.sentence = fmt::format("m/s: 95 % of the points are slower than {:.1f} m/s", as_stored);
+  }
+  return finding;
+}
+
+}  // namespace dynamic_icp::diagnosis

@@ -1,0 +1,124 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/diagnosis/scan_look.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+
+namespace dynamic_icp::diagnosis {
+namespace {
+
+constexpr double kFitting_mps = 0.5;
+constexpr double kStillDeviations = 4.0;
+constexpr double kLeastStill_mps = 0.3;
+constexpr double kLeastStaticShare = 0.2;
+constexpr double kMostDeviation_mps = 1.0;
+constexpr double kMostShare = 0.95;
+
+void look_at_times(const RawScan& raw, ScanLook& look) {
+  bool any = false;
+  for (const double time : raw.times) {
+    if (std::isfinite(time)) {
+      look.first_time_s = any ? std::min(look.first_time_s, time) : time;
+      look.last_time_s = any ? std::max(look.last_time_s, time) : time;
+      any = true;
+    }
+  }
+  look.has_times = any;
+}
+
+void look_at_columns(const Scan& scan, ScanLook& look) {
+  std::vector<double> ranges;
+  std::vector<double> speeds;
+  Eigen::Vector3d squares = Eigen::Vector3d::Zero();
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    ranges.push_back(scan.points()[i].norm());
+    speeds.push_back(std::abs(scan.doppler()[i]));
+    look.look_direction += scan.directions()[i];
+    squares += scan.directions()[i].cwiseAbs2();
+  }
+  const double count = std::max(1.0, static_cast<double>(scan.size()));
+  look.look_direction /= count;
+  look.look_spread = (squares / count).cwiseSqrt();
+  look.far_m = quantile(std::move(ranges), kMostShare);
+  look.fast_mps = quantile(std::move(speeds), kMostShare);
+}
+
+DopplerValues doppler_values(const std::vector<double>& doppler, const std::vector<double>& residuals) {
+  DopplerValues values;
+  values.count = doppler.size();
+  for (const double value : doppler) {
+    values.negative += value < 0.0 ? 1 : 0;
+    values.positive += value > 0.0 ? 1 : 0;
+  }
+  values.median = quantile(doppler, 0.5);
+  values.scatter = scatter_of(doppler);
+  values.scatter_left = scatter_of(residuals);
+  return values;
+}
+
+}  // namespace
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto at = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(at);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+double scatter_of(std::vector<double> values) {
+  const double median = quantile(values, 0.5);
+  for (double& value : values) {
+    value = std::abs(value - median);
+  }
+  return quantile(std::move(values), 0.5);
+}
+
+double median_error(const std::vector<double>& values) {
+  constexpr double kErrorPerMad = 1.4826 * 1.2533;  // of the median of normal numbers, times the root of their count
+  return values.empty() ? 0.0 : kErrorPerMad * scatter_of(values) / std::sqrt(static_cast<double>(values.size()));
+}
+
+bool ScanLook::has_velocity() const {
+  const bool found = ego.status == ego_motion::EgoVelocityStatus::kConverged ||
+                     ego.status == ego_motion::EgoVelocityStatus::kIterationLimit;
+  return found && static_share >= kLeastStaticShare && ego.covariance.trace() < kMostDeviation_mps * kMostDeviation_mps;
+}
+
+ScanLook look_at(std::size_t index, const RawScan& raw, const Workers& workers, Scan* still) {
+  ScanLook look;
+  look.index = index;
+  look.stamp = raw.stamp;
+  look.points = raw.points.size();
+  look_at_times(raw, look);
+  Scan scan = Scan::from_raw(raw, {}, workers, &look.dropped);
+  look_at_columns(scan, look);
+  look.ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, {}, workers);
+  std::vector<double> residuals;
+  ego_motion::compensated_doppler(scan, look.ego, workers, residuals);
+  look.values = doppler_values(scan.doppler(), residuals);
+  std::vector<std::uint32_t> fitting;
+  std::size_t near = 0;
+  const double width = std::max(kLeastStill_mps, kStillDeviations * look.ego.inlier_rms_mps);
+  for (std::uint32_t row = 0; row < residuals.size(); ++row) {
+    residuals[row] = std::abs(residuals[row]);
+    near += residuals[row] < kFitting_mps ? 1 : 0;
+    if (residuals[row] < width) {
+      fitting.push_back(row);
+    }
+  }
+  look.static_share = residuals.empty() ? 0.0 : static_cast<double>(near) / static_cast<double>(residuals.size());
+  look.median_residual_mps = quantile(std::move(residuals), 0.5);
+  if (still != nullptr) {
+    *still = look.has_velocity() ? scan.select(fitting) : std::move(scan);
+  }
+  return look;
+}
+
+}  // namespace dynamic_icp::diagnosis

@@ -1,0 +1,61 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
+
+namespace dynamic_icp::diagnosis {
+
+/// The Doppler of the usable points of a scan.
+struct DopplerValues {
+  std::size_t count = 0;
+  std::size_t negative = 0;
+  std::size_t positive = 0;  ///< the others are exactly zero
+  double median = 0.0;
+  double scatter = 0.0;       ///< median absolute deviation from the median
+  double scatter_left = 0.0;  ///< the same after the velocity of the sensor was taken out
+};
+
+/// What one scan shows by itself.
+struct ScanLook {
+  std::size_t index = 0;
+  Stamp stamp;
+  std::size_t points = 0;
+  Scan::Dropped dropped;
+  bool has_times = false;
+  double first_time_s = 0.0;  ///< of the finite ones
+  double last_time_s = 0.0;
+  double far_m = 0.0;     ///< 95 % of the points are nearer
+  double fast_mps = 0.0;  ///< 95 % of the Doppler are slower
+  DopplerValues values;
+  Eigen::Vector3d look_direction = Eigen::Vector3d::Zero();  ///< mean line of sight
+  Eigen::Vector3d look_spread = Eigen::Vector3d::Zero();     ///< root mean square of each axis of the lines of sight
+  ego_motion::EgoVelocity ego;                               ///< by the Doppler, with its bias
+  double static_share = 0.0;                                 ///< of the points that fit to this velocity within 0.5 m/s
+  double median_residual_mps = 0.0;
+
+  /// Whether the velocity is one: enough points agree and all directions are known.
+  [[nodiscard]] bool has_velocity() const;
+};
+
+/// Looks at a scan; `still` takes its points that fit to the velocity, or all of them where no velocity fits.
+ScanLook look_at(std::size_t index, const RawScan& raw, const Workers& workers, Scan* still = nullptr);
+
+/// The value below which a share of the values lies; 0 of none.
+double quantile(std::vector<double> values, double share);
+
+/// Median absolute deviation from the median; 0 of none.
+double scatter_of(std::vector<double> values);
+
+/// Standard error of the median of independent values, by their scatter; 0 of none.
+double median_error(const std::vector<double>& values);
+
+}  // namespace dynamic_icp::diagnosis

@@ -1,0 +1,153 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/formats/file_kind.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <fstream>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+
+namespace dynamic_icp::formats {
+namespace {
+
+using std::string_view_literals::operator""sv;
+
+struct Mark {
+  std::string_view bytes;
+  FileKind kind;
+};
+
+constexpr Mark kMarks[] = {
+    {"version https://git-lfs", FileKind::kLfsPointer},
+    {"PK\x03\x04", FileKind::kZip},
+    {"PK\x05\x06", FileKind::kZip},  // one without members
+    {"\x28\xB5\x2F\xFD", FileKind::kZstd},
+    {"7z\xBC\xAF\x27\x1C", FileKind::kSevenZip},
+    {"\x93NUMPY", FileKind::kNpy},
+    {"\x89MCAP0\r\n", FileKind::kMcap},
+    {"#ROSBAG V2.0\n", FileKind::kRosBag},
+    {"#ROSBAG V1", FileKind::kOldRosBag},
+    {"#ROSRECORD", FileKind::kOldRosBag},
+    {"SQLite format 3\0"sv, FileKind::kSqlite},
+    {"ply\n", FileKind::kPly},
+    {"ply\r\n", FileKind::kPly},
+    {"# .PCD ", FileKind::kPcd},
+    {"VERSION ", FileKind::kPcd},  // some writers leave the comment out,
+    {"FIELDS ", FileKind::kPcd},   // others the version too
+};
+
+unsigned char byte_at(std::string_view head, std::size_t at) { return static_cast<unsigned char>(head[at]); }
+
+/// Two marking bytes alone could begin a coordinate: method, flags, level and system must be possible as well.
+bool is_gzip(std::string_view head) {
+  return head.size() >= 10 && head.starts_with("\x1F\x8B\x08") && byte_at(head, 3) < 0x20 &&
+         (byte_at(head, 8) == 0 || byte_at(head, 8) == 2 || byte_at(head, 8) == 4) &&
+         (byte_at(head, 9) <= 13 || byte_at(head, 9) == 255);
+}
+
+/// The mark lies after the name, mode and size of the first member; these are text.
+bool is_tar(std::string_view head) {
+  constexpr std::size_t kMarkAt = 257;
+  constexpr std::size_t kModeAt = 100;
+  return head.size() >= kMarkAt + 6 &&
+         (head.substr(kMarkAt, 6) == "ustar\0"sv || head.substr(kMarkAt, 6) == "ustar ") && head[kModeAt] >= '0' &&
+         head[kModeAt] <= '7';
+}
+
+std::string_view name_of(std::filesystem::file_type type) {
+  switch (type) {
+    case std::filesystem::file_type::fifo:
+      return "a named pipe";
+    case std::filesystem::file_type::socket:
+      return "a socket";
+    case std::filesystem::file_type::block:
+    case std::filesystem::file_type::character:
+      return "a device";
+    default:
+      return "no regular file";
+  }
+}
+
+}  // namespace
+
+void refuse_irregular(const std::filesystem::path& path) {
+  std::error_code unknown;
+  const std::filesystem::file_type type = std::filesystem::status(path, unknown).type();
+  if (unknown || type == std::filesystem::file_type::regular || type == std::filesystem::file_type::directory ||
+      type == std::filesystem::file_type::not_found || type == std::filesystem::file_type::none) {
+    return;
+  }
+  throw DataError(fmt::format("{}: is {}, expected a regular file or a folder", path.string(), name_of(type)));
+}
+
+FileKind kind_of(std::string_view head) {
+  const auto* const mark =
+      std::find_if(std::begin(kMarks), std::end(kMarks), [&](const Mark& m) { return head.starts_with(m.bytes); });
+  if (mark != std::end(kMarks)) {
+    return mark->kind;
+  }
+  if (is_gzip(head)) {
+    return FileKind::kGzip;
+  }
+  return is_tar(head) ? FileKind::kTar : FileKind::kUnknown;
+}
+
+FileKind kind_of_file(const std::filesystem::path& path) {
+  refuse_irregular(path);
+  std::array<char, kKindBytes> head{};
+  errno = 0;
+  std::ifstream file(path, std::ios::binary);
+  file.read(head.data(), head.size());
+  if (!file.is_open() || file.bad()) {
+    throw DataError(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
+  }
+  return kind_of({head.data(), static_cast<std::size_t>(file.gcount())});
+}
+
+std::string_view sentence(FileKind kind) {
+  switch (kind) {
+    case FileKind::kUnknown:
+      return "";
+    case FileKind::kLfsPointer:
+      return "is a Git LFS pointer, not data; run 'git lfs pull' where it came from";
+    case FileKind::kZip:
+      return "is a zip archive; unpack it first";
+    case FileKind::kGzip:
+      return "is compressed with gzip; unpack it first ('gunzip', or 'tar xzf' for a .tar.gz)";
+    case FileKind::kZstd:
+      return "is compressed with Zstandard; unpack it first ('zstd -d')";
+    case FileKind::kSevenZip:
+      return "is a 7z archive; unpack it first";
+    case FileKind::kTar:
+      return "is a tar archive; unpack it first ('tar xf')";
+    case FileKind::kNpy:
+      return "is an array of NumPy (.npy)";
+    case FileKind::kMcap:
+      return "is an MCAP recording";
+    case FileKind::kRosBag:
+      return "is a ROS 1 bag";
+    case FileKind::kOldRosBag:
+      return "is a ROS bag from before version 2.0; convert it with 'rosbag fix' first";
+    case FileKind::kSqlite:
+      return "is an SQLite database, as the .db3 files of ROS 2 bags are";
+    case FileKind::kPly:
+      return "is a PLY file";
+    case FileKind::kPcd:
+      return "is a PCD file";
+  }
+  return "";
+}
+
+void refuse_other_kind(const std::filesystem::path& path, std::string_view head, FileKind expected) {
+  const FileKind kind = kind_of(head);
+  if (kind != FileKind::kUnknown && kind != expected) {
+    throw DataError(fmt::format("{}: {}", path.string(), sentence(kind)));
+  }
+}
+
+}  // namespace dynamic_icp::formats

@@ -1,0 +1,228 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/formats/pcd_read.hpp"
+
+#include <algorithm>
+#include <cstring>
+#include <optional>
+#include <type_traits>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/parse_number.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/file_kind.hpp"
+#include "dynamic_icp/recording/formats/lzf.hpp"
+#include "dynamic_icp/recording/formats/memory_error.hpp"
+#include "dynamic_icp/recording/formats/text_lines.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+namespace dynamic_icp::formats {
+namespace {
+
+/// Appends a number of that type from its text; false for text that is no such number.
+template <class Number>
+bool append_text(std::string& bytes, std::string_view text) {
+  std::optional<Number> number = parse_number<Number>(text);
+  if constexpr (std::is_same_v<Number, float>) {
+    // What is too small or too large for a float32 has been written by someone who thought in doubles.
+    const std::optional<double> wide = number ? std::nullopt : parse_number<double>(text);
+    number = wide ? static_cast<float>(*wide) : number;
+  }
+  if (number) {
+    append_value(bytes, *number);
+  }
+  return number.has_value();
+}
+
+bool append_text(std::string& bytes, NpyType type, std::string_view text) {
+  switch (type) {
+    case NpyType::kFloat32:
+      return append_text<float>(bytes, text);
+    case NpyType::kFloat64:
+      return append_text<double>(bytes, text);
+    case NpyType::kInt8:
+      return append_text<std::int8_t>(bytes, text);
+    case NpyType::kInt16:
+      return append_text<std::int16_t>(bytes, text);
+    case NpyType::kInt32:
+      return append_text<std::int32_t>(bytes, text);
+    case NpyType::kInt64:
+      return append_text<std::int64_t>(bytes, text);
+    case NpyType::kUint8:
+      return append_text<std::uint8_t>(bytes, text);
+    case NpyType::kUint16:
+      return append_text<std::uint16_t>(bytes, text);
+    case NpyType::kUint32:
+      return append_text<std::uint32_t>(bytes, text);
+    case NpyType::kUint64:
+      return append_text<std::uint64_t>(bytes, text);
+  }
+  return false;
+}
+
+/// Copies `kBytes` from the beginning of each record.
+template <std::size_t kBytes>
+void copy_field(const char* records, std::size_t record_bytes, std::size_t points, char* to) {
+  for (std::size_t i = 0; i < points; ++i) {
+    std::memcpy(to + i * kBytes, records + i * record_bytes, kBytes);
+  }
+}
+
+/// The same for any number of bytes; those of one number are quick.
+void copy_field(const char* records, std::size_t record_bytes, std::size_t points, char* to, std::size_t bytes) {
+  if (bytes == 4) {
+    copy_field<4>(records, record_bytes, points, to);
+  } else if (bytes == 8) {
+    copy_field<8>(records, record_bytes, points, to);
+  } else {
+    for (std::size_t i = 0; i < points; ++i) {
+      std::copy_n(records + i * record_bytes, bytes, to + i * bytes);
+    }
+  }
+}
+
+std::size_t numbers_of_a_point(const PcdHeader& header) {
+  std::size_t numbers = 0;
+  for (const PcdField& field : header.fields) {
+    numbers += field.count;
+  }
+  return numbers;
+}
+
+}  // namespace
+
+PcdFile::PcdFile(const std::filesystem::path& path) : PcdFile(read_whole_file(path), path) {}
+
+PcdFile::PcdFile(std::string content, const std::filesystem::path& origin)
+    : origin_(origin.string()), bytes_(std::move(content)) {
+  refuse_other_kind(origin, bytes_, FileKind::kPcd);
+  header_ = parse_pcd_header(bytes_, origin_);
+  with_memory_for(origin, [this] { read_data(); });
+}
+
+void PcdFile::fail(std::string_view message) const { throw DataError(fmt::format("{}: {}", origin_, message)); }
+
+void PcdFile::read_data() {
+  if (header_.encoding == PcdEncoding::kAscii) {
+    read_ascii();
+  } else if (header_.encoding == PcdEncoding::kBinary) {
+    read_binary();
+  } else {
+    unpack();
+  }
+}
+
+void PcdFile::read_ascii() {
+  std::string_view rest = std::string_view(bytes_).substr(header_.data_offset);
+  const std::size_t numbers = numbers_of_a_point(header_);
+  // A number takes a digit and what parts it from the next; the last line may have no end.
+  if (header_.points > (rest.size() + 1) / (2 * numbers)) {
+    fail(fmt::format("{} points of {} numbers each, expected at most {}: the file has {} bytes left", header_.points,
+                     numbers, (rest.size() + 1) / (2 * numbers), rest.size()));
+  }
+  std::string records;
+  records.reserve(header_.points * header_.record_bytes);
+  std::size_t point = 0;
+  for (std::size_t line = header_.lines + 1; const std::optional<std::string_view> text = take_line(rest); ++line) {
+    const std::vector<std::string_view> words = words_of(*text);
+    if (words.empty()) {
+      continue;
+    }
+    if (point++ == header_.points) {
+      fail(fmt::format("line {}: a point after the last one, expected {} points", line, header_.points));
+    }
+    if (words.size() != numbers) {
+      fail(fmt::format("line {}: {} numbers, expected {} for a point", line, words.size(), numbers));
+    }
+    std::size_t word = 0;
+    for (const PcdField& field : header_.fields) {
+      for (std::size_t k = 0; k < field.count; ++k, ++word) {
+        if (!append_text(records, field.type, words[word])) {
+          fail(fmt::format("line {}: number {} ('{}') is no {}", line, word + 1, field.name, code_of(field.type)));
+        }
+      }
+    }
+  }
+  if (point != header_.points) {
+    fail(fmt::format("the file ends after {} points, expected {}", point, header_.points));
+  }
+  bytes_ = std::move(records);
+  header_.data_offset = 0;
+}
+
+void PcdFile::read_binary() {
+  const std::size_t room = bytes_.size() - header_.data_offset;
+  const std::size_t whole = room / header_.record_bytes;
+  if (header_.points > whole) {
+    fail(fmt::format("{} points of {} bytes each after the header, expected at most {}: the file has {} bytes left",
+                     header_.points, header_.record_bytes, whole, room));
+  }
+  const std::size_t rest = room - header_.points * header_.record_bytes;
+  if (rest >= header_.record_bytes) {
+    fail(fmt::format("{} bytes after the last of {} points of {} bytes each, expected the end of the file", rest,
+                     header_.points, header_.record_bytes));
+  }
+  if (rest > 0) {
+    warning_ = fmt::format("{}: {} bytes after the last of {} points are left out", origin_, rest, header_.points);
+  }
+}
+
+void PcdFile::unpack() {
+  const std::string_view data = std::string_view(bytes_).substr(header_.data_offset);
+  constexpr std::size_t kSizes = 2 * sizeof(std::uint32_t);
+  if (data.size() < kSizes) {
+    fail(
+        fmt::format("{} bytes after the header, expected the sizes of the compressed data in {}", data.size(), kSizes));
+  }
+  const std::size_t packed = value_at<std::uint32_t>(data, 0);
+  const std::size_t unpacked = value_at<std::uint32_t>(data, sizeof(std::uint32_t));
+  if (packed > data.size() - kSizes) {
+    fail(fmt::format("{} bytes of compressed data, expected at most {}: the file ends there", packed,
+                     data.size() - kSizes));
+  }
+  if (unpacked % header_.record_bytes != 0 || unpacked / header_.record_bytes != header_.points) {
+    fail(fmt::format("compressed data of {} bytes, expected {} points of {} bytes each", unpacked, header_.points,
+                     header_.record_bytes));
+  }
+  if (const std::size_t rest = data.size() - kSizes - packed; rest > 0) {
+    warning_ = fmt::format("{}: {} bytes after the compressed data are left out", origin_, rest);
+  }
+  bytes_ = unpack_lzf(data.substr(kSizes, packed), unpacked, origin_);
+  header_.data_offset = 0;
+}
+
+std::vector<std::string> PcdFile::names() const {
+  std::vector<std::string> names;
+  for (const PcdField& field : header_.fields) {
+    if (!field.is_padding()) {
+      names.push_back(field.name);
+    }
+  }
+  return names;
+}
+
+NpyArray PcdFile::read(std::string_view name) const {
+  const auto field = std::find_if(header_.fields.begin(), header_.fields.end(),
+                                  [&](const PcdField& f) { return f.name == name && !f.is_padding(); });
+  if (field == header_.fields.end()) {
+    fail(fmt::format("field '{}' is missing, expected it among: {}", name, fmt::join(names(), " ")));
+  }
+  NpyArray array{field->type, {header_.points}, {}, fmt::format("{}: field '{}'", origin_, name)};
+  if (field->count != 1) {
+    array.shape.push_back(field->count);
+  }
+  const std::string_view data = std::string_view(bytes_).substr(header_.data_offset);
+  const std::size_t bytes = field->bytes();
+  if (header_.encoding == PcdEncoding::kBinaryCompressed) {
+    array.bytes = data.substr(field->offset_bytes * header_.points, bytes * header_.points);
+    return array;
+  }
+  array.bytes.resize(bytes * header_.points);
+  copy_field(data.data() + field->offset_bytes, header_.record_bytes, header_.points, array.bytes.data(), bytes);
+  return array;
+}
+
+}  // namespace dynamic_icp::formats

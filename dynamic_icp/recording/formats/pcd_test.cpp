@@ -1,0 +1,137 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/formats/pcd.hpp"
+
+#include <cstdint>
+#include <cstring>
+#include <iterator>
+#include <limits>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+namespace dynamic_icp::formats {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+/// A file taken apart line by line and byte by byte, with nothing from the library.
+struct ReadBack {
+  std::map<std::string, std::string> header;  ///< key: the rest of its line
+  std::vector<std::vector<float>> records;
+  std::size_t bytes_left = 0;
+};
+
+ReadBack read_back(const std::string& bytes, std::size_t fields) {
+  ReadBack file;
+  std::istringstream stream(bytes);
+  std::string line;
+  while (file.header.count("DATA") == 0 && std::getline(stream, line)) {
+    const std::size_t blank = line.find(' ');
+    file.header[line.substr(0, blank)] = line.substr(blank + 1);
+  }
+  std::size_t at = static_cast<std::size_t>(stream.tellg());
+  for (; at + 4 * fields <= bytes.size(); at += 4 * fields) {
+    std::vector<float> record;
+    for (std::size_t i = 0; i < fields; ++i) {
+      std::uint32_t bits = 0;
+      for (std::size_t k = 4; k-- > 0;) {
+        bits = bits << 8 | static_cast<unsigned char>(bytes[at + 4 * i + k]);
+      }
+      record.emplace_back();
+      std::memcpy(&record.back(), &bits, 4);
+    }
+    file.records.push_back(record);
+  }
+  file.bytes_left = bytes.size() - at;
+  return file;
+}
+
+TEST(Pcd, AnEmptyCloudIsAFileOfWidthZero) {
+  const ReadBack file = read_back(pcd_bytes({}), 3);
+  EXPECT_EQ(file.header.at("WIDTH"), "0");
+  EXPECT_EQ(file.header.at("POINTS"), "0");
+  EXPECT_TRUE(file.records.empty());
+  EXPECT_EQ(file.bytes_left, 0u);
+}
+
+TEST(Pcd, HeaderSaysWhatTheBytesAre) {
+  const std::vector<Vector3d> points = {{1.0, -2.0, 0.5}, {1e-3, 4e4, -0.1}};
+  const std::vector<float> doppler = {-3.25f, 0.0f};
+  const std::vector<float> label = {0.0f, 7.0f};
+  const std::vector<PcdColumn> columns = {{"doppler", doppler}, {"label", label}};
+  const ReadBack file = read_back(pcd_bytes(points, columns), 5);
+  const std::map<std::string, std::string> expected = {{"#", ".PCD v0.7 - Point Cloud Data file format"},
+                                                       {"VERSION", "0.7"},
+                                                       {"FIELDS", "x y z doppler label"},
+                                                       {"SIZE", "4 4 4 4 4"},
+                                                       {"TYPE", "F F F F F"},
+                                                       {"COUNT", "1 1 1 1 1"},
+                                                       {"WIDTH", "2"},
+                                                       {"HEIGHT", "1"},
+                                                       {"VIEWPOINT", "0 0 0 1 0 0 0"},
+                                                       {"POINTS", "2"},
+                                                       {"DATA", "binary"}};
+  EXPECT_EQ(file.header, expected);
+  EXPECT_EQ(file.records,
+            (std::vector<std::vector<float>>{{1.0f, -2.0f, 0.5f, -3.25f, 0.0f}, {1e-3f, 4e4f, -0.1f, 0.0f, 7.0f}}));
+  EXPECT_EQ(file.bytes_left, 0u);
+}
+
+// x = 1, y = -2, z = 0.5 as IEEE 754 has them, lowest byte first.
+TEST(Pcd, DataBeginRightAfterTheHeader) {
+  const std::vector<Vector3d> points = {{1.0, -2.0, 0.5}};
+  const std::string record("\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f", 12);
+  EXPECT_TRUE(pcd_bytes(points).ends_with("\nDATA binary\n" + record));
+}
+
+TEST(Pcd, RefusesColumnsThatDoNotBelong) {
+  const std::vector<Vector3d> points(2, Vector3d::Ones());
+  const std::vector<float> two(2, 1.0f);
+  const std::vector<float> three(3, 1.0f);
+  const auto write = [&](std::vector<PcdColumn> columns) { return pcd_bytes(points, columns); };
+  EXPECT_NO_THROW(write({{"a", two}, {"b", two}}));
+  EXPECT_THROW(write({{"a", three}}), std::invalid_argument);
+  EXPECT_THROW(write({{"", two}}), std::invalid_argument);
+  EXPECT_THROW(write({{"a b", two}}), std::invalid_argument);
+  EXPECT_THROW(write({{"a\nDATA", two}}), std::invalid_argument);
+  EXPECT_THROW(write({{"z", two}}), std::invalid_argument);
+  EXPECT_THROW(write({{"a", two}, {"a", two}}), std::invalid_argument);
+}
+
+TEST(Pcd, RefusesNumbersThatAreNotFinite) {
+  constexpr double kHuge = 1e39;  // a double, but no float32
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), kHuge}) {
+    EXPECT_THROW(pcd_bytes(std::vector<Vector3d>{{0.0, bad, 0.0}}), std::invalid_argument) << bad;
+  }
+  const std::vector<float> bad = {std::numeric_limits<float>::infinity()};
+  const std::vector<PcdColumn> columns = {{"a", bad}};
+  EXPECT_THROW(pcd_bytes(std::vector<Vector3d>{Vector3d::Zero()}, columns), std::invalid_argument);
+}
+
+TEST(Pcd, WritesAFileWholeOrNotAtAll) {
+  const fs::path folder = fs::temp_directory_path() / ("pcd_test-" + std::to_string(::getpid()));
+  fs::create_directories(folder);
+  const fs::path path = folder / "map.pcd";
+  const std::vector<Vector3d> points(1000, Vector3d(1.0, 2.0, 3.0));
+  write_pcd(path, points);
+  EXPECT_EQ(read_whole_file(path), pcd_bytes(points));
+  // What cannot be written leaves the earlier file as it was, and nothing beside it.
+  const std::vector<Vector3d> bad(1, Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
+  EXPECT_THROW(write_pcd(path, bad), std::invalid_argument);
+  EXPECT_EQ(read_whole_file(path), pcd_bytes(points));
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
+  fs::remove_all(folder);
+  EXPECT_THROW(write_pcd(path, points), DataError);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::formats

@@ -1,0 +1,68 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "dynamic_icp/method/base/scan.hpp"
+
+namespace dynamic_icp::formats {
+
+// Scans as files of little-endian records without padding, one per point, that begin with float32 x, y, z (m, sensor
+// frame) and hold the Doppler as float32 (m/s, positive away).
+
+/// How a record holds the time of its point after the scan's stamp.
+enum class RecordTime : std::uint8_t {
+  kNone,
+  kNanoseconds,           ///< int32
+  kSeconds,               ///< float32
+  kSecondsOrNanoseconds,  ///< float32: nanoseconds in files where one is above 10
+};
+
+enum class NumberType : std::uint8_t { kFloat32, kUint8 };
+
+/// A further number of a record.
+struct RecordField {
+  std::string_view name;
+  std::size_t offset = 0;
+  NumberType type = NumberType::kFloat32;
+  bool is_integer = false;  ///< also where it is stored as a float
+  unsigned shift = 0;       ///< of integers made of several parts: the part is (value >> shift) & mask
+  unsigned mask = 0;        ///< 0: the whole number
+};
+
+struct RecordLayout {
+  std::string_view name;
+  std::size_t bytes = 0;    ///< of one record
+  std::size_t doppler = 0;  ///< its offset
+  RecordTime time_type = RecordTime::kNone;
+  std::size_t time = 0;  ///< its offset
+  std::span<const RecordField> fields = {};
+};
+
+// The layouts by their names.
+extern const RecordLayout kXyzd;                  ///< 16 bytes: Doppler-ICP, and the plain one for interchange
+extern const RecordLayout kAeva25;                ///< HeLiPR before the recorder changed
+extern const RecordLayout kAeva29;                ///< HeRCULES and later HeLiPR: with intensity in dB
+extern const RecordLayout kBoreas40;              ///< Boreas-RT
+extern const RecordLayout kBoreas24;              ///< Boreas-Aeva
+extern const RecordLayout kBoreas28;              ///< the same with a beam
+extern const RecordLayout kBoreas28BeamThenTime;  ///< the same in the other order
+extern const RecordLayout kBoreas32;              ///< the same with beam and sensor
+extern const RecordLayout kXyzdTime;              ///< 20 bytes: the "Aeva" set
+
+/// Reads points, Doppler and times; the stamp is left 0, it is in the name of the file. Numbers are handed on as they
+/// are, finite or not. An empty file is an empty scan and bytes after the last whole record are left out, both with a
+/// warning in the result. Throws DataError naming the file when it cannot be read or is something else: an archive, a
+/// Git LFS pointer and the like.
+RawScan read_points(const std::filesystem::path& path, const RecordLayout& layout);
+
+/// Reads a further column, as stored. Errors as above.
+std::vector<double> read_field(const std::filesystem::path& path, const RecordLayout& layout, const RecordField& field);
+
+}  // namespace dynamic_icp::formats

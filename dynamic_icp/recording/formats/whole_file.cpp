@@ -1,0 +1,160 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+#include <algorithm>
+#include <cerrno>
+#include <cstring>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/file_kind.hpp"
+#include "dynamic_icp/recording/formats/memory_error.hpp"
+#include "dynamic_icp/recording/formats/unfinished.hpp"
+
+namespace dynamic_icp::formats {
+namespace {
+
+[[noreturn]] void throw_error(const std::filesystem::path& path, const char* action) {
+  throw DataError(fmt::format("{}: cannot {}: {}", path.string(), action, std::strerror(errno)));
+}
+
+/// Closes a descriptor when it goes out of scope.
+struct Descriptor {
+  explicit Descriptor(int opened) : number(opened) {}
+  ~Descriptor() { ::close(number); }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int number;
+};
+
+void refuse_longer(const std::filesystem::path& path, std::uintmax_t bytes, std::uintmax_t max_bytes) {
+  if (bytes > max_bytes) {
+    throw DataError(fmt::format("{}: has {} bytes, expected at most {}", path.string(), bytes, max_bytes));
+  }
+}
+
+/// What is left to be read. `expected` bytes are there in all likelihood: one more tells that the end has come, so that
+/// a file that does not grow meanwhile is read without taking memory twice.
+std::string read_to_end(int descriptor, const std::filesystem::path& path, std::uintmax_t expected,
+                        std::uintmax_t max_bytes) {
+  constexpr std::size_t kLeastRoom = 4096;  // files of the system's own have no size
+  std::string content(std::max<std::size_t>(kLeastRoom, expected + 1), '\0');
+  std::size_t used = 0;
+  while (true) {
+    if (used == content.size()) {
+      content.resize(2 * used);
+    }
+    const ssize_t got = ::read(descriptor, content.data() + used, content.size() - used);
+    if (got < 0 && errno == EINTR) {
+      continue;
+    }
+    if (got < 0) {
+      throw_error(path, "read");
+    }
+    used += static_cast<std::size_t>(got);
+    refuse_longer(path, used, max_bytes);
+    if (got == 0) {
+      content.resize(used);
+      return content;
+    }
+  }
+}
+
+}  // namespace
+
+OutputFile::OutputFile(const std::filesystem::path& path) : OutputFile(path, path) {}
+
+OutputFile::OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name)
+    : final_name_(final_name), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+  if (descriptor_ < 0) {
+    fail("create");
+  }
+}
+
+OutputFile::~OutputFile() {
+  if (descriptor_ >= 0) {
+    ::close(descriptor_);
+  }
+}
+
+void OutputFile::fail(const char* action) const { throw_error(final_name_, action); }
+
+void OutputFile::write(std::string_view bytes) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor_, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) {
+      continue;
+    }
+    if (written < 0) {
+      fail("write");
+    }
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+}
+
+void OutputFile::close() {
+  const bool synchronised = ::fsync(descriptor_) == 0 || errno == EINVAL;  // EINVAL: a device that cannot, e.g. a pipe
+  const bool closed = ::close(descriptor_) == 0;
+  descriptor_ = -1;
+  if (!synchronised || !closed) {
+    fail("write");
+  }
+}
+
+void write_whole_file(const std::filesystem::path& path, std::string_view content) {
+  std::error_code unreadable;
+  if (std::filesystem::is_other(path, unreadable)) {
+    OutputFile device(path);  // or a pipe: a file in its place would take it from everybody
+    device.write(content);
+    device.close();
+    return;
+  }
+  std::filesystem::path partial = path;
+  partial += fmt::format(".partial-{}", ::getpid());
+  const Unfinished unfinished(partial);
+  try {
+    OutputFile file(partial, path);
+    file.write(content);
+    file.close();
+  } catch (const DataError&) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw;
+  }
+  std::error_code fault;
+  std::filesystem::rename(partial, path, fault);
+  if (fault) {
+    std::error_code ignored;
+    std::filesystem::remove(partial, ignored);
+    throw DataError(fmt::format("{}: cannot create: {}", path.string(), fault.message()));
+  }
+}
+
+std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
+  refuse_irregular(path);
+  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
+  if (file.number < 0) {
+    throw_error(path, "open");
+  }
+  std::error_code unknown_size;
+  const std::uintmax_t size = std::filesystem::file_size(path, unknown_size);
+  const std::uintmax_t expected = unknown_size ? 0 : size;
+  refuse_longer(path, expected, max_bytes);
+  return with_memory_for(path, [&] { return read_to_end(file.number, path, expected, max_bytes); });
+}
+
+std::string read_text_file(const std::filesystem::path& path) {
+  std::string text = read_whole_file(path, kMaxTextBytes);
+  refuse_other_kind(path, text, FileKind::kUnknown);
+  if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
+    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
+    throw DataError(fmt::format("{}: line {}: has a zero byte, expected text", path.string(), line));
+  }
+  return text;
+}
+
+}  // namespace dynamic_icp::formats

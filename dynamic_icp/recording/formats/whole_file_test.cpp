@@ -1,0 +1,131 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+#include <fstream>
+#include <new>
+#include <stdexcept>
+
+#include <fcntl.h>
+#include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/memory_error.hpp"
+
+namespace dynamic_icp::formats {
+namespace {
+
+namespace fs = std::filesystem;
+
+class WholeFile : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  [[nodiscard]] std::size_t entries() const {
+    return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+  /// That it throws DataError, which names the file "a" and holds these words.
+  template <class Action>
+  void expect_refusal(const Action& action, const std::string& words) const {
+    try {
+      action();
+      ADD_FAILURE() << "must throw: " << words;
+    } catch (const DataError& error) {
+      EXPECT_EQ(std::string(error.what()).find((folder_ / "a").string()), 0U) << error.what();
+      EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
+    }
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("whole_file_test-" + std::to_string(::getpid()));
+};
+
+TEST_F(WholeFile, WritesAndReadsBack) {
+  std::string content(100'000, 'x');
+  content += std::string("\0\n", 2);
+  write_whole_file(folder_ / "a", content);
+  EXPECT_EQ(read_whole_file(folder_ / "a"), content);
+  write_whole_file(folder_ / "a", "");
+  EXPECT_EQ(read_whole_file(folder_ / "a"), "");
+  EXPECT_EQ(entries(), 1u) << "no temporary file may stay";
+}
+
+TEST_F(WholeFile, FailureNamesTheFileAndLeavesTheEarlierOne) {
+  write_whole_file(folder_ / "a", "earlier");
+  fs::create_directory(folder_ / "b");
+  std::ofstream(folder_ / "b" / "inside") << "x";
+  try {
+    write_whole_file(folder_ / "b", "a file where a folder is");
+    FAIL() << "must throw";
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find((folder_ / "b").string()), std::string::npos);
+  }
+  EXPECT_THROW(write_whole_file(folder_ / "missing" / "a", "x"), DataError);
+  EXPECT_EQ(read_whole_file(folder_ / "a"), "earlier");
+  EXPECT_EQ(entries(), 2u);
+}
+
+TEST_F(WholeFile, ADeviceOrPipeIsWrittenIntoAndStays) {
+  const fs::path pipe = folder_ / "pipe";
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const int reader = ::open(pipe.c_str(), O_RDONLY | O_NONBLOCK);
+  write_whole_file(pipe, "into the pipe");
+  std::string content(100, '\0');
+  const ssize_t got = ::read(reader, content.data(), content.size());
+  ::close(reader);
+  ASSERT_EQ(got, 13);
+  EXPECT_EQ(content.substr(0, 13), "into the pipe");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(WholeFile, FullDeviceIsAnError) {
+  if (!fs::exists("/dev/full")) {
+    GTEST_SKIP() << "no /dev/full on this machine";
+  }
+  OutputFile file("/dev/full");
+  EXPECT_THROW(file.write("x"), DataError);
+}
+
+TEST_F(WholeFile, ReadingWhatIsNotThereIsAnError) {
+  EXPECT_THROW(read_whole_file(folder_ / "missing"), DataError);
+  EXPECT_THROW(read_whole_file(folder_), DataError);
+}
+
+TEST_F(WholeFile, IsReadIntoAsMuchMemoryAsItIsLong) {
+  for (const std::size_t size : {std::size_t{0}, std::size_t{4095}, std::size_t{4096}, std::size_t{10'000'000}}) {
+    write_whole_file(folder_ / "a", std::string(size, 'x'));
+    const std::string content = read_whole_file(folder_ / "a");
+    EXPECT_EQ(content, std::string(size, 'x'));
+    EXPECT_LE(content.capacity(), size + 4096);
+  }
+  EXPECT_GT(read_whole_file("/proc/self/status").size(), 100U) << "has no size before it is read";
+}
+
+TEST_F(WholeFile, WhatIsTooLongIsRefusedBeforeItIsRead) {
+  write_whole_file(folder_ / "a", "12345");
+  EXPECT_EQ(read_whole_file(folder_ / "a", 5), "12345");
+  expect_refusal([&] { (void)read_whole_file(folder_ / "a", 4); }, "has 5 bytes, expected at most 4");
+  fs::resize_file(folder_ / "a", kMaxTextBytes + 1);
+  expect_refusal([&] { (void)read_text_file(folder_ / "a"); }, "expected at most");
+}
+
+TEST_F(WholeFile, LackOfMemoryNamesTheFile) {
+  expect_refusal([&] { with_memory_for(folder_ / "a", [] { throw std::bad_alloc(); }); }, "too little memory");
+  expect_refusal([&] { with_memory_for(folder_ / "a", [] { throw std::length_error("vector"); }); },
+                 "too little memory");
+  EXPECT_EQ(with_memory_for(folder_ / "a", [] { return 7; }), 7);
+}
+
+TEST_F(WholeFile, TextsHoldNoZeroBytesAndNothingElse) {
+  write_whole_file(folder_ / "a", "{}\n");
+  EXPECT_EQ(read_text_file(folder_ / "a"), "{}\n");
+  write_whole_file(folder_ / "a", std::string("{}\n\0\0", 5));
+  expect_refusal([&] { (void)read_text_file(folder_ / "a"); }, "line 2: has a zero byte, expected text");
+  write_whole_file(folder_ / "a", std::string("PK\x03\x04\0", 5));
+  expect_refusal([&] { (void)read_text_file(folder_ / "a"); }, "is a zip archive");
+}
+
+}  // namespace
+}  // namespace dynamic_icp::formats

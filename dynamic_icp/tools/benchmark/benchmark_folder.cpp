@@ -1,0 +1,111 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include <fcntl.h>
+#include <fmt/format.h>
+#include <sys/file.h>
+#include <unistd.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+
+namespace dynamic_icp::benchmark {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kLockName = "benchmark.lock";
+constexpr std::array<std::string_view, 6> kOwnNames = {"tables",  "tables.md",   "results.json",
+                                                       kLockName, "report.html", "comparison.html"};
+constexpr std::size_t kLongestName = 200;  // file systems take 255, some of which go to endings
+
+void check_usable(const fs::path& path) {
+  std::error_code fault;
+  if (!fs::exists(path, fault)) {
+    return;
+  }
+  if (!fs::is_directory(path, fault)) {
+    throw DataError(fmt::format("{}: exists and is not a folder", path.string()));
+  }
+  if (!fs::exists(path / kLockName, fault) && !fs::is_empty(path, fault)) {
+    throw DataError(
+        fmt::format("{}: folder is not empty and holds no {}; choose another one", path.string(), kLockName));
+  }
+}
+
+int open_locked(const fs::path& path) {
+  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
+  if (descriptor < 0) {
+    throw DataError(fmt::format("{}: cannot create: {}", path.string(), std::strerror(errno)));
+  }
+  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+    const int reason = errno;
+    ::close(descriptor);
+    throw DataError(reason == EWOULDBLOCK
+                        ? fmt::format("{}: another benchmark is running in this folder", path.parent_path().string())
+                        : fmt::format("{}: cannot lock: {}", path.string(), std::strerror(reason)));
+  }
+  return descriptor;
+}
+
+}  // namespace
+
+BenchmarkFolder::BenchmarkFolder(const fs::path& path) : path_(fs::absolute(path).lexically_normal()) {
+  check_usable(path_);
+  formats::make_folder(path_);
+  lock_ = open_locked(path_ / kLockName);
+  remove_partial_files(path_);
+}
+
+BenchmarkFolder::~BenchmarkFolder() { ::close(lock_); }
+
+bool is_own_name(std::string_view name) {
+  return std::find(kOwnNames.begin(), kOwnNames.end(), name) != kOwnNames.end();
+}
+
+std::string unfit_name(std::string_view name) {
+  if (name.find_first_of("/\\") != std::string_view::npos) {
+    return "holds a slash";
+  }
+  if (name.empty() || name.front() == '.') {
+    return name.empty() ? "is empty" : "begins with a dot";
+  }
+  if (without_control_characters(name) != name) {
+    return "holds a control character";
+  }
+  if (name.size() > kLongestName) {
+    return fmt::format("is longer than {} bytes", kLongestName);
+  }
+  return is_own_name(name) ? "is that of a file of the benchmark itself" : "";
+}
+
+std::string without_control_characters(std::string_view text) {
+  std::string result;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const auto byte = static_cast<unsigned char>(text[i]);
+    const auto next = static_cast<unsigned char>(i + 1 < text.size() ? text[i + 1] : 0);
+    const bool of_two_bytes = byte == 0xC2U && next >= 0x80U && next < 0xA0U;  // U+0080 to U+009F
+    const bool is_control = byte < 0x20U || byte == 0x7FU || of_two_bytes;
+    result += is_control ? '_' : text[i];
+    i += of_two_bytes ? 1 : 0;
+  }
+  return result;
+}
+
+void remove_partial_files(const fs::path& folder) {
+  std::error_code fault;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
+    if (entry.path().filename().string().find(".partial-") != std::string::npos && entry.is_regular_file(fault)) {
+      fs::remove(entry.path(), fault);
+    }
+  }
+}
+
+}  // namespace dynamic_icp::benchmark

@@ -1,0 +1,36 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamic_icp/tools/drawing/svg.hpp"
+#include "dynamic_icp/tools/drawing/theme.hpp"
+#include "dynamic_icp/tools/figures/run_context.hpp"
+#include "dynamic_icp/tools/figures/run_folder.hpp"
+
+namespace dynamic_icp::figures {
+
+struct Figure {
+  std::string name;  ///< "scan", "trajectory", "errors", "speed", "dynamics", "convergence" or "timing"
+  drawing::Svg svg;
+};
+
+/// The figures of a run in the order of that list, without those that have nothing to show: no "scan" when the
+/// recording is gone, no "errors" without ground truth.
+std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const drawing::Theme& theme);
+
+/// A run among others over the same recording.
+struct ComparedRun {
+  std::string name;
+  RunFiles files;
+  std::optional<RunTruth> truth;
+};
+
+/// "trajectory", "errors" (with ground truth), "convergence" and "timing" of several runs in common pictures. They must
+/// begin with the same scan: the first pose of each is the identity.
+std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const drawing::Theme& theme);
+
+}  // namespace dynamic_icp::figures

@@ -1,0 +1,138 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tools/figures/run_series.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <fmt/format.h>
+
+namespace dynamic_icp::figures {
+namespace {
+
+/// One value of each frame.
+template <class Value>
+std::vector<double> per_frame(const RunFiles& run, const Value& value) {
+  std::vector<double> values;
+  values.reserve(run.frames.size());
+  for (const FrameRow& frame : run.frames) {
+    values.push_back(value(frame));
+  }
+  return values;
+}
+
+/// How a series is called and measured.
+struct Heading {
+  const char* id;
+  const char* title;
+  const char* quantity;  ///< at the axis
+  const char* unit;
+};
+
+RunSeries make_series(const Heading& heading, std::vector<Series> series) {
+  return {.id = heading.id,
+          .unit = heading.unit,
+          .panel = {.title = heading.title,
+                    .label = *heading.unit == '\0' ? heading.quantity
+                                                   : fmt::format("{} ({})", heading.quantity, heading.unit),
+                    .series = std::move(series)}};
+}
+
+RunSeries error_series(const Heading& heading, const std::vector<double>& errors) {
+  RunSeries series = make_series(heading, {{"from the scan before", errors}});
+  series.panel.logarithmic = spans_decades(errors);
+  return series;
+}
+
+/// A value of the registration; a gap where nothing was registered: at the first scan, and at those that are lost
+/// without a single step.
+std::vector<Series> registration(const RunFiles& run, double FrameRow::*value) {
+  return {{"per scan", per_frame(run, [&](const FrameRow& frame) {
+             const bool registered = frame.reason != "first" && (frame.status != "lost" || frame.iterations > 0.0);
+             return registered ? frame.*value : std::numeric_limits<double>::quiet_NaN();
+           })}};
+}
+
+/// Percent of the points used; a gap where none was used.
+Series share(const RunFiles& run, const char* name, double FrameRow::*count) {
+  return {name, per_frame(run, [&](const FrameRow& frame) { return 100.0 * frame.*count / frame.points_used; })};
+}
+
+RunSeries ego_speed(const RunFiles& run, const std::optional<RunTruth>& truth) {
+  std::vector<Series> series;
+  if (truth) {
+    series.push_back({"ground truth", truth->speed, true});
+  }
+  series.push_back({"estimate", per_frame(run, [](const FrameRow& f) { return velocity_at_stamp(f).norm(); })});
+  return make_series({"ego_speed", "Ego speed", "speed", "m/s"}, std::move(series));
+}
+
+RunSeries objects(const RunFiles& run) {
+  Series count{"objects with a velocity", {}};
+  for (const std::vector<ObjectRow>& list : run.objects) {
+    count.values.push_back(static_cast<double>(list.size()));
+  }
+  RunSeries series = make_series({"objects", "Moving objects", "number", ""}, {count});
+  series.panel.whole_numbers = true;
+  return series;
+}
+
+double stage_time(const FrameRow& frame, const std::string& stage) {
+  const auto found = std::find_if(frame.milliseconds.begin(), frame.milliseconds.end(),
+                                  [&](const auto& entry) { return entry.first == stage; });
+  return found == frame.milliseconds.end() ? 0.0 : found->second;
+}
+
+/// The total first, then the stages as they stand in the first frame.
+RunSeries milliseconds(const RunFiles& run) {
+  std::vector<std::string> stages = {"total"};
+  if (!run.frames.empty()) {
+    for (const auto& [stage, value] : run.frames.front().milliseconds) {
+      if (stage != "total") {
+        stages.push_back(stage);
+      }
+    }
+  }
+  std::vector<Series> series;
+  for (const std::string& stage : stages) {
+    series.push_back({stage, per_frame(run, [&](const FrameRow& frame) { return stage_time(frame, stage); })});
+  }
+  return make_series({"milliseconds", "Computing time", "time per scan", "ms"}, std::move(series));
+}
+
+bool has_values(const RunSeries& series) {
+  return std::any_of(series.panel.series.begin(), series.panel.series.end(), [](const Series& line) {
+    return std::any_of(line.values.begin(), line.values.end(), [](double value) { return std::isfinite(value); });
+  });
+}
+
+}  // namespace
+
+std::vector<RunSeries> run_series(const RunFiles& run, const std::optional<RunTruth>& truth) {
+  std::vector<RunSeries> all = {ego_speed(run, truth)};
+  if (truth) {
+    all.push_back(
+        error_series({"translation_error", "Translation error per scan", "RTE", "m"}, truth->translation_error));
+    all.push_back(error_series({"rotation_error", "Rotation error per scan", "RRE", "degrees"}, truth->rotation_error));
+  }
+  all.push_back(make_series({"iterations", "Iterations", "number", ""}, registration(run, &FrameRow::iterations)));
+  all.back().panel.whole_numbers = true;
+  all.push_back(make_series({"inlier_rmse", "Distance of matched points", "inlier RMSE", "m"},
+                            registration(run, &FrameRow::inlier_rmse)));
+  all.push_back(
+      make_series({"fitness", "Fitness", "share of points matched", ""}, registration(run, &FrameRow::fitness)));
+  all.push_back(make_series({"degeneracy", "How well the least known direction is held", "information ratio", ""},
+                            registration(run, &FrameRow::information_ratio)));
+  all.back().panel.logarithmic = true;
+  all.push_back(make_series(
+      {"dynamic_share", "Moving points", "share of points used", "%"},
+      {share(run, "flagged", &FrameRow::dynamic_candidates), share(run, "in a cluster", &FrameRow::dynamic_clustered),
+       share(run, "on an object", &FrameRow::dynamic_refined)}));
+  all.push_back(objects(run));
+  all.push_back(milliseconds(run));
+  std::erase_if(all, [](const RunSeries& series) { return !has_values(series); });
+  return all;
+}
+
+}  // namespace dynamic_icp::figures

@@ -1,0 +1,60 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tools/figures/run_series.hpp"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::figures {
+namespace {
+
+RunFiles run_of(const std::vector<FrameRow>& frames) {
+  RunFiles run;
+  run.frames = frames;
+  run.objects.resize(frames.size());
+  return run;
+}
+
+FrameRow frame_row(const char* status, const char* reason, double iterations) {
+  FrameRow frame;
+  frame.status = status;
+  frame.reason = reason;
+  frame.iterations = iterations;
+  frame.points_used = 100.0;
+  return frame;
+}
+
+/// The values of the first line of the series called `id`.
+std::vector<double> values_of(const RunFiles& run, const char* id) {
+  for (const RunSeries& series : run_series(run, std::nullopt)) {
+    if (series.id == id) {
+      return series.panel.series.front().values;
+    }
+  }
+  return {};
+}
+
+TEST(RunSeries, SpeedIsThatAtTheStampWhereTheRunTellsIt) {
+  FrameRow swept = frame_row("ok", "converged", 5.0);
+  swept.ego_velocity = {3.0, 0.0, 0.0};  // of the whole sweep
+  swept.twist = TwistRow{.angular = Eigen::Vector3d::Zero(), .linear = {3.0, 4.0, 0.0}};
+  FrameRow instant = swept;
+  instant.twist.reset();
+  EXPECT_EQ(values_of(run_of({swept, instant}), "ego_speed"), (std::vector<double>{5.0, 3.0}));
+}
+
+TEST(RunSeries, NothingRegisteredIsAGapAndNoPerfectMatch) {
+  const std::vector<double> iterations =
+      values_of(run_of({frame_row("ok", "first", 0.0), frame_row("ok", "converged", 5.0),
+                        frame_row("lost", "too_few_points", 0.0), frame_row("lost", "iteration_limit", 50.0)}),
+                "iterations");
+  ASSERT_EQ(iterations.size(), 4u);
+  EXPECT_TRUE(std::isnan(iterations[0]));
+  EXPECT_EQ(iterations[1], 5.0);
+  EXPECT_TRUE(std::isnan(iterations[2]));
+  EXPECT_EQ(iterations[3], 50.0);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::figures

@@ -1,0 +1,101 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tools/figures/scan_plot.hpp"
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "testing/well_formed.hpp"
+
+namespace dynamic_icp::figures {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+std::string drawn(const ScanView& view) {
+  const std::string document = scan_plot(view, drawing::theme(drawing::Ground::kDark)).document();
+  EXPECT_EQ(drawing::WellFormed::fault_of(document), "");
+  EXPECT_FALSE(drawing::holds_non_finite(document));
+  return document;
+}
+
+ScanView random_view(int points) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> forward(1.0, 140.0);
+  std::uniform_real_distribution<double> across(-60.0, 60.0);
+  RawScan raw;
+  for (int k = 0; k < points; ++k) {
+    const Eigen::Vector3d p(forward(random), across(random), -1.0);
+    raw.points.push_back(p);
+    raw.doppler.push_back(-13.0 * p.normalized().x());
+  }
+  ScanView view;
+  view.title = "Scan 7";
+  view.scan = Scan::from_raw(raw);
+  view.ego_velocity = {13.0, 0.0, 0.0};
+  view.objects = {
+      {.id = 4, .velocity = {-9.0, 0.0, 0.0}, .centroid = {40.0, 3.0, 0.0}, .extent = {4.0, 2.0, 1.5}, .points = 80}};
+  return view;
+}
+
+TEST(ScanPlot, DrawsNothingAndLittle) {
+  drawn({});
+  ScanView view;
+  view.objects = random_view(0).objects;
+  drawn(view);
+  drawn(random_view(1));
+}
+
+TEST(ScanPlot, NamesObjectsWithTheirSpeed) {
+  const std::string document = drawn(random_view(2000));
+  EXPECT_NE(document.find(">4 · 9.0 m/s<"), std::string::npos);
+  EXPECT_NE(document.find(">sensor · 13.0 m/s<"), std::string::npos);
+  EXPECT_NE(document.find("2,000 points"), std::string::npos);
+  EXPECT_EQ(drawing::count_of(document, "Own motion taken out"), 1u);
+}
+
+TEST(ScanPlot, WithoutEgoVelocityThereIsOnePanel) {
+  ScanView view = random_view(2000);
+  view.ego_velocity.setConstant(kNaN);
+  const std::string document = drawn(view);
+  EXPECT_EQ(document.find("Own motion taken out"), std::string::npos);
+  EXPECT_NE(document.find(">4 · 9.0 m/s<"), std::string::npos) << "objects are still named";
+}
+
+TEST(ScanPlot, StaticSceneIsGreyOnceOwnMotionIsTakenOut) {
+  const std::string document = drawn(random_view(2000));
+  const std::string lower = document.substr(document.find("Own motion taken out"));
+  EXPECT_EQ(drawing::count_of(lower, "stroke-linecap=\"round\" d="), 1u) << "one path of dots, of one colour";
+  const std::string grey =
+      drawing::theme(drawing::Ground::kDark).doppler[drawing::theme(drawing::Ground::kDark).doppler.size() / 2];
+  EXPECT_NE(lower.find("stroke=\"" + grey + "\" stroke-width=\"21\""), std::string::npos);
+}
+
+TEST(ScanPlot, TakesValuesThatAreNotFinite) {
+  ScanView view = random_view(100);
+  for (const double bad : {kNaN, 1e300, -1e300}) {
+    ObjectRow object = view.objects.front();
+    object.velocity.setConstant(bad);
+    view.objects.push_back(object);
+    object.centroid.setConstant(bad);
+    view.objects.push_back(object);
+    object = view.objects.front();
+    object.extent.setConstant(bad);
+    view.objects.push_back(object);
+  }
+  drawn(view);
+}
+
+TEST(ScanPlot, StaysUnder300KilobytesForAnyScan) { EXPECT_LT(drawn(random_view(150'000)).size(), 300'000u); }
+
+TEST(ScanPlot, TitlesAreEscaped) {
+  ScanView view = random_view(10);
+  view.title = "<script>\"&";
+  EXPECT_EQ(drawn(view).find("<script"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::figures

@@ -1,0 +1,76 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tools/report/run_report.hpp"
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/tools/report/run_data.hpp"
+#include "dynamic_icp/tools/report/run_facts.hpp"
+
+namespace dynamic_icp::report {
+namespace {
+
+/// The entry "scans" of a run; its blobs go to `content`.
+Json scans_data(std::size_t run, RunScans& kept, PageContent& content) {
+  if (kept.scans.empty()) {
+    return nullptr;
+  }
+  Json data = {{"frames", Json::array()},
+               {"dt", Json::array()},
+               {"whole", Json::array()},
+               {"points", Json::array()},
+               {"of", Json::array()}};
+  for (std::size_t k = 0; k < kept.scans.size(); ++k) {
+    KeptScan& scan = kept.scans[k];
+    data["frames"].push_back(scan.frame);
+    data["dt"].push_back(rounded(scan.dt_s, 6));
+    data["whole"].push_back(scan.whole);
+    data["points"].push_back(scan.points);
+    data["of"].push_back(scan.of);
+    content.blobs.emplace_back(fmt::format("scan-{}-{}", run, k), std::move(scan.blob));
+  }
+  return data;
+}
+
+Json map_data(std::size_t run, std::optional<KeptMap>& map, PageContent& content) {
+  if (!map) {
+    return nullptr;
+  }
+  content.blobs.emplace_back(fmt::format("map-{}", run), std::move(map->blob));
+  return {{"points", map->points}, {"cell", rounded(map->cell_m, 3)}};
+}
+
+}  // namespace
+
+PageContent run_report(const std::filesystem::path& folder, const ScanChoice& choice, const Workers& workers) {
+  const figures::RunFiles run = figures::read_run(folder);
+  std::vector<std::string> notes;
+  RunScans kept;
+  std::optional<figures::RunTruth> truth;
+  if (run.frames.empty()) {
+    notes.emplace_back("The run holds no scans.");
+  } else {
+    const std::unique_ptr<datasets::Dataset> recording = figures::open_recording(run, notes);
+    truth = figures::read_truth(run, recording.get(), notes);
+    if (recording != nullptr) {
+      try {
+        kept = keep_scans(run, truth, *recording, choice, workers);
+      } catch (const DataError& error) {
+        notes.push_back(fmt::format("No scans are shown. {}", error.what()));
+      }
+    }
+  }
+  notes.insert(notes.end(), kept.notes.begin(), kept.notes.end());
+
+  PageContent content;
+  Json data = run_data(run, truth, name_of(run));
+  data["scans"] = scans_data(0, kept, content);
+  data["map"] = map_data(0, kept.map, content);
+  content.report = {{"schema", 1},           {"kind", "run"},
+                    {"title", name_of(run)}, {"generator", generator()},
+                    {"notes", notes},        {"runs", Json::array({std::move(data)})}};
+  return content;
+}
+
+}  // namespace dynamic_icp::report

@@ -1,0 +1,209 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tools/report/shown_scan.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <unordered_map>
+
+#include "dynamic_icp/method/odometry/config.hpp"
+#include "dynamic_icp/method/odometry/sweep_report.hpp"
+#include "dynamic_icp/method/preprocess/deskew.hpp"
+#include "dynamic_icp/method/registration/sweep_motion.hpp"
+#include "dynamic_icp/tools/figures/scan_view.hpp"
+
+namespace dynamic_icp::report {
+namespace {
+
+using figures::FrameRow;
+using figures::RunFiles;
+
+constexpr double kMoving_mps = 0.5;  // compensated Doppler beyond which a point counts as moving
+
+/// What the run was told about sweeps.
+preprocess::SweepConfig sweep_config(const RunFiles& run) {
+  preprocess::SweepConfig config;
+  ConfigFields known;
+  append_fields(known, "sweep", preprocess::fields(config));
+  for (const ConfigField& field : known) {
+    if (const std::string text = figures::text_of(run.configuration, field.key); !text.empty()) {
+      set_field(known, field.key, text);
+    }
+  }
+  return config;
+}
+
+/// The motion during a scan: by the twists at its stamp and at the next one or, at the end, the one before.
+std::optional<registration::SweepMotion> sweep_motion(const RunFiles& run, std::size_t frame) {
+  const std::optional<figures::TwistRow>& twist = run.frames[frame].twist;
+  if (!twist || !twist->angular.allFinite() || !twist->linear.allFinite()) {
+    return std::nullopt;
+  }
+  registration::SweepMotion motion;
+  motion.omega = twist->angular;
+  motion.velocity = twist->linear;
+  motion.acceleration = -twist->angular.cross(twist->linear);  // even motion, in axes that turn
+  const std::size_t other = frame + 1 < run.frames.size() ? frame + 1 : frame - 1;
+  constexpr double kLongest_s = 0.5;
+  if (run.frames.size() > 1 && run.frames[other].twist) {
+    const double dt_s = run.seconds(other) - run.seconds(frame);
+    const figures::TwistRow& there = *run.frames[other].twist;
+    if (std::abs(dt_s) < kLongest_s && there.angular.allFinite() && there.linear.allFinite()) {
+      motion.alpha = (there.angular - motion.omega) / dt_s;
+      motion.acceleration = (there.linear - motion.velocity) / dt_s;
+    }
+  }
+  return motion;
+}
+
+bool undid_sweep(const RunFiles& run) { return figures::text_of(run.run, "sweep.undone") == "true"; }
+
+/// The scan with its points where the run had them.
+Scan at_stamp(const RunFiles& run, std::size_t frame, const Scan& scan,
+              const std::optional<registration::SweepMotion>& motion, const Workers& workers) {
+  if (motion) {
+    return registration::undo_sweep(scan, *motion, workers);
+  }
+  // Methods without a twist take the motion between scans for the one during them.
+  return frame == 0 ? scan
+                    : preprocess::deskew(scan, run.trajectory[frame - 1].T_world_sensor.inverse() *
+                                                   run.trajectory[frame].T_world_sensor);
+}
+
+std::vector<double> compensated_doppler(const FrameRow& row, const Scan& scan,
+                                        const std::optional<registration::SweepMotion>& motion) {
+  std::vector<double> compensated = scan.doppler();
+  if (scan.doppler_kind() == DopplerKind::kRelative) {
+    compensated = figures::compensated_doppler(scan, row.ego_velocity);
+    if (motion && scan.has_times()) {
+      for (std::size_t i = 0; i < scan.size(); ++i) {
+        compensated[i] = scan.doppler()[i] + scan.directions()[i].dot(motion->velocity_at(scan.times()[i]));
+      }
+    }
+  }
+  const double bias = std::isfinite(row.doppler_bias) ? row.doppler_bias : 0.0;
+  for (double& value : compensated) {
+    value -= bias;
+  }
+  return compensated;
+}
+
+std::uint8_t object_label(std::size_t place) {
+  return place + kFirstObject <= std::numeric_limits<std::uint8_t>::max()
+             ? static_cast<std::uint8_t>(place + kFirstObject)
+             : kDynamic;
+}
+
+/// Whether the method of the run tells moving points from static ones at all.
+bool tells_motion(const RunFiles& run) { return figures::text_of(run.run, "method") == "dynamic-icp"; }
+
+bool moves(double compensated) { return std::abs(compensated) > kMoving_mps; }
+
+/// Of a run that wrote them. What moves without an object is "not used" there: the Doppler tells it apart.
+std::vector<std::uint8_t> saved_labels(const RunFiles& run, std::size_t frame, const Scan& scan,
+                                       const std::vector<std::int32_t>& saved, const std::vector<double>& compensated) {
+  std::unordered_map<std::int64_t, std::uint8_t> label_of_object;
+  for (std::size_t k = 0; k < run.objects[frame].size(); ++k) {
+    label_of_object.emplace(run.objects[frame][k].id, object_label(k));
+  }
+  const bool tells = tells_motion(run);
+  std::vector<std::uint8_t> labels(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const std::int32_t label = saved[scan.records()[i]];
+    const auto object = label > 0 ? label_of_object.find(label) : label_of_object.end();
+    labels[i] = object != label_of_object.end()  ? object->second
+                : label >= 0                     ? (label == 0 ? kStatic : kDynamic)
+                : tells && moves(compensated[i]) ? kDynamic
+                                                 : kNotUsed;
+  }
+  return labels;
+}
+
+std::vector<std::uint8_t> guessed_labels(const RunFiles& run, std::size_t frame, const Scan& scan,
+                                         const std::vector<double>& compensated) {
+  std::vector<std::uint8_t> labels(scan.size(), kStatic);
+  if (!tells_motion(run)) {
+    return labels;
+  }
+  std::transform(compensated.begin(), compensated.end(), labels.begin(),
+                 [](double value) { return moves(value) ? kDynamic : kStatic; });
+  const figures::ScanView view{.title = {},
+                               .scan = scan,
+                               .ego_velocity = run.frames[frame].ego_velocity,
+                               .objects = run.objects[frame],
+                               .labels = {}};
+  for (std::size_t k = 0; k < view.objects.size(); ++k) {
+    for (const std::uint32_t row : figures::rows_on_object(view, compensated, view.objects[k])) {
+      labels[row] = object_label(k);
+    }
+  }
+  return labels;
+}
+
+/// Undoes what the objects themselves moved between the stamp and the time of each of their points: where the boxes
+/// are.
+void put_objects_at_stamp(const RunFiles& run, std::size_t frame, const std::vector<double>& times, ShownScan& shown) {
+  const std::vector<figures::ObjectRow>& objects = run.objects[frame];
+  for (std::size_t i = 0; i < shown.size(); ++i) {
+    const std::size_t object = shown.labels[i] - std::size_t{kFirstObject};
+    if (shown.labels[i] >= kFirstObject && objects[object].velocity.allFinite()) {
+      shown.points[i] -= times[i] * objects[object].velocity;
+    }
+  }
+}
+
+/// Motions that nobody made, in a damaged file, must not carry points to where they cannot be shown.
+ShownScan within_reach(const ShownScan& scan) {
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t row = 0; row < scan.size(); ++row) {
+    if (scan.points[row].norm() <= kFarthestShown_m) {
+      rows.push_back(row);
+    }
+  }
+  return rows.size() == scan.size() ? scan : select(scan, rows);
+}
+
+}  // namespace
+
+ShownScan select(const ShownScan& scan, std::span<const std::uint32_t> rows) {
+  ShownScan part;
+  const auto pick = [&](const auto& column, auto& into) {
+    into.reserve(rows.size());
+    for (const std::uint32_t row : rows) {
+      into.push_back(column[row]);
+    }
+  };
+  pick(scan.points, part.points);
+  pick(scan.doppler, part.doppler);
+  pick(scan.compensated, part.compensated);
+  pick(scan.labels, part.labels);
+  pick(scan.residual, part.residual);
+  return part;
+}
+
+ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, const Workers& workers) {
+  const bool undo = undid_sweep(run);
+  preprocess::SweepConfig sweep = sweep_config(run);
+  sweep.undo = undo;
+  const std::optional<RawScan> retimed = odometry::retimed(raw, sweep);
+  const Scan measured = Scan::from_raw(retimed ? *retimed : raw, {.max_m = kFarthestShown_m}, workers);
+  const std::optional<registration::SweepMotion> motion = sweep_motion(run, frame);
+  const Scan scan = undo ? at_stamp(run, frame, measured, motion, workers) : measured;
+
+  ShownScan shown;
+  shown.compensated = compensated_doppler(run.frames[frame], scan, undo ? motion : std::nullopt);
+  const std::optional<std::vector<std::int32_t>> saved = figures::read_labels(run, frame, raw.points.size());
+  shown.labels = saved ? saved_labels(run, frame, scan, *saved, shown.compensated)
+                       : guessed_labels(run, frame, scan, shown.compensated);
+  shown.points = scan.points();
+  if (undo && scan.has_times()) {
+    put_objects_at_stamp(run, frame, scan.times(), shown);
+  }
+  shown.doppler = scan.doppler();
+  shown.residual.assign(scan.size(), std::numeric_limits<double>::quiet_NaN());
+  return within_reach(shown);
+}
+
+}  // namespace dynamic_icp::report

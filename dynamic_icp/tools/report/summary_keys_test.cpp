@@ -1,0 +1,26 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tools/report/summary_keys.hpp"
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::report {
+namespace {
+
+TEST(SummaryKeys, HaveUnits) {
+  const figures::Settings summary = {
+      {"rte_rmse_m", 0.012345},     {"rre_rmse_deg", 0.5}, {"ms_p95", 1234.5}, {"fps", 12.0},
+      {"convergence_rate", 0.9876}, {"frames", 123456.0},  {"method", "gicp"}, {"ate_rmse_m", {}}};
+  EXPECT_EQ(value_with_unit(summary, "rte_rmse_m"), "0.01235 m");
+  EXPECT_EQ(value_with_unit(summary, "rre_rmse_deg"), "0.5°");
+  EXPECT_EQ(value_with_unit(summary, "fps"), "12 1/s");
+  EXPECT_EQ(value_with_unit(summary, "convergence_rate"), "98.76 %");
+  EXPECT_EQ(value_with_unit(summary, "frames"), "123456");
+  EXPECT_EQ(value_with_unit(summary, "method"), "gicp");
+  EXPECT_EQ(value_with_unit(summary, "ate_rmse_m"), "-");
+  EXPECT_EQ(value_with_unit(summary, "absent"), "-");
+  EXPECT_EQ(value_with_unit(summary, "ms_p95"), "1234 ms");
+}
+
+}  // namespace
+}  // namespace dynamic_icp::report

@@ -1,0 +1,264 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <map>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/npz.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/simulation/point_layout.hpp"
+
+namespace dynamic_icp::simulation {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+constexpr const char* kRawFolder = "pointcloud_raw";
+constexpr const char* kCompensatedFolder = "pointcloud_compensated";
+constexpr double kLargestReflectivity = 8191.0;
+constexpr double kNanoseconds = 1e9;  // in a second
+
+/// A class of the data set and what the scenes call its bodies.
+struct ObjectClass {
+  std::string_view body;
+  std::string_view name;
+  std::int64_t index;
+};
+
+constexpr ObjectClass kUnknown = {"", "unknown", 0};
+constexpr std::array<ObjectClass, 8> kClasses = {{{"car", "car", 1},
+                                                  {"bus", "bus", 2},
+                                                  {"truck", "truck", 3},
+                                                  {"trailer", "trailer", 4},
+                                                  {"van", "other_vehicle", 6},
+                                                  {"bicycle", "bicycle", 7},
+                                                  {"pedestrian", "pedestrian", 9},
+                                                  {"bicyclist", "bicyclist", 12}}};
+
+const ObjectClass& class_of(std::string_view body) {
+  const auto* const found =
+      std::find_if(kClasses.begin(), kClasses.end(), [&](const ObjectClass& known) { return known.body == body; });
+  return found == kClasses.end() ? kUnknown : *found;
+}
+
+Json to_json(const Eigen::Vector3d& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
+
+Json to_json(const Eigen::Isometry3d& T) {
+  const Eigen::Quaterniond q(T.linear());
+  return {{"translation", to_json(Eigen::Vector3d(T.translation()))},
+          {"rotation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
+}
+
+/// An identifier as text, always the same for the same source.
+std::string uuid(const RandomSource& source) {
+  const std::uint64_t high = source.bits(0);
+  const std::uint64_t low = source.bits(1);
+  return fmt::format("{:08x}-{:04x}-{:04x}-{:04x}-{:012x}", high >> 32U, high >> 16U & 0xFFFFU, high & 0xFFFFU,
+                     low >> 48U, low & 0xFFFFFFFFFFFFU);
+}
+
+/// The source of a sequence's identifiers.
+RandomSource identifiers_of(const Simulation& simulation) {
+  RandomSource source(static_cast<std::uint64_t>(simulation.config().scene.seed));
+  for (const char letter : simulation.kind().name) {
+    source = source.fork(static_cast<unsigned char>(letter));
+  }
+  return source;
+}
+
+template <class Number, class Value>
+formats::NpzMember column(const char* name, std::size_t rows, const Value& value) {
+  std::vector<Number> numbers(rows);
+  for (std::size_t i = 0; i < rows; ++i) {
+    numbers[i] = static_cast<Number>(value(i));
+  }
+  return {name, formats::npy_array<Number>({rows, 1}, numbers)};
+}
+
+formats::NpzMember points_of(const RawScan& scan) {
+  std::vector<float> numbers;
+  numbers.reserve(3 * scan.points.size());
+  for (const Eigen::Vector3d& point : scan.points) {
+    const Eigen::Vector3f p = point.cast<float>();
+    numbers.insert(numbers.end(), p.begin(), p.end());
+  }
+  return {"xyz", formats::npy_array<float>({scan.points.size(), 3}, numbers)};
+}
+
+class AevaScenesLayout : public PointLayout {
+ public:
+  AevaScenesLayout(const fs::path& folder, const Simulation& simulation)
+      : folder_(folder), simulation_(simulation), identifiers_(identifiers_of(simulation)) {
+    formats::make_folder(folder_ / kRawFolder);
+    formats::make_folder(folder_ / kCompensatedFolder);
+    for (const world::MovingBody& body : simulation.scene().world.bodies) {
+      bodies_[body.id] = &body;
+    }
+  }
+
+  void add(const SimulatedFrame& frame, std::size_t sensor) override {
+    if (frames_.empty() || frames_.back()["frame_idx"] != frame.index) {
+      begin_frame(frame);
+    }
+    const std::string name = fmt::format("{}_{}.npz", sensor_config(sensor).name, unix_stamp_ns(frame));
+    write_points(frame, sensor, name);
+    frames_.back()["point_cloud"][sensor_config(sensor).name] = {
+        {"point_cloud_compensated_path", fmt::format("{}/{}", kCompensatedFolder, name)},
+        {"point_cloud_raw_path", fmt::format("{}/{}", kRawFolder, name)}};
+    add_boxes(frame, sensor);
+  }
+
+  void finish() override {
+    const Json sequence = {{"metadata", metadata()}, {"frames", frames_}};
+    formats::write_whole_file(folder_ / "sequence.json", sequence.dump(2) + "\n");
+  }
+
+ private:
+  [[nodiscard]] const SensorConfig& sensor_config(std::size_t sensor) const {
+    return simulation_.config().rig.sensors.at(sensor);
+  }
+
+  static std::int64_t unix_stamp_ns(const SimulatedFrame& frame) {
+    return frame.scan.measured.stamp.ns + kUnixTimeOfStart;
+  }
+
+  static double time_s(const SimulatedFrame& frame) { return seconds_between(Stamp{}, frame.scan.measured.stamp); }
+
+  [[nodiscard]] Eigen::Isometry3d T_world_vehicle(const SimulatedFrame& frame) const {
+    return simulation_.scene().vehicle(time_s(frame)).T_world_body;
+  }
+
+  void begin_frame(const SimulatedFrame& frame) {
+    Eigen::Isometry3d T_first_vehicle = Eigen::Isometry3d::Identity();
+    if (frames_.empty()) {
+      T_first_world_ = T_world_vehicle(frame).inverse();
+    } else {
+      T_first_vehicle = T_first_world_ * T_world_vehicle(frame);
+    }
+    frames_.push_back({{"timestamp_ns", unix_stamp_ns(frame)},
+                       {"frame_idx", frame.index},
+                       {"frame_uuid", uuid(identifiers_.fork(0).fork(frame.index))},
+                       {"ego_pose", to_json(T_first_vehicle)},
+                       {"point_cloud", Json::object()},
+                       {"image", Json::object()},
+                       {"boxes", Json::array()}});
+  }
+
+  void write_points(const SimulatedFrame& frame, std::size_t sensor, const std::string& name) const {
+    const SimulatedScan& scan = frame.scan;
+    const std::size_t rows = scan.measured.points.size();
+    const auto doppler = [](const std::vector<double>& values) {
+      return column<float>("velocity", values.size(), [&](std::size_t i) { return values[i]; });
+    };
+    std::vector<formats::NpzMember> members = {
+        points_of(scan.measured),
+        doppler(scan.measured.doppler),
+        column<float>("reflectivity", rows,
+                      [&](std::size_t i) {
+                        return std::min(kLargestReflectivity, std::round(kLargestReflectivity * scan.reflectivity[i]));
+                      }),
+        column<std::uint32_t>("line_index", rows, [&](std::size_t i) { return scan.lines[i]; }),
+        column<std::uint32_t>("time_offset_ns", rows,
+                              [&](std::size_t i) { return std::llround(kNanoseconds * scan.measured.times[i]); }),
+        column<std::int64_t>("semantic_labels_idx", rows, [&](std::size_t i) { return class_index(scan.bodies[i]); })};
+    write_archive(folder_ / kRawFolder / name, members);
+    members[1] = doppler(compensated_doppler(scan.measured, sensor));
+    write_archive(folder_ / kCompensatedFolder / name, members);
+  }
+
+  static void write_archive(const fs::path& path, const std::vector<formats::NpzMember>& members) {
+    const std::string bytes = formats::npz_bytes(members);
+    formats::write_bytes(path, std::as_bytes(std::span(bytes)));
+  }
+
+  /// s + u . v with the velocity v of the sensor at each point's own time: 0 for what stands.
+  [[nodiscard]] std::vector<double> compensated_doppler(const RawScan& scan, std::size_t sensor) const {
+    std::vector<double> doppler(scan.doppler.size());
+    const double begin_s = seconds_between(Stamp{}, scan.stamp);
+    double offset_s = -1.0;
+    Eigen::Vector3d velocity_sensor = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < doppler.size(); ++i) {
+      if (i == 0 || scan.times[i] != offset_s) {  // many points have the same time, one after the other
+        offset_s = scan.times[i];
+        velocity_sensor = simulation_.sensor_state(begin_s + offset_s, sensor).velocity_sensor;
+      }
+      doppler[i] = scan.doppler[i] + scan.points[i].normalized().dot(velocity_sensor);
+    }
+    return doppler;
+  }
+
+  [[nodiscard]] std::int64_t class_index(std::int32_t body) const {
+    const auto found = bodies_.find(body);
+    return found == bodies_.end() ? kUnknown.index : class_of(found->second->name).index;
+  }
+
+  /// The bodies that no sensor before has shown in this frame.
+  void add_boxes(const SimulatedFrame& frame, std::size_t sensor) {
+    Json& boxes = frames_.back()["boxes"];
+    for (const ObjectTruth& object : frame.objects) {
+      const std::string id = uuid(identifiers_.fork(1).fork(static_cast<std::uint64_t>(object.id)));
+      if (std::none_of(boxes.begin(), boxes.end(), [&](const Json& box) { return box["id"] == id; })) {
+        boxes.push_back(box_json(object, id, frame, sensor));
+      }
+    }
+  }
+
+  [[nodiscard]] Json box_json(const ObjectTruth& object, const std::string& id, const SimulatedFrame& frame,
+                              std::size_t sensor) const {
+    const Eigen::Isometry3d T_vehicle_lidar = T_vehicle_sensor(sensor_config(sensor).mount);
+    Eigen::Isometry3d T_vehicle_box = T_vehicle_lidar * object.T_sensor_body;
+    T_vehicle_box.translation() = T_vehicle_lidar * object.center_sensor;
+    const Eigen::Vector3d turning_vehicle = T_world_vehicle(frame).linear().transpose() *
+                                            bodies_.at(object.id)->trajectory(time_s(frame)).angular_velocity_world;
+    const ObjectClass& object_class = class_of(object.name);
+    return {{"id", id},
+            {"reference_frame", "VEHICLE"},
+            {"dimensions", to_json(object.size)},
+            {"pose", to_json(T_vehicle_box)},
+            {"linear_velocity", to_json(Eigen::Vector3d(T_vehicle_lidar.linear() * object.velocity_sensor))},
+            {"angular_velocity", to_json(turning_vehicle)},
+            {"class", object_class.name},
+            {"class_idx", object_class.index}};
+  }
+
+  [[nodiscard]] Json metadata() const {
+    Json names = Json::array();
+    Json extrinsics = Json::object();
+    for (const SensorConfig& sensor : simulation_.config().rig.sensors) {
+      names.push_back(sensor.name);
+      extrinsics[sensor.name] = to_json(T_vehicle_sensor(sensor.mount));
+    }
+    return {{"sequence_uuid", uuid(identifiers_)},
+            {"sensors", {{"lidars", names}, {"cameras", Json::array()}}},
+            {"camera_lidar_mapping", Json::object()},
+            {"vehicle_to_lidar_extrinsics", extrinsics},
+            {"vehicle_to_camera_extrinsics", Json::object()},
+            {"camera_intrinsics", Json::object()}};
+  }
+
+  fs::path folder_;
+  const Simulation& simulation_;
+  RandomSource identifiers_;
+  std::map<std::int32_t, const world::MovingBody*> bodies_;  ///< by their ids
+  Eigen::Isometry3d T_first_world_ = Eigen::Isometry3d::Identity();
+  std::vector<Json> frames_;
+};
+
+}  // namespace
+
+std::unique_ptr<PointLayout> make_aevascenes_layout(const fs::path& folder, const Simulation& simulation) {
+  return std::make_unique<AevaScenesLayout>(folder, simulation);
+}
+
+}  // namespace dynamic_icp::simulation

@@ -1,0 +1,46 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/tools/simulation/scan_pattern.hpp"
+
+#include <cmath>
+#include <numbers>
+
+namespace dynamic_icp::simulation {
+namespace {
+
+constexpr double kRadians = std::numbers::pi / 180.0;
+
+/// The angle of the middle of cell `i` of `n` over a field of view, from +fov/2 down to -fov/2.
+double cell_angle(int i, int n, double fov_deg) { return fov_deg * kRadians * (0.5 - (i + 0.5) / n); }
+
+PatternRay grid_ray(const FmcwLidarConfig& config, int column, int row) {
+  return {cell_angle(column, config.columns, config.horizontal_fov_deg),
+          config.vertical_center_deg * kRadians + cell_angle(row, config.rows, config.vertical_fov_deg),
+          static_cast<std::uint16_t>(row)};
+}
+
+}  // namespace
+
+ScanPattern scan_pattern(const FmcwLidarConfig& config) {
+  ScanPattern pattern;
+  Firing firing;
+  const int rays = config.columns * config.rows;
+  for (int i = 0; i < rays; ++i) {
+    const int column = config.row_by_row ? i % config.columns : i / config.rows;
+    const int row = config.row_by_row ? i / config.columns : i % config.rows;
+    firing.rays.push_back(grid_ray(config, column, row));
+    if (firing.rays.size() == static_cast<std::size_t>(config.rows)) {
+      firing.time_s = config.sweep_s * static_cast<double>(pattern.size()) / config.columns;
+      pattern.push_back(std::move(firing));
+      firing = {};
+    }
+  }
+  return pattern;
+}
+
+Eigen::Vector3d direction(double azimuth_rad, double elevation_rad) {
+  return {std::cos(elevation_rad) * std::cos(azimuth_rad), std::cos(elevation_rad) * std::sin(azimuth_rad),
+          std::sin(elevation_rad)};
+}
+
+}  // namespace dynamic_icp::simulation
