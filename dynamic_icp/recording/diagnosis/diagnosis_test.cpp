@@ -385,6 +385,7 @@ TEST(Diagnosis, PointsThatCannotBeUsedAreCounted) {
       raw.points[i].setZero();
       raw.doppler[i + 1] = std::numeric_limits<double>::quiet_NaN();
     }
+    raw.points[2].x() = 1e30;
     raw.points.resize(raw.points.size() / 4 * 4);
     raw.doppler.resize(raw.points.size());
   };
@@ -392,7 +393,9 @@ TEST(Diagnosis, PointsThatCannotBeUsedAreCounted) {
   EXPECT_EQ(diagnosis.of(Question::kColumns).verdict, Verdict::kOk) << "zeros fit to any velocity, in any column";
   const Finding unusable = diagnosis.of(Question::kUnusablePoints);
   EXPECT_EQ(unusable.evidence[1].second, 0.25 * unusable.evidence[0].second);
-  EXPECT_EQ(unusable.evidence[2].second, 0.25 * unusable.evidence[0].second);
+  EXPECT_EQ(unusable.evidence[2].first, "implausible");
+  EXPECT_GT(unusable.evidence[2].second, 0.0);
+  EXPECT_EQ(unusable.evidence[3].second, 0.25 * unusable.evidence[0].second);
 }
 
 TEST(Diagnosis, EmptyScansAreNoReasonToFail) {
