@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds and runs every test. Safe to run again; fast when nothing changed.
 # usage: scripts/test.sh              the whole suite, optimised
+#        scripts/test.sh method       the tests of the method, built by clang with assertions, under the address and
+#                                     undefined-behaviour sanitizers
 #        scripts/test.sh sanitizers   the suite under the address and undefined-behaviour sanitizers, and the threaded
-#                                     rooms under the thread sanitizer (a quarter of an hour on two cores)
+#                                     modules under the thread sanitizer (a quarter of an hour on two cores)
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
@@ -27,10 +29,16 @@ if [[ "${1:-}" == sanitizers ]]; then
   configure asan
   cmake --build --preset asan
   run_tests asan
-  threaded_rooms=(base preprocess ego_motion dynamics registration odometry simulation report)
+  threaded_modules=(base preprocess ego_motion dynamics registration odometry simulation report)
   configure tsan
-  cmake --build --preset tsan --target $(printf 'dynamic_icp_%s_test ' "${threaded_rooms[@]}")
-  run_tests tsan -R "^($(IFS='|'; echo "${threaded_rooms[*]}"))\\."
+  cmake --build --preset tsan --target $(printf 'dynamic_icp_%s_test ' "${threaded_modules[@]}")
+  run_tests tsan -R "^($(IFS='|'; echo "${threaded_modules[*]}"))\\."
+elif [[ "${1:-}" == method ]]; then
+  scripts/install_dependencies.sh fuzzing
+  modules=(base spatial estimation preprocess ego_motion dynamics tracking mapping registration odometry)
+  configure method
+  cmake --build --preset method --target $(printf 'dynamic_icp_%s_test ' "${modules[@]}") dynamic_icp_library_test
+  run_tests method -R "^($(IFS='|'; echo "${modules[*]}")|library)\\."
 else
   configure release
   cmake --build --preset release

@@ -17,10 +17,46 @@ TEST(Documents, TheExampleOfTheReadmeIsTheOneThatIsCompiled) {
   EXPECT_NE(read_file(source_folder() / "README.md").find(code), std::string::npos);
 }
 
-TEST(Documents, MapNamesEveryRoom) {
+/// What stands after a word, up to the end of its line.
+std::string rest_of_line(const std::string& text, std::size_t after) {
+  return text.substr(after, text.find('\n', after) - after);
+}
+
+TEST(Documents, TheMapNamesEveryModuleAndWhatItIncludes) {
   const std::string map = read_file(source_folder() / "docs" / "map.md");
-  for (const fs::directory_entry& room : fs::directory_iterator(source_folder() / "dynamic_icp")) {
-    EXPECT_NE(map.find("  " + room.path().filename().string() + "/"), std::string::npos) << room.path();
+  int modules = 0;
+  for (const std::string layer : {"method", "recording", "tools"}) {
+    EXPECT_NE(map.find("\n  " + layer + "/"), std::string::npos) << layer;
+    for (const fs::directory_entry& module : fs::directory_iterator(source_folder() / "dynamic_icp" / layer)) {
+      const std::string name = module.path().filename().string();
+      const std::size_t line = map.find("\n    " + name + "/ ");
+      ASSERT_NE(line, std::string::npos) << name;
+      const std::string listed = rest_of_line(map, map.find("<- ", line) + 3);
+      const std::string build = read_file(module.path() / "CMakeLists.txt");
+      const std::size_t depends = build.find("DEPENDS ");
+      std::string named = depends == std::string::npos ? "nothing" : rest_of_line(build, depends + 8);
+      named = named.substr(0, named.find(" SOURCES"));
+      EXPECT_EQ(listed, named) << name;
+      ++modules;
+    }
+  }
+  EXPECT_GE(modules, 20);
+}
+
+TEST(Documents, LinksLeadToFiles) {
+  for (const fs::path folder : {fs::path(), fs::path("docs"), fs::path("docs/derivations"), fs::path("docs/results")}) {
+    for (const fs::directory_entry& page : fs::directory_iterator(source_folder() / folder)) {
+      if (page.path().extension() != ".md") {
+        continue;
+      }
+      const std::string text = read_file(page.path());
+      for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
+        const std::string target = text.substr(at + 2, text.find_first_of(")#", at + 2) - at - 2);
+        if (!target.empty() && target.find("://") == std::string::npos) {
+          EXPECT_TRUE(fs::exists(page.path().parent_path() / target)) << page.path() << ": " << target;
+        }
+      }
+    }
   }
 }
 

@@ -1,13 +1,13 @@
 // The example of the README, word for word: odometry over a recording in fifteen lines.
 #include <iostream>
 
-#include <dynamic_icp/method/odometry/odometry.hpp>
-#include <dynamic_icp/recording/datasets/dataset.hpp>
+#include <dynamic_icp/dynamic_icp.hpp>
+#include <dynamic_icp/recording.hpp>
 
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const auto recording = dynamic_icp::datasets::open_dataset(argv[1]);
-  const auto odometry = dynamic_icp::odometry::make_odometry("dynamic-icp", dynamic_icp::odometry::preset("default"));
+  const auto odometry = dynamic_icp::odometry::make_odometry("dynamic-icp", {});
   for (std::size_t i = 0; i < recording->size(); ++i) {
     const dynamic_icp::odometry::Frame frame = odometry->process(recording->scan(i));
     std::cout << to_string(frame.status) << "  position " << frame.T_world_sensor.translation().transpose()

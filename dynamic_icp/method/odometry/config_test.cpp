@@ -4,9 +4,13 @@
 
 #include <set>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+
+#include "testing/synthetic_drive.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
@@ -37,6 +41,79 @@ TEST(OdometryConfig, PresetPaperHasThePublishedValues) {
   EXPECT_EQ(paper.registration.tolerance, 1e-5);
 }
 
+TEST(OdometryConfig, AnEmptyOneIsPresetDefault) {
+  Config empty;
+  Config named = preset("default");
+  const ConfigFields expected = fields(named);
+  const ConfigFields found = fields(empty);
+  ASSERT_EQ(found.size(), expected.size());
+  for (std::size_t i = 0; i < found.size(); ++i) {
+    EXPECT_EQ(value_text(found[i]), value_text(expected[i])) << found[i].key;
+  }
+  EXPECT_FALSE(empty.scan_to_scan);
+}
+
+TEST(OdometryConfig, EveryKeyHasAnEffectOnSomeMethod) {
+  std::set<std::string> effective;
+  for (const char* name : {"default", "paper"}) {
+    for (const std::string_view method : method_names()) {
+      Config config = preset(name);
+      for (const ConfigField& field : effective_fields(config, method)) {
+        effective.insert(field.key);
+      }
+    }
+  }
+  Config config;
+  config.ego_motion.use_consensus = false;
+  for (const ConfigField& field : effective_fields(config, "dynamic-icp")) {
+    effective.insert(field.key);
+  }
+  for (const ConfigField& field : fields(config)) {
+    EXPECT_TRUE(effective.contains(field.key)) << field.key;
+  }
+}
+
+/// Another value that is allowed: the other one of two, or an end of the range.
+void change(const ConfigFields& fields, const ConfigField& field) {
+  if (bool* const* flag = std::get_if<bool*>(&field.value)) {
+    **flag = !**flag;
+    return;
+  }
+  const std::string before = value_text(field);
+  set_field(fields, field.key, fmt::format("{}", field.maximum));
+  if (value_text(field) == before) {
+    set_field(fields, field.key, fmt::format("{}", field.minimum));
+  }
+}
+
+// Each method with all keys changed that it is said not to read.
+TEST(OdometryConfig, KeysWithoutEffectHaveNone) {
+  const synthetic::Drive drive{synthetic::street(), synthetic::circle(10.0, 0.2), {}};
+  for (const char* name : {"default", "paper"}) {
+    for (const std::string_view method : method_names()) {
+      Config plain = preset(name);
+      Config changed = plain;
+      std::set<std::string> effective = {"odometry.scan_to_scan"};
+      for (const ConfigField& field : effective_fields(plain, method)) {
+        effective.insert(field.key);
+      }
+      const ConfigFields all = fields(changed);
+      for (const ConfigField& field : all) {
+        if (!effective.contains(field.key) && field.key != "ego_motion.consensus.min_noise_mps") {
+          change(all, field);
+        }
+      }
+      const auto expected = make_odometry(method, plain, {}, 1);
+      const auto found = make_odometry(method, changed, {}, 1);
+      for (int k = 0; k < 4; ++k) {
+        const RawScan scan = drive.scan(k);
+        EXPECT_EQ(found->process(scan).T_world_sensor.matrix(), expected->process(scan).T_world_sensor.matrix())
+            << method << " " << name << " scan " << k;
+      }
+    }
+  }
+}
+
 TEST(OdometryConfig, EveryFieldHasItsOwnKeyAndPassesItsOwnCheck) {
   Config config;
   std::set<std::string> keys;
@@ -60,7 +137,7 @@ TEST(OdometryConfig, ValuesThatDoNotGoTogetherAreRefused) {
 }
 
 TEST(OdometryConfig, AblationsSwitchOffWhatThePaperSwitchesOff) {
-  Config config;
+  Config config = preset("paper");
   apply_ablation(config, "no-vf");
   EXPECT_FALSE(config.ego_motion.filter.enabled);
   config = Config{};

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """What `dynamic-icp info` says of simulated drives that are healthy, and of the same drives with one fault each.
 
-usage: check_doctor.py PROGRAM FOLDER [--scenes A,B] [--seeds 1,2] [--faults A,B] [--frames N]   (a;b for a,b in a fault)
+usage: check_diagnosis.py PROGRAM FOLDER [--scenes A,B] [--seeds 1,2] [--faults A,B] [--frames N]   (a;b for a,b in a fault)
 
 Simulates into FOLDER what is not there yet. Each drive is looked at swept and instant, with and without its ground
 truth. Prints one row of a Markdown table for each scene and kind of scan, one column for each fault. A cell counts the
