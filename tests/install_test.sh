@@ -28,8 +28,9 @@ compile=("${CXX:-c++}" -std=c++20 -fsyntax-only -I"$folder/core/include" -isyste
 
 echo "== The same trajectory whatever the flags of the consumer"
 build_consumer consumer_core "$folder/core" "$folder/native" -DCMAKE_CXX_FLAGS="-march=native -O3"
-"$folder/plain/consumer_core" >"$folder/plain.txt"
-"$folder/native/consumer_core" >"$folder/native.txt"
+"$build/dynamic-icp" simulate street --frames 6 --instant --set lidar.columns=300 --set lidar.rows=32 --quiet --output "$folder/street"
+"$folder/plain/consumer_core" "$folder"/street/point_clouds/*.bin >"$folder/plain.txt"
+"$folder/native/consumer_core" "$folder"/street/point_clouds/*.bin >"$folder/native.txt"
 [[ $(grep -c converged "$folder/plain.txt") -ge 8 ]]
 diff "$folder/plain.txt" "$folder/native.txt"
 
@@ -46,6 +47,6 @@ echo "== As a subproject: the method alone, and nothing of the parent is changed
 echo "== The whole installation, and the example of the README"
 "$cmake" --install "$build" --prefix "$folder/all" >/dev/null
 build_consumer consumer "$folder/all" "$folder/io"
-"$folder/all/bin/dynamic-icp" simulate street --frames 2 --quiet --output "$folder/street"
-"$folder/io/consumer" "$folder/street" | tee "$folder/output"
+"$folder/all/bin/dynamic-icp" simulate street --frames 2 --quiet --output "$folder/two"
+"$folder/io/consumer" "$folder/two" | tee "$folder/output"
 [[ $(wc -l <"$folder/output") -eq 2 ]]

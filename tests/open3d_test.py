@@ -57,9 +57,10 @@ def cloud_of(rows):
 
 def ours(program, method, source, target):
     settings = ["preprocess.voxel.voxel_size_m=0", "preprocess.range.min_range_m=0", "preprocess.range.max_range_m=80",
-                f"preprocess.normals.radius_m={RADIUS}", f"preprocess.normals.max_neighbours={NEIGHBOURS}",
                 f"registration.max_correspondence_distance_m={GATE}", f"registration.max_iterations={ITERATIONS}",
                 f"registration.tolerance={TOLERANCE}"]
+    if method != "point-to-point":
+        settings += [f"preprocess.normals.radius_m={RADIUS}", f"preprocess.normals.max_neighbours={NEIGHBOURS}"]
     command = [program, "register", source, target, "--method", method, "--preset", "paper"]
     for setting in settings:
         command += ["--set", setting]

@@ -57,7 +57,7 @@ class Dataset {
   /// The other columns of scan `index`, each as long as its points. Read anew at each call: not for the hot path.
   [[nodiscard]] virtual std::vector<PointColumn> columns(std::size_t /*index*/) const { return {}; }
 
-  /// What the layout says of its Doppler; that it is so is for the doctor to find out.
+  /// What the layout says of its Doppler; that it is so is for the diagnosis to find out.
   [[nodiscard]] virtual DopplerKind doppler_kind() const { return DopplerKind::kRelative; }
 
   /// The boxes at scan `index`, nothing where the recording has none at all.

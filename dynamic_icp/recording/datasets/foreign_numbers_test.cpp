@@ -30,7 +30,7 @@ TEST(ForeignNumbers, AreThoseOfMostFinitePoints) {
   }
   scan.points = {{250'000, -3'000, 12}, {0, 0, 0}};
   scan.doppler = {16'000, 0};
-  EXPECT_NO_THROW(refuse_foreign_numbers(scan, "a.bin", kXyzd)) << "millimetres, for the doctor";
+  EXPECT_NO_THROW(refuse_foreign_numbers(scan, "a.bin", kXyzd)) << "millimetres, for the diagnosis";
   EXPECT_NO_THROW(refuse_foreign_numbers({}, "a.bin", kXyzd));
 }
 

@@ -16,7 +16,7 @@
 
 namespace dynamic_icp::diagnosis {
 
-/// What the doctor asks of a recording, one file each.
+/// What the diagnosis asks of a recording, one file each.
 enum class Question {
   kDopplerSign,
   kDopplerKind,

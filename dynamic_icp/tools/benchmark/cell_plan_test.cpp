@@ -51,8 +51,6 @@ TEST(CellPlan, SaysWhereAndHow) {
                                                          "2",
                                                          "--ablation",
                                                          "no-dr",
-                                                         "--config",
-                                                         "/my.yaml",
                                                          "--set",
                                                          "x=1",
                                                          "--set",

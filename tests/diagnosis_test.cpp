@@ -16,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-class Doctor : public ProgramTest {
+class DiagnosisProgram : public ProgramTest {
  protected:
   /// The street again with its Doppler changed, and no ground truth.
   [[nodiscard]] fs::path changed(const std::string& name, const std::function<float(float)>& change) const {
@@ -39,7 +39,7 @@ class Doctor : public ProgramTest {
   }
 };
 
-TEST_F(Doctor, InfoSaysItAsJson) {
+TEST_F(DiagnosisProgram, InfoSaysItAsJson) {
   const json healthy = json::parse(run_program("info --json " + street().string()).text);
   ASSERT_EQ(healthy["diagnosis"].size(), 11u);
   for (const json& finding : healthy["diagnosis"]) {
@@ -52,7 +52,7 @@ TEST_F(Doctor, InfoSaysItAsJson) {
   EXPECT_EQ(turned["diagnosis"][0]["fix"], "--doppler-sign away");
 }
 
-TEST_F(Doctor, TheJsonHoldsWhatTheTextShows) {
+TEST_F(DiagnosisProgram, TheJsonHoldsWhatTheTextShows) {
   const json about = json::parse(run_program("info --json " + street().string()).text);
   EXPECT_NEAR(about["time"]["period_s"].get<double>(), 0.1, 1e-6);
   EXPECT_TRUE(about["time"]["gaps"].empty());
@@ -66,7 +66,7 @@ TEST_F(Doctor, TheJsonHoldsWhatTheTextShows) {
   EXPECT_NE(text.find(std::to_string(points["median"].get<int>())), std::string::npos) << text;
 }
 
-TEST_F(Doctor, RunRefusesAReflectanceInPlaceOfTheDoppler) {
+TEST_F(DiagnosisProgram, RunRefusesAReflectanceInPlaceOfTheDoppler) {
   for (const auto& [name, most] : {std::pair{"unit", 1.0F}, std::pair{"byte", 255.0F}}) {
     unsigned state = 1;
     const float scale = most;
@@ -89,7 +89,7 @@ TEST_F(Doctor, RunRefusesAReflectanceInPlaceOfTheDoppler) {
   }
 }
 
-TEST_F(Doctor, RunRefusesATurnedSignUntilItIsSaid) {
+TEST_F(DiagnosisProgram, RunRefusesATurnedSignUntilItIsSaid) {
   const fs::path turned = changed("turned", [](float doppler) { return -doppler; });
   const Outcome refused = run(turned, "out");
   EXPECT_EQ(refused.status, 1);
@@ -107,7 +107,7 @@ TEST_F(Doctor, RunRefusesATurnedSignUntilItIsSaid) {
   EXPECT_EQ(run(turned, "out3", "--doppler-sign away").status, 0) << "what was said is believed";
 }
 
-TEST_F(Doctor, RunWarnsOfWhatItCanLiveWith) {
+TEST_F(DiagnosisProgram, RunWarnsOfWhatItCanLiveWith) {
   const fs::path biased = changed("biased", [](float doppler) { return doppler + 0.3F; });
   EXPECT_EQ(run(biased, "out").status, 0);
   const json record = json::parse(read_file(folder_ / "out" / "run.json"));
@@ -115,7 +115,7 @@ TEST_F(Doctor, RunWarnsOfWhatItCanLiveWith) {
 }
 
 // A real drive of a 4D radar: relative, positive away, 12 Hz, the poses of its ground truth now and then repeated.
-TEST_F(Doctor, ARecordedRadarIsWhatItIs) {
+TEST_F(DiagnosisProgram, ARecordedRadarIsWhatItIs) {
   const fs::path recording = source_folder() / ".." / "shared" / "data" / "radar-campus";
   if (!fs::exists(recording)) {
     GTEST_SKIP() << "no recording beside the sources";
@@ -145,7 +145,7 @@ TEST_F(Doctor, ARecordedRadarIsWhatItIs) {
 
 // Without the sensor's own motion in the Doppler nothing shows the way along smooth walls, but the noise of the points:
 // no frame may claim to know it.
-TEST_F(Doctor, CompensatedDopplerInATunnelLeavesTheWayUnknown) {
+TEST_F(DiagnosisProgram, CompensatedDopplerInATunnelLeavesTheWayUnknown) {
   const auto frames_of = [&](const std::string& scene) {
     const fs::path drive = folder_ / scene;
     EXPECT_EQ(run_program("simulate " + scene + " --frames 10 --instant --quiet --layout aevascenes --output " +
@@ -174,7 +174,7 @@ TEST_F(Doctor, CompensatedDopplerInATunnelLeavesTheWayUnknown) {
   EXPECT_LT(json::parse(read_file(folder_ / "out-street" / "summary.json"))["rte_rmse_m"].get<double>(), 0.02);
 }
 
-TEST_F(Doctor, WrongOptionsAreWrongUse) {
+TEST_F(DiagnosisProgram, WrongOptionsAreWrongUse) {
   for (const char* options : {"--doppler-sign up", "--doppler-kind raw", "--columns x,y,z", "--time-scale 0",
                               "--point-scale nan", "--field doppler", "--period -1"}) {
     const Outcome outcome = run_program("info " + street().string() + " " + options);
