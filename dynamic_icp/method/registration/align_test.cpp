@@ -9,7 +9,6 @@
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/estimation/robust_kernel.hpp"
-#include "dynamic_icp/method/registration/gauss_newton.hpp"
 #include "dynamic_icp/method/registration/objective.hpp"
 
 namespace dynamic_icp::registration {
@@ -373,62 +372,6 @@ TEST(AlignTerms, PairsWithAWrongDopplerAreRejectedFromTheGivenIterationOn) {
   EXPECT_EQ(linearise(source, room.target(), pairs, T, objective, 1, workers).geometry.count, 300U);
   EXPECT_EQ(linearise(source, room.target(), pairs, T, objective, 2, workers).geometry.count, 200U);
   EXPECT_EQ(linearise(source, room.target(), pairs, T, objective, 2, workers).doppler.count, 200U);
-}
-
-// Pairs at the start and none anywhere else, so that the first step loses all.
-class LosingProblem : public Problem {
- public:
-  Correspondences find(const Eigen::Isometry3d& T) override {
-    const std::size_t pairs = T.matrix().isIdentity() ? 10 : 0;
-    return judged(std::vector<Correspondence>(pairs, {0, 0, 0.01}), 10);
-  }
-  [[nodiscard]] Linearisation linearise(const Correspondences& /*pairs*/, const Eigen::Isometry3d& /*T*/,
-                                        int /*iteration*/) const override {
-    Linearisation result;
-    result.equations.H.setIdentity();
-    result.equations.b.setConstant(-1.0);
-    return result;
-  }
-};
-
-TEST(Align, AStepThatLosesAllPairsIsNoAlignment) {
-  LosingProblem problem;
-  StopRule stop;
-  stop.max_iterations = 1;
-  const Alignment result = minimise(problem, Eigen::Isometry3d::Identity(), 1.0, stop);
-  ASSERT_EQ(result.correspondences, 0U);
-  EXPECT_EQ(result.status, AlignStatus::kTooFewCorrespondences);
-}
-
-// Two points of the same place whose gradients leave the range of double.
-class RunawayProblem : public Problem {
- public:
-  explicit RunawayProblem(double gradient) : gradient_(gradient) {}
-  Correspondences find(const Eigen::Isometry3d& T) override {
-    EXPECT_TRUE(T.matrix().allFinite());
-    return judged(std::vector<Correspondence>(10, {0, 0, 0.01}), 10);
-  }
-  [[nodiscard]] Linearisation linearise(const Correspondences& /*pairs*/, const Eigen::Isometry3d& /*T*/,
-                                        int iteration) const override {
-    Linearisation result;
-    result.equations.H.setIdentity();
-    result.equations.b.setConstant(iteration == 0 ? -0.01 : gradient_);
-    return result;
-  }
-
- private:
-  double gradient_;
-};
-
-TEST(Align, AStepOutOfReachEndsAtThePoseBeforeIt) {
-  for (const double gradient : {1e7, 1e200, std::numeric_limits<double>::infinity()}) {
-    RunawayProblem problem(gradient);
-    const Alignment result = minimise(problem, Eigen::Isometry3d::Identity(), 1.0, {});
-    EXPECT_EQ(result.status, AlignStatus::kDiverged) << gradient;
-    EXPECT_FALSE(result.covariance);
-    EXPECT_TRUE(result.T_target_source.matrix().allFinite());
-    EXPECT_NEAR(result.T_target_source.translation().norm(), 0.01 * std::sqrt(3.0), 1e-3);
-  }
 }
 
 TEST(AlignTerms, MissingNormalsAndImpossibleObjectivesAreRefused) {
