@@ -130,9 +130,10 @@ TEST_F(BadInput, ARunWithoutOneUsableScanIsAFailure) {
     at_origin += record(0.0F, 0.0F, 0.0F, -3.0F);
     not_numbers += record(NAN, 1.0F, INFINITY, NAN);
   }
-  for (const auto& [scan, words] : {std::pair{at_origin, "0 have numbers that no sensor measures, 1500 are at the origin"},
-                                    std::pair{not_numbers, "of 1500 points 1500 have numbers that are not finite"},
-                                    std::pair{std::string(), "none of the 3 scans has enough points"}}) {
+  for (const auto& [scan, words] :
+       {std::pair{at_origin, "0 have numbers that no sensor measures, 1500 are at the origin"},
+        std::pair{not_numbers, "of 1500 points 1500 have numbers that are not finite"},
+        std::pair{std::string(), "none of the 3 scans has enough points"}}) {
     for (const char* name : {"00001.bin", "00002.bin", "00003.bin"}) {
       write_file(recording / "point_clouds" / name, scan);
     }

@@ -202,7 +202,8 @@ TEST_F(EndToEnd, TheSameBytesForAnyNumberOfThreadsAndEveryRun) {
 
 TEST_F(EndToEnd, AnOptionTakesOneValueAndLeavesTheRest) {
   run_and_summarise("--max-frames 2 --set registration.map.max_iterations=7 " + street().string());
-  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"]["registration.map.max_iterations"], 7);
+  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"]["registration.map.max_iterations"],
+            7);
 }
 
 TEST_F(EndToEnd, AblationsRunAndSayWhatTheyAre) {

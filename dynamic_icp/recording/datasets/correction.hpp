@@ -10,8 +10,9 @@
 
 namespace dynamic_icp::datasets {
 
-/// How the numbers of a recording are to be mended where it, or its layout, says them wrong: what the diagnosis proposes
-/// and the options --doppler-sign, --doppler-kind, --doppler-scale, --point-scale, --time-scale and --columns ask for.
+/// How the numbers of a recording are to be mended where it, or its layout, says them wrong: what the diagnosis
+/// proposes and the options --doppler-sign, --doppler-kind, --doppler-scale, --point-scale, --time-scale and --columns
+/// ask for.
 struct Correction {
   std::optional<DopplerKind> doppler_kind;    ///< instead of what the layout says
   bool doppler_is_towards = false;            ///< positive towards the sensor: turned round

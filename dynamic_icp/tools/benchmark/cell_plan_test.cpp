@@ -33,30 +33,12 @@ TEST(CellPlan, SaysWhereAndHow) {
   from.ablation = "no-dr";
   const CellPlan planned = plan(from);
   EXPECT_EQ(planned.folder, "street/dynamic-icp_no-dr");
-  EXPECT_EQ(planned.arguments, (std::vector<std::string>{"run",
-                                                         "/data/street",
-                                                         "--method",
-                                                         "dynamic-icp",
-                                                         "--preset",
-                                                         "paper",
-                                                         "--format",
-                                                         "dicp",
-                                                         "--field",
-                                                         "x=px",
-                                                         "--doppler-sign",
-                                                         "towards",
-                                                         "--start",
-                                                         "3",
-                                                         "--threads",
-                                                         "2",
-                                                         "--ablation",
-                                                         "no-dr",
-                                                         "--set",
-                                                         "x=1",
-                                                         "--set",
-                                                         "y=2",
-                                                         "--max-frames",
-                                                         "5"}));
+  EXPECT_EQ(
+      planned.arguments,
+      (std::vector<std::string>{
+          "run",        "/data/street", "--method",       "dynamic-icp", "--preset", "paper", "--format",     "dicp",
+          "--field",    "x=px",         "--doppler-sign", "towards",     "--start",  "3",     "--threads",    "2",
+          "--ablation", "no-dr",        "--set",          "x=1",         "--set",    "y=2",   "--max-frames", "5"}));
   from.ablation = "none";
   EXPECT_EQ(plan(from).folder, "street/dynamic-icp");
 }
