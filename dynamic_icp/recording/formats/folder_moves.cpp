@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int kMostTries = 100;  // others may come and go at the same place
+constexpr int kMaxTries = 100;  // others may come and go at the same place
 
 void clear_away(const fs::path& folder) {
   std::error_code ignored;
@@ -171,7 +171,7 @@ void replace_in_two_steps(const fs::path& target, const std::string& number, con
 
 void move_beside(const fs::path& target, const std::string& number, const FolderCheck& check) {
   const fs::path staging = StagedNames::beside(target).path(Staged::kPartial, number);
-  for (int tries = 1; tries <= kMostTries; ++tries) {
+  for (int tries = 1; tries <= kMaxTries; ++tries) {
     std::error_code fault;
     if (!fs::exists(target, fault) || is_vacant(target)) {
       fs::rename(staging, target, fault);

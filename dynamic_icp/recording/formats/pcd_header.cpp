@@ -21,7 +21,7 @@ using Words = std::vector<std::string_view>;
 
 constexpr std::size_t kMostNumbersOfAPoint = 1U << 20U;
 // No file has that many but a damaged one; each is looked up among the others by its name.
-constexpr std::size_t kMostFields = 1024;
+constexpr std::size_t kMaxFields = 1024;
 
 /// Text of the file as it may stand in a message: it may be anything.
 std::string printable(std::string_view text) {
@@ -132,8 +132,8 @@ class HeaderReader {
   void add_fields() {
     const Entry& names = entries_.contains("COLUMNS") ? entry("COLUMNS") : entry("FIELDS");
     const std::size_t fields = names.words.size();
-    if (fields > kMostFields) {
-      fail(names.line, fmt::format("{} fields, expected at most {}", fields, kMostFields));
+    if (fields > kMaxFields) {
+      fail(names.line, fmt::format("{} fields, expected at most {}", fields, kMaxFields));
     }
     const Entry& sizes = entry_for_fields("SIZE", fields);
     const Entry& types = entry_for_fields("TYPE", fields);

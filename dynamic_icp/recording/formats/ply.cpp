@@ -25,8 +25,8 @@ namespace {
 enum class Encoding { kAscii, kLittleEndian, kBigEndian };
 
 // No file has that many but a damaged one; each is looked up among the others by its name.
-constexpr std::size_t kMostElements = 1024;
-constexpr std::size_t kMostColumns = 1024;  // of an element
+constexpr std::size_t kMaxElements = 1024;
+constexpr std::size_t kMaxColumns = 1024;  // of an element
 
 class Reader {
  public:
@@ -108,8 +108,8 @@ class Reader {
     if (!number) {
       fail(fmt::format("element '{}' has the count '{}', expected a whole number", name, count));
     }
-    if (file_.elements.size() == kMostElements) {
-      fail(fmt::format("more than {} elements", kMostElements));
+    if (file_.elements.size() == kMaxElements) {
+      fail(fmt::format("more than {} elements", kMaxElements));
     }
     if (file_.find(name) != nullptr) {
       fail(fmt::format("element '{}' for the second time", name));
@@ -132,8 +132,8 @@ class Reader {
       fail(fmt::format("property '{}' before the first element", name));
     }
     PlyElement& element = file_.elements.back();
-    if (element.columns.size() == kMostColumns) {
-      fail(fmt::format("element '{}' has more than {} properties", element.name, kMostColumns));
+    if (element.columns.size() == kMaxColumns) {
+      fail(fmt::format("element '{}' has more than {} properties", element.name, kMaxColumns));
     }
     if (element.find(name) != nullptr) {
       fail(fmt::format("property '{}' of element '{}' for the second time", name, element.name));

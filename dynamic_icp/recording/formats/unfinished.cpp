@@ -15,11 +15,11 @@
 namespace dynamic_icp::formats {
 namespace {
 
-constexpr std::size_t kMostAtOnce = 16;  // what has no place here is found and removed by the next writer
-constexpr int kMostPasses = 4;           // a folder that changes while it is read may skip entries
+constexpr std::size_t kMaxAtOnce = 16;  // what has no place here is found and removed by the next writer
+constexpr int kMaxPasses = 4;           // a folder that changes while it is read may skip entries
 constexpr int kDeepest = 32;
 
-std::array<std::atomic<char*>, kMostAtOnce> unfinished_paths{};
+std::array<std::atomic<char*>, kMaxAtOnce> unfinished_paths{};
 static_assert(std::atomic<char*>::is_always_lock_free, "read in a signal handler");
 
 void remove_entry(int parent, const char* name, int depth);
@@ -51,7 +51,7 @@ void remove_entry(int parent, const char* name, int depth) {
   if (folder < 0) {
     return;
   }
-  for (int pass = 0; pass < kMostPasses && empty_folder(folder, depth + 1); ++pass) {
+  for (int pass = 0; pass < kMaxPasses && empty_folder(folder, depth + 1); ++pass) {
   }
   ::close(folder);
   ::unlinkat(parent, name, AT_REMOVEDIR);

@@ -41,8 +41,8 @@ void refuse_longer(const std::filesystem::path& path, std::uintmax_t bytes, std:
 /// a file that does not grow meanwhile is read without taking memory twice.
 std::string read_to_end(int descriptor, const std::filesystem::path& path, std::uintmax_t expected,
                         std::uintmax_t max_bytes) {
-  constexpr std::size_t kLeastRoom = 4096;  // files of the system's own have no size
-  std::string content(std::max<std::size_t>(kLeastRoom, expected + 1), '\0');
+  constexpr std::size_t kMinRoom = 4096;  // files of the system's own have no size
+  std::string content(std::max<std::size_t>(kMinRoom, expected + 1), '\0');
   std::size_t used = 0;
   while (true) {
     if (used == content.size()) {
