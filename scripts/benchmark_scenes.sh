@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# The tables of docs/benchmarks.md: every simulated scene with three seeds, as instant and as swept scans, and some with a
+# The tables of docs/results/accuracy.md: every simulated scene with three seeds, as instant and as swept scans, and some with a
 # constant Doppler error of 0.2 m/s, through every method; ablations of both presets. Safe to stop and to run again: what
 # is finished is kept. Needs the program at build/dynamic-icp.
 # usage: scripts/benchmark_scenes.sh DIR [SCANS]   (5 GB for 40 scans a drive)

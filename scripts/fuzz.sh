@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Feeds the readers of files with damaged ones until something breaks, under the address and undefined-behaviour
-# sanitizers: libFuzzer, two targets at a time. Installs clang when it is missing.
+# Feeds the readers with damaged files, and every method with scans of any numbers (target `scans`), until something
+# breaks, under the address and undefined-behaviour sanitizers: libFuzzer, two targets at a time. Installs clang when it is missing.
 # usage: scripts/fuzz.sh [SECONDS] [TARGET...]     each target for SECONDS (default 60); default: all targets
 # The random numbers begin with SEED (environment, default 1). Findings stay in build-fuzz/findings, inputs that reach new code in build-fuzz/corpus. Status 1 after a finding.
 set -euo pipefail

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/config.hpp"
 
+#include <limits>
 #include <set>
 
 #include <fmt/format.h>
@@ -39,6 +40,21 @@ TEST(OdometryConfig, PresetPaperHasThePublishedValues) {
   EXPECT_EQ(paper.registration.max_correspondence_distance_m, 0.3);
   EXPECT_EQ(paper.registration.max_iterations, 100);
   EXPECT_EQ(paper.registration.tolerance, 1e-5);
+}
+
+TEST(OdometryConfig, AMountingThatIsNoRigidMotionIsRefused) {
+  const auto make = [](const Eigen::Isometry3d& T_vehicle_sensor) {
+    return make_odometry("doppler-icp", {}, {T_vehicle_sensor, DopplerKind::kRelative}, 1);
+  };
+  EXPECT_NO_THROW(make(Eigen::Isometry3d::Identity()));
+  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e150}) {
+    Eigen::Isometry3d far = Eigen::Isometry3d::Identity();
+    far.translation().y() = bad;
+    EXPECT_THROW(make(far), UsageError) << bad;
+    Eigen::Isometry3d sheared = Eigen::Isometry3d::Identity();
+    sheared.linear()(0, 1) = bad;
+    EXPECT_THROW(make(sheared), UsageError) << bad;
+  }
 }
 
 TEST(OdometryConfig, AnEmptyOneIsPresetDefault) {
