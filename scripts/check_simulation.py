@@ -14,6 +14,7 @@ Prints one row of a Markdown table for each sequence:
   range, Doppler   mean and standard deviation of measured minus true, without values off by more than 6 sigma: mixed
                    returns at edges and gross Doppler errors
   outliers         share of the Doppler values off by more than 6 sigma
+Ends with status 1 when the static Doppler is off by more than 1 mm/s, or the mean of range or Doppler by 1 mm or 1 mm/s.
 """
 import json
 import sys
@@ -109,6 +110,7 @@ def check(folder):
           f"| {1000 * np.median(laid):.3f} mm | {1000 * range_error[close].mean():+.2f} +- {1000 * range_error[close].std():.2f} mm "
           f"| {doppler_error[usual].mean():+.4f} +- {doppler_error[usual].std():.4f} m/s | {100 * (1 - usual.mean()):.2f} % |",
           flush=True)
+    return static_doppler < 1e-3 and abs(range_error[close].mean()) < 1e-3 and abs(doppler_error[usual].mean()) < 1e-3
 
 
 if __name__ == "__main__":
@@ -116,5 +118,4 @@ if __name__ == "__main__":
         sys.exit(__doc__)
     print("| scene | scans | points | moving | static Doppler | laid on next | range | Doppler | outliers |")
     print("|---|---|---|---|---|---|---|---|---|")
-    for argument in sys.argv[1:]:
-        check(argument)
+    sys.exit(0 if all([check(argument) for argument in sys.argv[1:]]) else 1)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages the build needs, if any is missing. For Debian 12, Ubuntu 22.04 and newer; as root or with sudo.
-# usage: scripts/install_dependencies.sh [tests] [pictures] [benchmarks [peers]] [fuzzing]
+# usage: scripts/install_dependencies.sh [tests] [pictures] [benchmarks [peers]] [fuzzing] [format] [lint]
 #   pictures     for PNG files from dynamic-icp plot (60 MB)
 #   benchmarks   for scripts/benchmark_speed.sh; peers: also the libraries it compares with (1.2 GB)
 set -euo pipefail
@@ -24,8 +24,12 @@ for purpose in "$@"; do
       optional+=(pkg-config libopen3d-dev libpcl-dev python3-open3d) ;;
     fuzzing)
       packages+=(clang) ;;
+    format)
+      packages+=(clang-format) ;;
+    lint)
+      packages+=(clang-tidy python3-numpy python3-scipy) ;;
     *)
-      echo "unknown purpose '$purpose'; known are: tests, pictures, benchmarks, peers, fuzzing" >&2
+      echo "unknown purpose '$purpose'; known are: tests, pictures, benchmarks, peers, fuzzing, format, lint" >&2
       exit 2 ;;
   esac
 done

@@ -1,12 +1,19 @@
 #!/usr/bin/env bash
 # Installs what is missing, builds and runs every test. Safe to run again; fast when nothing changed.
 # usage: scripts/test.sh              the whole suite, optimised
+#        scripts/test.sh format       whether every source is formatted as .clang-format says
 #        scripts/test.sh method       the tests of the method, built by clang with assertions, under the address and
 #                                     undefined-behaviour sanitizers
-#        scripts/test.sh sanitizers   the suite under the address and undefined-behaviour sanitizers, and the threaded
-#                                     modules under the thread sanitizer (a quarter of an hour on two cores)
+#        scripts/test.sh threads      the tests of the method that share work among threads, under the thread sanitizer
+# scripts/check.sh runs what takes longer.
 set -euo pipefail
 cd "$(dirname "$0")/.."
+
+if [[ "${1:-}" == format ]]; then
+  scripts/install_dependencies.sh format
+  git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run -Werror
+  exit
+fi
 
 scripts/install_dependencies.sh tests
 scripts/install_viewer.sh tests
@@ -25,14 +32,11 @@ run_tests() {  # preset, then arguments for ctest
   ctest --preset "$preset" -j "$(nproc)" "$@"
 }
 
-if [[ "${1:-}" == sanitizers ]]; then
-  configure asan
-  cmake --build --preset asan
-  run_tests asan
-  threaded_modules=(base preprocess ego_motion dynamics registration odometry simulation report)
+if [[ "${1:-}" == threads ]]; then
+  modules=(base preprocess ego_motion dynamics registration odometry)
   configure tsan
-  cmake --build --preset tsan --target $(printf 'dynamic_icp_%s_test ' "${threaded_modules[@]}")
-  run_tests tsan -R "^($(IFS='|'; echo "${threaded_modules[*]}"))\\."
+  cmake --build --preset tsan --target $(printf 'dynamic_icp_%s_test ' "${modules[@]}")
+  run_tests tsan -R "^($(IFS='|'; echo "${modules[*]}"))\\."
 elif [[ "${1:-}" == method ]]; then
   scripts/install_dependencies.sh fuzzing
   modules=(base spatial estimation preprocess ego_motion dynamics tracking mapping registration odometry)

@@ -1,6 +1,10 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 // Documents that are made from the program, or say what the program does, are true.
+#include <map>
+#include <regex>
+#include <sstream>
+
 #include "tests/program.hpp"
 
 namespace dynamic_icp::tests {
@@ -43,21 +47,67 @@ TEST(Documents, TheMapNamesEveryModuleAndWhatItIncludes) {
   EXPECT_GE(modules, 20);
 }
 
-TEST(Documents, LinksLeadToFiles) {
+/// Every page of the documentation with its text.
+std::map<fs::path, std::string> pages() {
+  std::map<fs::path, std::string> texts;
   for (const fs::path folder : {fs::path(), fs::path("docs"), fs::path("docs/derivations"), fs::path("docs/results")}) {
     for (const fs::directory_entry& page : fs::directory_iterator(source_folder() / folder)) {
-      if (page.path().extension() != ".md") {
-        continue;
-      }
-      const std::string text = read_file(page.path());
-      for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
-        const std::string target = text.substr(at + 2, text.find_first_of(")#", at + 2) - at - 2);
-        if (!target.empty() && target.find("://") == std::string::npos) {
-          EXPECT_TRUE(fs::exists(page.path().parent_path() / target)) << page.path() << ": " << target;
-        }
+      if (page.path().extension() == ".md") {
+        texts[page.path()] = read_file(page.path());
       }
     }
   }
+  return texts;
+}
+
+TEST(Documents, LinksLeadToFiles) {
+  for (const auto& [page, text] : pages()) {
+    for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
+      const std::string target = text.substr(at + 2, text.find_first_of(")#", at + 2) - at - 2);
+      if (!target.empty() && target.find("://") == std::string::npos) {
+        EXPECT_TRUE(fs::exists(page.parent_path() / target)) << page << ": " << target;
+      }
+    }
+  }
+}
+
+TEST(Documents, ScriptsTheyNameExist) {
+  const std::regex script("scripts/[a-z0-9_]+\\.(sh|py)");
+  for (const auto& [page, text] : pages()) {
+    for (std::sregex_iterator found(text.begin(), text.end(), script), end; found != end; ++found) {
+      EXPECT_TRUE(fs::exists(source_folder() / found->str())) << page << ": " << found->str();
+    }
+  }
+}
+
+TEST(Documents, CommandsTheyShowAreUnderstood) {
+  // The program with what follows, up to a comment, the next command or the end of the line or the code.
+  const std::regex command("(?:\n|/|`|&& )dynamic-icp ([a-z]+)([^#&`|\n]*)");
+  const std::regex option(" (--[a-z][a-z-]*)");
+  const std::regex setting(" --set ([a-z_0-9.]+)=");
+  const std::string keys = read_file(source_folder() / "docs" / "configuration.md");
+  std::map<std::string, std::string> help;
+  int options = 0;
+  for (const auto& [page, text] : pages()) {
+    for (std::sregex_iterator found(text.begin(), text.end(), command), end; found != end; ++found) {
+      const std::string name = found->str(1);
+      const std::string arguments = found->str(2);
+      std::string& known = help[name];
+      if (known.empty()) {
+        known = run_program(name + " --help").text;
+      }
+      ASSERT_NE(known.find("dynamic-icp " + name), std::string::npos) << page << ": " << found->str();
+      for (std::sregex_iterator word(arguments.begin(), arguments.end(), option); word != end; ++word) {
+        EXPECT_TRUE(std::regex_search(known, std::regex("[ ,]" + word->str(1) + "[ ,\n]")))
+            << page << ": " << found->str();
+        ++options;
+      }
+      for (std::sregex_iterator key(arguments.begin(), arguments.end(), setting); key != end && name == "run"; ++key) {
+        EXPECT_NE(keys.find("`" + key->str(1) + "`"), std::string::npos) << page << ": " << found->str();
+      }
+    }
+  }
+  EXPECT_GT(options, 20);
 }
 
 TEST(Documents, EverySceneHasAPicture) {
