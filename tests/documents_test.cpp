@@ -50,7 +50,7 @@ TEST(Documents, TheMapNamesEveryModuleAndWhatItIncludes) {
 /// Every page of the documentation with its text.
 std::map<fs::path, std::string> pages() {
   std::map<fs::path, std::string> texts;
-  for (const fs::path folder : {fs::path(), fs::path("docs"), fs::path("docs/derivations"), fs::path("docs/results")}) {
+  for (const char* folder : {"", "docs", "docs/derivations", "docs/results"}) {
     for (const fs::directory_entry& page : fs::directory_iterator(source_folder() / folder)) {
       if (page.path().extension() == ".md") {
         texts[page.path()] = read_file(page.path());
