@@ -10,7 +10,6 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/tools/benchmark/variants.hpp"
 
 #include "apps/method_options.hpp"
@@ -69,19 +68,14 @@ std::vector<std::string> texts(const ConfigFields& fields) {
   return result;
 }
 
-/// What is to be set for a method, of all that is set: what it reads.
-std::vector<std::string> settings_of(const benchmark::RunSettings& settings, const std::string& method) {
-  odometry::Config config = resolve_config(method_options(settings, method));
-  odometry::Config plain = odometry::preset(settings.preset);
-  const std::vector<std::string> usual = texts(odometry::fields(plain));
-  std::vector<std::string> changed = texts(odometry::effective_fields(config, method));
-  std::erase_if(changed, [&](const std::string& text) { return std::ranges::find(usual, text) != usual.end(); });
-  return changed;
-}
-
 Candidate candidate(const benchmark::RunSettings& settings, const std::string& method, const std::string& ablation) {
-  odometry::Config config = resolve_config(method_options(settings, method, ablation));
-  return {method, ablation, settings_of(settings, method), texts(odometry::fields(config))};
+  odometry::Config config = resolve_config(method_options(settings, method, ablation)).config;
+  odometry::Config whole = resolve_config(method_options(settings, method)).config;
+  odometry::Config plain = odometry::configuration(method, settings.preset);
+  const std::vector<std::string> usual = texts(odometry::fields(plain));
+  std::vector<std::string> changed = texts(odometry::fields(whole));
+  std::erase_if(changed, [&](const std::string& text) { return std::ranges::find(usual, text) != usual.end(); });
+  return {method, ablation, changed, texts(odometry::fields(config))};
 }
 
 }  // namespace
@@ -97,13 +91,17 @@ std::vector<Candidate> choose_candidates(const std::string& method_list, const s
                                          const benchmark::RunSettings& settings) {
   const std::vector<std::string> methods = chosen_names("--methods", method_list, known_methods(), false);
   const std::vector<std::string> parts =
-      ablation_list == "all" ? without_none(odometry::ablation_names(resolve_config(method_options(settings))))
+      ablation_list == "all" ? without_none(odometry::ablation_names(resolve_config(method_options(settings)).config))
                              : chosen_names("--ablations", ablation_list, known_ablations(), true);
   if (ablation_list != "all" && !parts.empty() &&
       std::find(methods.begin(), methods.end(), benchmark::kOurMethod) == methods.end()) {
     throw UsageError(fmt::format("--ablations is about {}, which is not among --methods", benchmark::kOurMethod));
   }
-  refuse_ineffective_keys(method_options(settings), methods);
+  std::vector<ResolvedConfig> resolved;
+  for (const std::string& method : methods) {
+    resolved.push_back(resolve_config(method_options(settings, method)));
+  }
+  refuse_unread_keys(method_options(settings), methods, resolved);
   std::vector<Candidate> all;
   for (const std::string& method : methods) {
     all.push_back(candidate(settings, method, "none"));

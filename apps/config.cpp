@@ -3,12 +3,13 @@
 #include "dynamic_icp/method/odometry/config.hpp"
 
 #include <memory>
+#include <set>
+#include <string>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/recording/formats/config_file.hpp"
 
 #include "apps/commands.hpp"
@@ -22,21 +23,10 @@ struct ConfigOptions {
   bool markdown = false;
 };
 
-/// A pipeline in docs/configuration.md.
-struct Pipeline {
-  const char* method;
-  const char* preset;
-  const char* column;
-};
-constexpr Pipeline kPipelines[] = {
-    {"dynamic-icp", "default", "default"},           {"dynamic-icp", "paper", "paper"},
-    {"doppler-icp", "default", "doppler-icp"},       {"point-to-plane", "default", "point-to-plane, gicp"},
-    {"point-to-point", "default", "point-to-point"}, {"kiss-icp", "default", "kiss-icp"}};
-
 /// The value of a key where the pipeline reads it.
-std::string value_in(const Pipeline& pipeline, const std::string& key) {
-  odometry::Config config = odometry::preset(pipeline.preset);
-  for (const ConfigField& field : odometry::effective_fields(config, pipeline.method)) {
+std::string value_in(const odometry::Pipeline& pipeline, const std::string& key) {
+  odometry::Config config = pipeline.config;
+  for (const ConfigField& field : odometry::fields(config)) {
     if (field.key == key) {
       return value_text(field);
     }
@@ -49,22 +39,28 @@ std::string reference_page() {
   std::string page =
       "# Configuration\n\n"
       "Every key can be set with `--set key=value` or in a YAML file given with `--config`, nested or dotted. The "
-      "table "
-      "has the\nvalue in force for each pipeline: the presets `default` and `paper` of dynamic-icp, and the baselines "
-      "(`--method`). A pipeline\nwithout a value does not read the key, and setting it is refused. This page is made "
-      "by "
-      "`dynamic-icp config --markdown`.\n\n| key |";
-  for (const Pipeline& pipeline : kPipelines) {
-    page += fmt::format(" {} |", pipeline.column);
+      "table has the\nvalue in force for each pipeline: the presets `default` and `paper` of dynamic-icp, and the "
+      "baselines (`--method`). A pipeline\nwithout a value does not read the key, and setting it is refused. This page "
+      "is made by `dynamic-icp config --markdown`.\n\n| key |";
+  std::string rule = "|---|";
+  for (const odometry::Pipeline& pipeline : odometry::pipelines()) {
+    page += fmt::format(" {} |", pipeline.preset.empty() ? pipeline.method : pipeline.preset);
+    rule += "---|";
   }
-  page += " range | meaning |\n|---|---|---|---|---|---|---|---|---|\n";
-  odometry::Config config;
-  for (const ConfigField& field : odometry::fields(config)) {
-    page += fmt::format("| `{}` |", field.key);
-    for (const Pipeline& pipeline : kPipelines) {
-      page += fmt::format(" {} |", value_in(pipeline, field.key));
+  page += fmt::format(" range | meaning |\n{}---|---|\n", rule);
+  std::set<std::string> described;
+  for (const odometry::Pipeline& reader : odometry::pipelines()) {
+    odometry::Config config = reader.config;
+    for (const ConfigField& field : odometry::fields(config)) {
+      if (!described.insert(field.key).second) {
+        continue;
+      }
+      page += fmt::format("| `{}` |", field.key);
+      for (const odometry::Pipeline& pipeline : odometry::pipelines()) {
+        page += fmt::format(" {} |", value_in(pipeline, field.key));
+      }
+      page += fmt::format(" {} | {} |\n", range_text(field), field.description);
     }
-    page += fmt::format(" {} | {} |\n", range_text(field), field.description);
   }
   return page;
 }
@@ -88,10 +84,8 @@ void add_config_command(CLI::App& app, std::function<int()>& selected) {
   command->add_flag("--markdown", options->markdown, "Print the reference page of all keys and methods instead");
   command->callback([options, &selected] {
     selected = [options] {
-      odometry::Config config = odometry::preset(options->preset);
-      odometry::check_method(options->method);
-      const ConfigFields fields = odometry::effective_fields(config, options->method);
-      fmt::print("{}", options->markdown ? reference_page() : formats::config_yaml(fields));
+      odometry::Config config = odometry::configuration(options->method, options->preset);
+      fmt::print("{}", options->markdown ? reference_page() : formats::config_yaml(odometry::fields(config)));
       return 0;
     };
   });

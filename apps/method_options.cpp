@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
+#include <set>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -11,7 +12,6 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/nearest_key.hpp"
-#include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/recording/formats/config_file.hpp"
 
 #include "apps/settings.hpp"
@@ -55,87 +55,150 @@ void add_method_options(CLI::App& command, MethodOptions& options) {
 
 namespace {
 
-/// A key of the configuration that does what the other one would have done elsewhere, as far as names tell.
-std::string nearest_effective(const std::string& key, const ConfigFields& effective) {
-  const std::string last = key.substr(key.rfind('.') + 1);
-  std::vector<std::string> keys;
-  for (const ConfigField& field : effective) {
-    if (field.key.ends_with("." + last)) {
-      return field.key;
+// Of earlier versions, where it chose between the two presets of dynamic-icp.
+constexpr const char* kScanToScan = "odometry.scan_to_scan";
+
+/// All keys that there are, each with a value in some configuration: those of the pipeline asked for first.
+class AllKeys {
+ public:
+  AllKeys(odometry::Config& config, const std::string& preset) : scan_to_scan_(preset == "paper") {
+    add(odometry::fields(config));
+    own_ = fields_.size();
+    others_.push_back(odometry::configuration("dynamic-icp", preset));
+    for (const odometry::Pipeline& pipeline : odometry::pipelines()) {
+      others_.push_back(pipeline.config);
     }
-    keys.push_back(field.key);
+    for (odometry::Config& other : others_) {
+      add(odometry::fields(other));
+    }
+    add({{kScanToScan, &scan_to_scan_, 0, 0, "", ""}});
   }
-  return std::string(nearest_key(key, keys));
-}
+  AllKeys(const AllKeys&) = delete;
+  AllKeys& operator=(const AllKeys&) = delete;
 
-std::vector<std::string> keys_of(const std::vector<std::string>& settings) {
-  std::vector<std::string> keys;
-  for (const std::string& setting : settings) {
-    keys.push_back(setting.substr(0, setting.find('=')));
+  [[nodiscard]] const ConfigFields& fields() const { return fields_; }
+
+  /// Whether the pipeline asked for has it.
+  [[nodiscard]] bool is_own(const std::string& key) const {
+    return std::any_of(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(own_),
+                       [&](const ConfigField& field) { return field.key == key; });
   }
-  return keys;
-}
 
-/// The keys of --set, and those of the file that change something: it may list all, as `dynamic-icp config` prints
-/// them.
-std::vector<std::string> given_keys(const MethodOptions& options) {
-  std::vector<std::string> keys = keys_of(options.settings);
-  if (!options.config_file.empty()) {
-    odometry::Config config = odometry::preset(options.preset);
-    const ConfigFields fields = odometry::fields(config);
-    std::vector<std::string> before;
-    std::ranges::transform(fields, std::back_inserter(before), value_text);
-    formats::load_config_file(options.config_file, fields);
-    for (std::size_t i = 0; i < fields.size(); ++i) {
-      if (value_text(fields[i]) != before[i]) {
-        keys.push_back(fields[i].key);
+ private:
+  void add(const ConfigFields& more) {
+    for (const ConfigField& field : more) {
+      if (known_.insert(field.key).second) {
+        fields_.push_back(field);
       }
     }
   }
+
+  bool scan_to_scan_;
+  std::vector<odometry::Config> others_;
+  ConfigFields fields_;
+  std::set<std::string> known_;
+  std::size_t own_ = 0;
+};
+
+/// Reads the file, which may list all keys, as `dynamic-icp config` prints them. Returns the keys that it changes.
+std::vector<std::string> load_file(const std::string& path, const ConfigFields& fields) {
+  std::vector<std::string> before;
+  std::ranges::transform(fields, std::back_inserter(before), value_text);
+  formats::load_config_file(path, fields);
+  std::vector<std::string> changed;
+  for (std::size_t i = 0; i < fields.size(); ++i) {
+    if (value_text(fields[i]) != before[i]) {
+      changed.push_back(fields[i].key);
+    }
+  }
+  return changed;
+}
+
+/// Returns the keys that are not those of the configuration.
+std::vector<std::string> read_settings(const MethodOptions& options, odometry::Config& config) {
+  const AllKeys keys(config, options.preset);
+  std::vector<std::string> given;
+  if (!options.config_file.empty()) {
+    given = load_file(options.config_file, keys.fields());
+  }
+  apply_settings(keys.fields(), options.settings);
+  for (const std::string& setting : options.settings) {
+    given.push_back(setting.substr(0, setting.find('=')));
+  }
+  std::erase_if(given, [&](const std::string& key) { return keys.is_own(key); });
+  return given;
+}
+
+std::vector<std::string> keys_of(odometry::Config config) {
+  std::vector<std::string> keys;
+  std::ranges::transform(odometry::fields(config), std::back_inserter(keys), &ConfigField::key);
   return keys;
+}
+
+/// A key of the configurations that does what the other one would have done elsewhere, as far as names tell.
+std::string nearest_read(const std::string& key, const std::vector<ResolvedConfig>& resolved) {
+  std::vector<std::string> keys;
+  for (const ResolvedConfig& one : resolved) {
+    std::ranges::copy(keys_of(one.config), std::back_inserter(keys));
+  }
+  const std::string last = key.substr(key.rfind('.'));
+  const auto same = std::ranges::find_if(keys, [&](const std::string& known) { return known.ends_with(last); });
+  return same != keys.end() ? *same : std::string(nearest_key(key, keys));
+}
+
+/// "kiss-icp", "preset paper, gicp": the pipelines that read a key.
+std::string readers(const std::string& key) {
+  std::vector<std::string> names;
+  for (const odometry::Pipeline& pipeline : odometry::pipelines()) {
+    const std::vector<std::string> keys = keys_of(pipeline.config);
+    if (std::ranges::find(keys, key) != keys.end()) {
+      names.push_back(pipeline.preset.empty() ? std::string(pipeline.method)
+                                              : fmt::format("preset {}", pipeline.preset));
+    }
+  }
+  return fmt::format("{}", fmt::join(names, ", "));
 }
 
 }  // namespace
 
-void refuse_ineffective_keys(const MethodOptions& options, const std::vector<std::string>& methods) {
-  odometry::Config config = resolve_config(options);
-  ConfigFields effective;
-  for (const std::string& method : methods) {
-    ConfigFields of_method = odometry::effective_fields(config, method);
-    effective.insert(effective.end(), of_method.begin(), of_method.end());
+ResolvedConfig resolve_config(const MethodOptions& options) {
+  ResolvedConfig resolved{odometry::configuration(options.method, options.preset), {}};
+  if (options.ablation != "none" && options.method != "dynamic-icp") {
+    throw UsageError(fmt::format("--ablation {}: parts can be switched off in dynamic-icp only, not in {}",
+                                 options.ablation, options.method));
   }
-  for (const std::string& key : given_keys(options)) {
-    if (std::any_of(effective.begin(), effective.end(), [&](const ConfigField& field) { return field.key == key; })) {
+  for (int round = 0; round < 2; ++round) {  // what the first one switches may bring in keys for the second
+    resolved.unread = read_settings(options, resolved.config);
+    odometry::apply_ablation(resolved.config, options.ablation);
+  }
+  odometry::check(resolved.config);
+  return resolved;
+}
+
+void refuse_unread_keys(const MethodOptions& options, const std::vector<std::string>& methods,
+                        const std::vector<ResolvedConfig>& resolved) {
+  for (const std::string& key : resolved.front().unread) {
+    const bool is_read = !std::ranges::all_of(
+        resolved, [&](const ResolvedConfig& one) { return std::ranges::find(one.unread, key) != one.unread.end(); });
+    if (is_read) {
       continue;
     }
-    const std::string nearest = nearest_effective(key, effective);
-    throw UsageError(fmt::format("configuration key '{}' has no effect on {} with preset {}{}", key,
-                                 fmt::join(methods, ", "), options.preset,
+    if (key == kScanToScan) {
+      throw UsageError(fmt::format(
+          "configuration key '{}' chooses nothing any more: dynamic-icp goes from scan to scan with --preset paper",
+          key));
+    }
+    const std::string nearest = nearest_read(key, resolved);
+    throw UsageError(fmt::format("configuration key '{}' has no effect on {} with preset {}, only on {}{}", key,
+                                 fmt::join(methods, ", "), options.preset, readers(key),
                                  nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest)));
   }
 }
 
 odometry::Config make_config(const MethodOptions& options) {
-  odometry::Config config = resolve_config(options);
-  refuse_ineffective_keys(options, {options.method});
-  return config;
-}
-
-odometry::Config resolve_config(const MethodOptions& options) {
-  odometry::check_method(options.method);
-  if (options.ablation != "none" && options.method != "dynamic-icp") {
-    throw UsageError(fmt::format("--ablation {}: parts can be switched off in dynamic-icp only, not in {}",
-                                 options.ablation, options.method));
-  }
-  odometry::Config config = odometry::preset(options.preset);
-  const ConfigFields fields = odometry::fields(config);
-  if (!options.config_file.empty()) {
-    formats::load_config_file(options.config_file, fields);
-  }
-  apply_settings(fields, options.settings);
-  odometry::apply_ablation(config, options.ablation);
-  odometry::check(config);
-  return config;
+  const ResolvedConfig resolved = resolve_config(options);
+  refuse_unread_keys(options, {options.method}, {resolved});
+  return resolved.config;
 }
 
 }  // namespace dynamic_icp::apps

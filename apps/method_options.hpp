@@ -30,14 +30,22 @@ void add_configuration_options(CLI::App& command, std::string& preset, std::stri
 /// Those, --method and --ablation.
 void add_method_options(CLI::App& command, MethodOptions& options);
 
+/// A configuration and what was given for it in vain.
+struct ResolvedConfig {
+  odometry::Config config;
+  std::vector<std::string> unread;  ///< keys of --set, and of the file where they change something, not among its own
+};
+
 /// The configuration: the preset, then the file, then --set in their order, then the ablation. Throws UsageError or
 /// DataError.
-odometry::Config resolve_config(const MethodOptions& options);
+ResolvedConfig resolve_config(const MethodOptions& options);
 
-/// Throws UsageError for a key of --set or of the file that none of the methods reads: who sets it expects an effect.
-void refuse_ineffective_keys(const MethodOptions& options, const std::vector<std::string>& methods);
+/// Throws UsageError for a key that none of the methods reads: who sets it expects an effect. `methods` are those of
+/// the configurations.
+void refuse_unread_keys(const MethodOptions& options, const std::vector<std::string>& methods,
+                        const std::vector<ResolvedConfig>& resolved);
 
-/// Both.
+/// The configuration of one method, without such keys.
 odometry::Config make_config(const MethodOptions& options);
 
 }  // namespace dynamic_icp::apps

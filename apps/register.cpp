@@ -54,7 +54,7 @@ int register_pair(const RegisterOptions& options) {
     surroundings.T_vehicle_sensor = datasets::read_calibration(options.calibration);
   }
   const std::unique_ptr<odometry::Odometry> odometry =
-      odometry::make_odometry(options.method.method, config, surroundings, options.method.threads);
+      odometry::make_odometry(config, surroundings, options.method.threads);
   for (const std::string& assumption : odometry->assumptions()) {
     tell("dynamic-icp: warning: {}\n", assumption);
   }

@@ -154,7 +154,7 @@ results::RunSummary write_run(const RunTask& task, const formats::OutputFolder& 
   const fs::path map_in_run =
       formats::lies_in(map_file, output.path()) ? map_file.lexically_relative(output.path()) : "";
   const std::unique_ptr<odometry::Odometry> odometry = odometry::make_odometry(
-      options.method.method, task.config, {dataset.T_vehicle_sensor(), dataset.doppler_kind()}, options.method.threads);
+      task.config, {dataset.T_vehicle_sensor(), dataset.doppler_kind()}, options.method.threads);
   findings.assumptions = dataset.assumptions();
   for (const std::string& assumption : odometry->assumptions()) {
     findings.assumptions.push_back(assumption);

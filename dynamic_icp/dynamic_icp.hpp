@@ -4,7 +4,7 @@
 
 /// Dynamic-ICP as a library, component `core`:
 ///
-///   const auto odometry = dynamic_icp::odometry::make_odometry("dynamic-icp", {});
+///   const auto odometry = dynamic_icp::odometry::make_odometry();
 ///   const dynamic_icp::odometry::Frame frame = odometry->process(scan);  // a dynamic_icp::RawScan
 ///   frame.T_world_sensor, frame.status, frame.ego, frame.tracked ...
 ///

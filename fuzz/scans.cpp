@@ -17,18 +17,15 @@ constexpr int kScans = 8;
 
 }  // namespace
 
-// Scans of any numbers give frames of finite numbers, with every method. The first byte chooses the method, the next
+// Scans of any numbers give frames of finite numbers, with every method. The first byte chooses the pipeline, the next
 // one the seed of what the others leave open.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace dynamic_icp;
   if (size < 2) {
     return 0;
   }
-  const std::vector<std::string_view> methods = odometry::method_names();
-  const std::size_t choice = data[0] % (methods.size() + 1);
-  const bool is_paper = choice == methods.size();
-  const auto odometry = odometry::make_odometry(is_paper ? "dynamic-icp" : methods[choice],
-                                                odometry::preset(is_paper ? "paper" : "default"), {}, 1);
+  const std::vector<odometry::Pipeline>& pipelines = odometry::pipelines();
+  const auto odometry = odometry::make_odometry(pipelines[data[0] % pipelines.size()].config, {}, 1);
   adversarial::ScanGenerator scans(data[1], {data + 2, size - 2});
   std::optional<Stamp> last;
   for (int k = 0; k < kScans; ++k) {

@@ -19,8 +19,8 @@ namespace dynamic_icp::odometry::synthetic {
 
 constexpr double kPeriod_s = 0.1;
 
-inline Config with_ablation(std::string_view name = "none") {
-  Config config = preset("default");
+inline MapOdometryConfig with_ablation(std::string_view name = "none") {
+  MapOdometryConfig config;
   apply_ablation(config, name);
   return config;
 }
@@ -41,7 +41,7 @@ struct Drive {
 
   [[nodiscard]] RawScan scan(int k) const { return scan_at(world, path, sensor, k * period_s, seed).raw; }
 
-  [[nodiscard]] std::vector<Frame> run(const Config& config, int scans, int threads = 1) const {
+  [[nodiscard]] std::vector<Frame> run(const MapOdometryConfig& config, int scans, int threads = 1) const {
     MapOdometry odometry(config, threads);
     std::vector<Frame> frames;
     for (int k = 0; k < scans; ++k) {

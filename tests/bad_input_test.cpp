@@ -366,6 +366,10 @@ TEST_F(BadInput, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m=-1", "0 to 100 m");
   expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m", "expected key=value");
   expect_usage_error("run " + in + out + " --preset best", "paper");
+  expect_usage_error("run " + in + out + " --set kiss_icp.voxel_size_m=9",
+                     "only on kiss-icp; did you mean 'preprocess.voxel.voxel_size_m'");
+  write_file(folder_ / "paper.yaml", "odometry.scan_to_scan: true\n");  // of version 0.2
+  expect_usage_error("run " + in + out + " --config " + (folder_ / "paper.yaml").string(), "--preset paper");
   expect_usage_error("run " + in + out + " --ablation no-such", "no-vf");
   expect_usage_error("run " + in + out + " --method magic", "dynamic-icp");
   expect_usage_error("run " + in + out + " --format vhs", "dicp");

@@ -206,6 +206,23 @@ TEST_F(EndToEnd, AnOptionTakesOneValueAndLeavesTheRest) {
             7);
 }
 
+// A file that lists the keys of other pipelines too, with the values they have, as earlier versions printed it.
+TEST_F(EndToEnd, AFileMayListWhatThePipelineDoesNotRead) {
+  write_file(folder_ / "all.yaml",
+             "odometry.scan_to_scan: true\nkiss_icp.voxel_size_m: 1\nego_motion.filter.tau_0_mps: 0.35\n"
+             "registration.max_iterations: 7\n");
+  run_and_summarise(street().string() + " --max-frames 2 --preset paper --config " + (folder_ / "all.yaml").string());
+  const json configuration = json::parse(read_file(folder_ / "out" / "run.json"))["configuration"];
+  EXPECT_EQ(configuration["registration.max_iterations"], 7);
+  EXPECT_FALSE(configuration.contains("kiss_icp.voxel_size_m"));
+}
+
+TEST_F(EndToEnd, ASwitchMayBringInKeys) {
+  const std::string key = "ego_motion.regression.max_iterations";
+  run_and_summarise("--max-frames 2 --ablation no-consensus --set " + key + "=7 " + street().string());
+  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"][key], 7);
+}
+
 TEST_F(EndToEnd, AblationsRunAndSayWhatTheyAre) {
   for (const char* ablation : {"no-vf", "no-dpp", "no-dr"}) {
     run_and_summarise(street().string() + " --preset paper --max-frames 3 --ablation " + ablation);

@@ -22,7 +22,7 @@ BENCHMARK(take_over)->Apply(all_sensors);
 
 void crop_range(benchmark::State& state) {
   const Scan scan = Scan::from_raw(known_scan(sensor_of(state)).raw);
-  const auto config = odometry::preset("default").preprocess.range;
+  const auto config = odometry::MapOdometryConfig{}.preprocess.range;
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(preprocess::crop_range(scan, config));
   }
@@ -32,7 +32,7 @@ BENCHMARK(crop_range)->Apply(all_sensors);
 
 void voxel_grid(benchmark::State& state) {
   const KnownScan& known = known_scan(sensor_of(state));
-  const auto config = odometry::preset("default").preprocess.voxel;
+  const auto config = odometry::MapOdometryConfig{}.preprocess.voxel;
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(preprocess::voxel_grid(known.whole, config));
   }
@@ -46,7 +46,7 @@ void normals(benchmark::State& state) {
   const Scan& scan = known_scan(sensor_of(state)).thinned;
   const Workers workers(static_cast<int>(state.range(1)));
   const spatial::KdTree tree(scan.points());
-  const auto config = odometry::preset("default").preprocess.normals;
+  const auto config = preprocess::NormalsConfig{};
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(preprocess::estimate_normals(scan.points(), tree, config, workers));
   }

@@ -17,8 +17,7 @@ struct Pair {
   Pair() : tree(target_scan.points()) {
     const KnownScan& last = known_scan(Sensor::kUsual, 0);
     const KnownScan& now = known_scan(Sensor::kUsual, 1);
-    normals = preprocess::estimate_normals(target_scan.points(), tree, odometry::preset("paper").preprocess.normals,
-                                           Workers(0));
+    normals = preprocess::estimate_normals(target_scan.points(), tree, preprocess::NormalsConfig{}, Workers(0));
     T_true = now.T_world_sensor.inverse() * last.T_world_sensor;
     T_start.translation() = -0.1 * last.velocity_sensor;
   }
@@ -55,7 +54,7 @@ BENCHMARK(correspondences)->Apply(one_and_two_threads);
 
 void linearise(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(0)));
-  const auto objective = registration::dynamic_icp_objective(odometry::preset("paper").registration);
+  const auto objective = registration::dynamic_icp_objective(odometry::PaperConfig{}.registration);
   registration::CorrespondenceSearch search(pair().source_scan, pair().target(), 0.3, true, workers);
   const registration::Correspondences found = search.find(pair().T_true);
   for ([[maybe_unused]] auto _ : state) {
@@ -71,7 +70,7 @@ BENCHMARK(linearise)->Apply(one_and_two_threads);
 
 void solve(benchmark::State& state) {
   const Workers workers(1);
-  const auto objective = registration::dynamic_icp_objective(odometry::preset("paper").registration);
+  const auto objective = registration::dynamic_icp_objective(odometry::PaperConfig{}.registration);
   registration::CorrespondenceSearch search(pair().source_scan, pair().target(), 0.3, true, workers);
   const registration::Linearisation linear = registration::linearise(
       {pair().source_scan}, pair().target(), search.find(pair().T_true), pair().T_true, objective, 0, workers);
@@ -86,7 +85,7 @@ BENCHMARK(solve)->UseRealTime();
 /// The whole alignment of preset paper, the kd-tree and the normals excluded.
 void align_scans(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(0)));
-  const auto config = odometry::preset("paper").registration;
+  const auto config = odometry::PaperConfig{}.registration;
   int rounds = 0;
   for ([[maybe_unused]] auto _ : state) {
     rounds = registration::align(pair().source_scan, pair().target(), pair().T_start, config, workers).iterations;
@@ -115,7 +114,7 @@ registration::MotionPrior prior_of(const KnownScan& scan) {
 void align_to_map(benchmark::State& state) {
   const KnownScan& scan = known_scan(Sensor::kUsual, kScans - 1);
   const Workers workers(static_cast<int>(state.range(0)));
-  const auto config = odometry::preset("default").map_align;
+  const auto config = odometry::MapOdometryConfig{}.map_align;
   const registration::MotionPrior prior = prior_of(scan);
   int rounds = 0;
   for ([[maybe_unused]] auto _ : state) {

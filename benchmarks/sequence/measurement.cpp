@@ -43,9 +43,9 @@ Recording load(const std::filesystem::path& folder) {
 }  // namespace
 
 Run measure(const Setup& setup) {
-  const odometry::Config config = odometry::preset(setup.preset);
   const Recording recording = load(setup.recording);
-  const auto odometry = odometry::make_odometry(setup.method, config, recording.surroundings, setup.threads);
+  const auto odometry = odometry::make_odometry(odometry::configuration(setup.method, setup.preset),
+                                                recording.surroundings, setup.threads);
   Run run;
   std::array<std::vector<double>, odometry::kStageCount> stages;
   const auto counted = static_cast<double>(recording.scans.size() - kWarmUpScans);

@@ -7,7 +7,7 @@
 int main(int argc, char** argv) {
   if (argc != 2) return 2;
   const auto recording = dynamic_icp::datasets::open_dataset(argv[1]);
-  const auto odometry = dynamic_icp::odometry::make_odometry("dynamic-icp", {});
+  const auto odometry = dynamic_icp::odometry::make_odometry();
   for (std::size_t i = 0; i < recording->size(); ++i) {
     const dynamic_icp::odometry::Frame frame = odometry->process(recording->scan(i));
     std::cout << to_string(frame.status) << "  position " << frame.T_world_sensor.translation().transpose()

@@ -24,7 +24,8 @@ dynamic_icp::RawScan read_scan(const char* path, int index) {
 
 int main(int argc, char** argv) {
   for (const char* preset : {"default", "paper"}) {
-    const auto odometry = dynamic_icp::odometry::make_odometry("dynamic-icp", dynamic_icp::odometry::preset(preset));
+    const auto odometry =
+        dynamic_icp::odometry::make_odometry(dynamic_icp::odometry::configuration("dynamic-icp", preset));
     for (int k = 1; k < argc; ++k) {
       const dynamic_icp::odometry::Frame frame = odometry->process(read_scan(argv[k], k));
       std::printf("%s %s", preset, std::string(to_string(frame.status)).c_str());

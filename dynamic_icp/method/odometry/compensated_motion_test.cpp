@@ -74,7 +74,7 @@ TEST(CompensatedMotion, ATunnelIsHonestAboutWhatItDoesNotKnow) {
 
 TEST(CompensatedMotion, ThePaperFollowsADrive) {
   const Drive drive{street_with_cars(), lively(10.0), {}};
-  DynamicIcp odometry(preset("paper"), 2);
+  DynamicIcp odometry(PaperConfig{}, 2);
   const std::vector<Frame> frames = run(drive, odometry, 12);
   const MotionError error = rms_error(drive, frames, 2);
   EXPECT_LT(error.move_m, 0.05);
@@ -87,18 +87,18 @@ TEST(CompensatedMotion, DopplerIcpIsLeftWithItsGeometry) {
   const Drive drive{street(), circle(1.0, 0.0), {}};
   Surroundings surroundings;
   surroundings.doppler_kind = DopplerKind::kCompensated;
-  ScanToScanIcp odometry(ScanToScanMethod::kDopplerIcp, preset("default"), surroundings, 1);
+  ScanToScanIcp odometry(DopplerIcpConfig{}, surroundings, 1);
   EXPECT_EQ(run(drive, odometry, 2).back().alignment.doppler.count, 0u);
   ASSERT_EQ(odometry.assumptions().size(), 2u);
   EXPECT_NE(odometry.assumptions()[1].find("compensated"), std::string::npos);
 }
 
 TEST(CompensatedMotion, IsSaid) {
-  for (const char* name : {"paper", "default"}) {
+  for (const Config& config : {Config(PaperConfig{}), Config(MapOdometryConfig{})}) {
     Surroundings surroundings;
-    EXPECT_TRUE(make_odometry("dynamic-icp", preset(name), surroundings, 1)->assumptions().empty());
+    EXPECT_TRUE(make_odometry(config, surroundings, 1)->assumptions().empty());
     surroundings.doppler_kind = DopplerKind::kCompensated;
-    EXPECT_EQ(make_odometry("dynamic-icp", preset(name), surroundings, 1)->assumptions().size(), 1u);
+    EXPECT_EQ(make_odometry(config, surroundings, 1)->assumptions().size(), 1u);
   }
 }
 

@@ -3,9 +3,7 @@
 #include "dynamic_icp/method/odometry/config.hpp"
 
 #include <algorithm>
-#include <initializer_list>
-#include <iterator>
-#include <string>
+#include <span>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -22,143 +20,23 @@ constexpr double kMostVoxels = 1 << 20;
   throw UsageError(fmt::format("unknown {} '{}'; known are: {}", what, name, fmt::join(known, ", ")));
 }
 
-/// What the alignment of two scans reads whatever it minimises.
-constexpr std::string_view kPairKeys[] = {"registration.max_correspondence_distance_m", "registration.max_iterations",
-                                          "registration.tolerance", "registration.min_correspondences",
-                                          "registration.rank_tolerance"};
-
-/// Keys that a method reads, and beginnings of keys, which end with a dot.
-std::vector<std::string_view> keys_read(const Config& config, std::string_view method) {
-  if (method == "kiss-icp") {
-    return {"kiss_icp.", "odometry.min_points"};
-  }
-  std::vector<std::string_view> keys = {"preprocess.range.", "preprocess.voxel.", "odometry.max_gap_s",
-                                        "odometry.min_points"};
-  const auto add = [&](std::initializer_list<std::string_view> more) { keys.insert(keys.end(), more); };
-  const bool has_map = method == "dynamic-icp" && !config.scan_to_scan;
-  if (!has_map) {
-    keys.insert(keys.end(), std::begin(kPairKeys), std::end(kPairKeys));
-    if (method != "point-to-point") {
-      add({"preprocess.normals."});
-    }
-  }
-  if (method != "dynamic-icp") {
-    add({"icp."});
-    if (method == "doppler-icp") {
-      add({"doppler_icp."});
-    }
-    return keys;
-  }
-  add({"odometry.scan_to_scan", "ego_motion.filter.", "dynamics.predict"});
-  if (!has_map || !config.ego_motion.use_consensus) {
-    add({"ego_motion.regression."});
-  }
-  if (has_map) {
-    add({"odometry.", "ego_motion.consensus.", "ego_motion.drift.", "ego_motion.use_consensus",
-         "ego_motion.static_deviations", "sweep.", "mapping.", "registration.map.", "turn.", "tracking."});
-  } else {
-    add({"dynamics.", "registration.doppler_weight", "registration.tukey_geometry_m",
-         "registration.tukey_doppler_mps"});
-  }
-  return keys;
-}
-
-}  // namespace
-
-ConfigFields fields(DopplerIcpConfig& config) {
-  return {
-      {"doppler_weight", &config.doppler_weight, 0.0, 0.999, "", "doppler-icp: share of the Doppler term (lambda)"},
-      {"tukey_geometry_m", &config.tukey_geometry_m, 1e-6, 1e3, "m",
-       "doppler-icp: point-to-plane residuals times the root of their share have no weight beyond this"},
-      {"tukey_doppler_mps", &config.tukey_doppler_mps, 1e-6, 1e3, "m/s",
-       "doppler-icp: Doppler residuals times the root of their share have no weight beyond this"},
-      {"reject_doppler_mps", &config.reject_doppler_mps, 1e-6, 1e3, "m/s",
-       "doppler-icp: pairs with a larger Doppler residual are left out"},
-      {"robust_from_iteration", &config.robust_from_iteration, 0, 10000, "",
-       "doppler-icp: before this iteration (from 0) the Doppler term is least squares and no pair is left out"},
-  };
-}
-
-ConfigFields fields(Config& config) {
-  ConfigFields all;
-  append_fields(all, "preprocess.range", fields(config.preprocess.range));
-  append_fields(all, "preprocess.voxel", fields(config.preprocess.voxel));
-  append_fields(all, "preprocess.normals", fields(config.preprocess.normals));
-  append_fields(all, "ego_motion.regression", fields(config.ego_motion.regression));
-  append_fields(all, "ego_motion.filter", fields(config.ego_motion.filter));
-  append_fields(all, "ego_motion.consensus", fields(config.ego_motion.consensus));
-  append_fields(all, "ego_motion.drift", fields(config.ego_motion.drift));
-  append_fields(all, "ego_motion",
-                {{"use_consensus", &config.ego_motion.use_consensus, 0, 0, "",
-                  "find the static scene by consensus; off: Huber regression, as from scan to scan"},
-                 {"static_deviations", &config.ego_motion.static_deviations, 0.0, 100.0, "",
-                  "with a local map a point moves only beyond so many deviations of the static Doppler"}});
-  append_fields(all, "dynamics.clustering", fields(config.dynamics.clustering));
-  append_fields(all, "dynamics.velocity", fields(config.dynamics.velocity));
-  append_fields(all, "dynamics",
-                {{"predict", &config.dynamics.predict, 0, 0, "",
-                  "cluster moving points and predict them to the next scan; off: they are left out"}});
-  append_fields(all, "registration", fields(config.registration));
-  append_fields(all, "icp",
-                {{"constant_velocity_start", &config.icp.constant_velocity_start, 0, 0, "",
-                  "point-to-point, point-to-plane, gicp, doppler-icp: start from the last motion, not the identity"}});
-  append_fields(all, "doppler_icp", fields(config.doppler_icp));
-  append_fields(all, "kiss_icp", fields(config.kiss));
-  append_fields(all, "sweep", fields(config.sweep));
-  append_fields(all, "mapping", fields(config.mapping));
-  append_fields(all, "registration.map", fields(config.map_align));
-  append_fields(all, "turn", fields(config.turn));
-  append_fields(all, "tracking", fields(config.tracking));
-  append_fields(
-      all, "odometry",
-      {{"scan_to_scan", &config.scan_to_scan, 0, 0, "",
-        "dynamic-icp as in the paper, from scan to scan; off: with Doppler displacement and a local map"},
-       {"use_displacement", &config.use_displacement, 0, 0, "",
-        "with a local map: the way between scans by the Doppler velocities is a term of the alignment"},
-       {"displacement_deviation_mps", &config.displacement_deviation_mps, 0.0, 10.0, "m/s",
-        "what the way between scans may be off besides the errors of the velocities, over the time between them"},
-       {"search_start", &config.search_start, 0, 0, "", "with a local map: try several turns for the first two scans"},
-       {"lost_match", &config.lost_match, 0.0, 1.0, "",
-        "with a local map: lost when less than this share of the usual number of points fits the map"},
-       {"unknown_deviation_m", &config.unknown_deviation_m, 1e-6, 1e3, "m",
-        "with a local map: motions known worse than this are reported as degenerate"}});
-  append_fields(all, "odometry",
-                {{"max_gap_s", &config.max_gap_s, 1e-3, 3600.0, "s",
-                  "scans farther apart in time are not aligned; the last motion is continued"},
-                 {"min_points", &config.min_points, 6, 1000000, "",
-                  "a scan with fewer points after preprocessing is not aligned; the last motion is continued"}});
-  return all;
-}
-
-ConfigFields effective_fields(Config& config, std::string_view method) {
-  ConfigFields effective = fields(config);
-  const std::vector<std::string_view> read = keys_read(config, method);
-  std::erase_if(effective, [&](const ConfigField& field) {
-    return std::none_of(read.begin(), read.end(), [&](std::string_view key) {
-      return key.ends_with('.') ? field.key.starts_with(key) : field.key == key;
-    });
-  });
-  return effective;
-}
-
-void check(const Config& config) {
-  Config copy = config;
-  check_fields(fields(copy));
-  check(config.kiss);
-  if (config.ego_motion.consensus.min_noise_mps > config.ego_motion.consensus.max_noise_mps) {
+/// `low` must be less than `high`, both in m.
+void check_order(std::string_view low_key, double low, std::string_view high_key, double high) {
+  if (low >= high) {
     throw UsageError(
-        fmt::format("configuration key 'ego_motion.consensus.min_noise_mps' is {}, expected at most "
-                    "'ego_motion.consensus.max_noise_mps' ({} m/s)",
-                    config.ego_motion.consensus.min_noise_mps, config.ego_motion.consensus.max_noise_mps));
+        fmt::format("configuration key '{}' is {}, expected less than '{}' ({} m)", low_key, low, high_key, high));
   }
-  const double voxel = config.preprocess.voxel.voxel_size_m;
-  const double max_range = config.preprocess.range.max_range_m;
-  if (config.preprocess.range.min_range_m >= max_range) {
-    throw UsageError(
-        fmt::format("configuration key 'preprocess.range.min_range_m' is {}, expected less than "
-                    "'preprocess.range.max_range_m' ({} m)",
-                    config.preprocess.range.min_range_m, max_range));
-  }
+}
+
+template <class PipelineConfig>
+void check_ranges(PipelineConfig config) {
+  check_fields(fields(config));
+}
+
+void check_together(const PreprocessConfig& config) {
+  const double voxel = config.voxel.voxel_size_m;
+  const double max_range = config.range.max_range_m;
+  check_order("preprocess.range.min_range_m", config.range.min_range_m, "preprocess.range.max_range_m", max_range);
   if (voxel > 0.0 && max_range / voxel >= kMostVoxels - 1) {
     throw UsageError(
         fmt::format("configuration key 'preprocess.voxel.voxel_size_m' is {}, expected 0 or at least "
@@ -167,58 +45,301 @@ void check(const Config& config) {
   }
 }
 
-Config preset(std::string_view name) {
-  Config config;
-  if (name == "paper") {
-    config.scan_to_scan = true;
-    config.ego_motion.filter = {};  // the initialisers of the stages' structs are the paper's values
-  } else if (name != "default") {
-    throw_unknown("preset", name, preset_names());
-  }
+void append_preprocess(ConfigFields& all, PreprocessConfig& config) {
+  append_fields(all, "preprocess.range", fields(config.range));
+  append_fields(all, "preprocess.voxel", fields(config.voxel));
+}
+
+ConfigField predict_field(bool& predict) {
+  return {"predict", &predict, 0,
+          0,         "",       "cluster moving points and predict them to the next scan; off: they are left out"};
+}
+
+ConfigField min_points_field(int& min_points) {
+  return {"min_points",
+          &min_points,
+          6,
+          1000000,
+          "",
+          "a scan with fewer points after preprocessing is not aligned; the last motion is continued"};
+}
+
+void append_stream(ConfigFields& all, StreamConfig& config) {
+  append_fields(all, "odometry",
+                {{"max_gap_s", &config.max_gap_s, 1e-3, 3600.0, "s",
+                  "scans farther apart in time are not aligned; the last motion is continued"},
+                 min_points_field(config.min_points)});
+}
+
+ScanToScanIcpConfig icp(registration::GeometryTerm geometry) {
+  ScanToScanIcpConfig config;
+  config.geometry = geometry;
   return config;
 }
 
-std::vector<std::string_view> preset_names() { return {"default", "paper"}; }
+}  // namespace
 
-void apply_ablation(Config& config, std::string_view name) {
-  const auto has = [&](const std::vector<std::string_view>& names) {
-    return std::find(names.begin(), names.end(), name) != names.end();
-  };
-  if (!has(ablation_names())) {
+ConfigFields fields(PaperConfig& config) {
+  ConfigFields all;
+  append_preprocess(all, config.preprocess);
+  append_fields(all, "preprocess.normals", fields(config.normals));
+  append_fields(all, "ego_motion.regression", fields(config.ego_motion.regression));
+  append_fields(all, "ego_motion.filter", fields(config.ego_motion.filter));
+  append_fields(all, "dynamics.clustering", fields(config.dynamics.clustering));
+  append_fields(all, "dynamics.velocity", fields(config.dynamics.velocity));
+  append_fields(all, "dynamics", {predict_field(config.dynamics.predict)});
+  append_fields(all, "registration", fields(config.registration));
+  append_stream(all, config.stream);
+  return all;
+}
+
+ConfigFields fields(MapOdometryConfig& config) {
+  EgoMotionConfig& ego_motion = config.ego_motion;
+  ConfigFields all;
+  append_preprocess(all, config.preprocess);
+  append_fields(all, "ego_motion.filter", fields(ego_motion.filter));
+  append_fields(all, "ego_motion",
+                {{"use_consensus", &ego_motion.use_consensus, 0, 0, "",
+                  "find the static scene by consensus; off: Huber regression, as from scan to scan"},
+                 {"static_deviations", &ego_motion.static_deviations, 0.0, 100.0, "",
+                  "with a local map a point moves only beyond so many deviations of the static Doppler"}});
+  if (!ego_motion.use_consensus) {
+    append_fields(all, "ego_motion.regression", fields(ego_motion.regression));
+  }
+  append_fields(all, "ego_motion.consensus", fields(ego_motion.consensus));
+  append_fields(all, "ego_motion.drift", fields(ego_motion.drift));
+  append_fields(all, "sweep", fields(config.sweep));
+  append_fields(all, "mapping", fields(config.mapping));
+  append_fields(all, "registration.map", fields(config.map_align));
+  append_fields(all, "turn", fields(config.turn));
+  append_fields(all, "dynamics", {predict_field(config.track_objects)});
+  append_fields(all, "tracking", fields(config.tracking));
+  append_fields(
+      all, "odometry",
+      {{"use_displacement", &config.use_displacement, 0, 0, "",
+        "with a local map: the way between scans by the Doppler velocities is a term of the alignment"},
+       {"displacement_deviation_mps", &config.displacement_deviation_mps, 0.0, 10.0, "m/s",
+        "what the way between scans may be off besides the errors of the velocities, over the time between them"},
+       {"search_start", &config.search_start, 0, 0, "", "with a local map: try several turns for the first two scans"},
+       {"lost_match", &config.lost_match, 0.0, 1.0, "",
+        "with a local map: lost when less than this share of the usual number of points fits the map"},
+       {"unknown_deviation_m", &config.unknown_deviation_m, 1e-6, 1e3, "m",
+        "with a local map: motions known worse than this are reported as degenerate"}});
+  append_stream(all, config.stream);
+  return all;
+}
+
+ConfigFields fields(ScanToScanIcpConfig& config) {
+  ConfigFields all;
+  append_preprocess(all, config.preprocess);
+  if (config.geometry != registration::GeometryTerm::kPointToPoint) {
+    append_fields(all, "preprocess.normals", fields(config.normals));
+  }
+  append_fields(all, "registration", fields(config.registration));
+  append_fields(all, "icp",
+                {{"constant_velocity_start", &config.constant_velocity_start, 0, 0, "",
+                  "point-to-point, point-to-plane, gicp, doppler-icp: start from the last motion, not the identity"}});
+  append_stream(all, config.stream);
+  return all;
+}
+
+ConfigFields fields(DopplerIcpConfig& config) {
+  ConfigFields all = fields(config.icp);
+  append_fields(
+      all, "doppler_icp",
+      {{"doppler_weight", &config.doppler_weight, 0.0, 0.999, "", "doppler-icp: share of the Doppler term (lambda)"},
+       {"tukey_geometry_m", &config.tukey_geometry_m, 1e-6, 1e3, "m",
+        "doppler-icp: point-to-plane residuals times the root of their share have no weight beyond this"},
+       {"tukey_doppler_mps", &config.tukey_doppler_mps, 1e-6, 1e3, "m/s",
+        "doppler-icp: Doppler residuals times the root of their share have no weight beyond this"},
+       {"reject_doppler_mps", &config.reject_doppler_mps, 1e-6, 1e3, "m/s",
+        "doppler-icp: pairs with a larger Doppler residual are left out"},
+       {"robust_from_iteration", &config.robust_from_iteration, 0, 10000, "",
+        "doppler-icp: before this iteration (from 0) the Doppler term is least squares and no pair is left out"}});
+  return all;
+}
+
+ConfigFields fields(KissIcpConfig& config) {
+  ConfigFields all;
+  append_fields(
+      all, "kiss_icp",
+      {{"deskew", &config.deskew, 0, 0, "",
+        "move the points of a sweep to its middle by the last motion, where the scan has times"},
+       {"min_range_m", &config.min_range_m, 0.0, 1000.0, "m", "points nearer to the sensor are left out"},
+       {"max_range_m", &config.max_range_m, 1.0, 10000.0, "m",
+        "points farther from the sensor are left out, in the scan and in the map"},
+       // With half of this edge the farthest point is still one of the 2^20 cells that the voxel grid tells apart.
+       {"voxel_size_m", &config.voxel_size_m, 0.05, 100.0, "m",
+        "edge of the voxels of the map; half of it thins the points of the map, 1.5 times those to be registered"},
+       {"max_points_per_voxel", &config.max_points_per_voxel, 1, 1000, "", "most points of a voxel of the map"},
+       {"initial_threshold_m", &config.initial_threshold_m, 1e-3, 1e3, "m",
+        "expected error of the predicted pose before it is known (sigma)"},
+       {"min_motion_m", &config.min_motion_m, 0.0, 1e3, "m",
+        "smaller errors of the prediction do not count (delta_min)"},
+       {"max_iterations", &config.max_iterations, 1, 10000, "", "most Gauss-Newton steps"},
+       {"min_step", &config.min_step, 1e-12, 1.0, "",
+        "the registration has converged when the step, rad and m together, is shorter"}});
+  append_fields(all, "odometry", {min_points_field(config.min_points)});
+  return all;
+}
+
+ConfigFields fields(Config& config) {
+  return std::visit([](auto& pipeline) { return fields(pipeline); }, config);
+}
+
+void check(const PaperConfig& config) {
+  check_ranges(config);
+  check_together(config.preprocess);
+}
+
+void check(const MapOdometryConfig& config) {
+  check_ranges(config);
+  check_together(config.preprocess);
+  const ego_motion::ConsensusRegressionConfig& consensus = config.ego_motion.consensus;
+  if (consensus.min_noise_mps > consensus.max_noise_mps) {
+    throw UsageError(
+        fmt::format("configuration key 'ego_motion.consensus.min_noise_mps' is {}, expected at most "
+                    "'ego_motion.consensus.max_noise_mps' ({} m/s)",
+                    consensus.min_noise_mps, consensus.max_noise_mps));
+  }
+}
+
+void check(const ScanToScanIcpConfig& config) {
+  check_ranges(config);
+  check_together(config.preprocess);
+}
+
+void check(const DopplerIcpConfig& config) {
+  check_ranges(config);
+  check_together(config.icp.preprocess);
+}
+
+void check(const KissIcpConfig& config) {
+  check_ranges(config);
+  check_order("kiss_icp.min_range_m", config.min_range_m, "kiss_icp.max_range_m", config.max_range_m);
+}
+
+void check(const Config& config) {
+  std::visit([](const auto& pipeline) { check(pipeline); }, config);
+}
+
+const std::vector<Pipeline>& pipelines() {
+  using registration::GeometryTerm;
+  static const std::vector<Pipeline> all = {{"dynamic-icp", "default", MapOdometryConfig{}},
+                                            {"dynamic-icp", "paper", PaperConfig{}},
+                                            {"doppler-icp", "", DopplerIcpConfig{}},
+                                            {"point-to-point", "", icp(GeometryTerm::kPointToPoint)},
+                                            {"point-to-plane", "", icp(GeometryTerm::kPointToPlane)},
+                                            {"gicp", "", icp(GeometryTerm::kPlaneToPlane)},
+                                            {"kiss-icp", "", KissIcpConfig{}}};
+  return all;
+}
+
+std::vector<std::string_view> method_names() {
+  std::vector<std::string_view> names;
+  for (const Pipeline& pipeline : pipelines()) {
+    if (names.empty() || names.back() != pipeline.method) {
+      names.push_back(pipeline.method);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string_view> preset_names() {
+  std::vector<std::string_view> names;
+  for (const Pipeline& pipeline : pipelines()) {
+    if (!pipeline.preset.empty()) {
+      names.push_back(pipeline.preset);
+    }
+  }
+  return names;
+}
+
+Config configuration(std::string_view method, std::string_view preset) {
+  const std::vector<std::string_view> presets = preset_names();
+  if (std::ranges::find(presets, preset) == presets.end()) {
+    throw_unknown("preset", preset, presets);
+  }
+  for (const Pipeline& pipeline : pipelines()) {
+    if (pipeline.method == method && (pipeline.preset.empty() || pipeline.preset == preset)) {
+      return pipeline.config;
+    }
+  }
+  throw_unknown("method", method, method_names());
+}
+
+namespace {
+
+/// A part that can be switched off.
+template <class PipelineConfig>
+struct Part {
+  std::string_view name;
+  void (*switch_off)(PipelineConfig& config);
+};
+
+constexpr Part<PaperConfig> kPaperParts[] = {
+    {"none", [](PaperConfig&) {}},
+    {"no-vf", [](PaperConfig& config) { config.ego_motion.filter.enabled = false; }},
+    {"no-dpp", [](PaperConfig& config) { config.dynamics.predict = false; }},
+    {"no-dr", [](PaperConfig& config) { config.registration.doppler_weight = 0.0; }}};
+
+constexpr Part<MapOdometryConfig> kMapOdometryParts[] = {
+    {"none", [](MapOdometryConfig&) {}},
+    {"no-vf", [](MapOdometryConfig& config) { config.ego_motion.filter.enabled = false; }},
+    {"no-dpp", [](MapOdometryConfig& config) { config.track_objects = false; }},
+    {"no-dr", [](MapOdometryConfig& config) { config.use_displacement = false; }},
+    {"no-consensus", [](MapOdometryConfig& config) { config.ego_motion.use_consensus = false; }},
+    {"no-bias", [](MapOdometryConfig& config) { config.ego_motion.consensus.estimate_bias = false; }},
+    {"no-deskew", [](MapOdometryConfig& config) { config.sweep.undo = false; }},
+    {"no-map", [](MapOdometryConfig& config) { config.mapping.memory_scans = 0.0; }},
+    {"no-search", [](MapOdometryConfig& config) { config.search_start = false; }}};
+
+// The baselines are compared as a whole.
+template <class PipelineConfig>
+constexpr Part<PipelineConfig> kNoParts[] = {{"none", [](PipelineConfig&) {}}};
+
+std::span<const Part<PaperConfig>> parts_of(const PaperConfig& /*config*/) { return kPaperParts; }
+std::span<const Part<MapOdometryConfig>> parts_of(const MapOdometryConfig& /*config*/) { return kMapOdometryParts; }
+template <class PipelineConfig>
+std::span<const Part<PipelineConfig>> parts_of(const PipelineConfig& /*config*/) {
+  return kNoParts<PipelineConfig>;
+}
+
+template <class PipelineConfig>
+void switch_off(PipelineConfig& config, std::string_view name) {
+  const auto parts = parts_of(config);
+  const auto part = std::ranges::find(parts, name, &Part<PipelineConfig>::name);
+  if (part != parts.end()) {
+    part->switch_off(config);
+    return;
+  }
+  if (std::ranges::find(kMapOdometryParts, name, &Part<MapOdometryConfig>::name) == std::end(kMapOdometryParts)) {
     throw_unknown("ablation", name, ablation_names());
   }
-  if (!has(ablation_names(config))) {
-    throw UsageError(
-        fmt::format("ablation '{}' is about a part that dynamic-icp from scan to scan (preset paper) does "
-                    "not have; it has: {}",
-                    name, fmt::join(ablation_names(config), ", ")));
-  }
-  if (name == "no-vf") {
-    config.ego_motion.filter.enabled = false;
-  } else if (name == "no-dpp") {
-    config.dynamics.predict = false;
-  } else if (name == "no-dr") {
-    config.registration.doppler_weight = 0.0;
-    config.use_displacement = false;
-  } else if (name == "no-consensus") {
-    config.ego_motion.use_consensus = false;
-  } else if (name == "no-bias") {
-    config.ego_motion.consensus.estimate_bias = false;
-  } else if (name == "no-deskew") {
-    config.sweep.undo = false;
-  } else if (name == "no-map") {
-    config.mapping.memory_scans = 0.0;
-  } else if (name == "no-search") {
-    config.search_start = false;
-  }
+  throw UsageError(fmt::format("ablation '{}' is about a part that this pipeline does not have; it has: {}", name,
+                               fmt::join(ablation_names(config), ", ")));
 }
 
-std::vector<std::string_view> ablation_names() {
-  return {"none", "no-vf", "no-dpp", "no-dr", "no-consensus", "no-bias", "no-deskew", "no-map", "no-search"};
+}  // namespace
+
+void apply_ablation(Config& config, std::string_view name) {
+  std::visit([&](auto& pipeline) { switch_off(pipeline, name); }, config);
 }
+
+void apply_ablation(PaperConfig& config, std::string_view name) { switch_off(config, name); }
+
+void apply_ablation(MapOdometryConfig& config, std::string_view name) { switch_off(config, name); }
 
 std::vector<std::string_view> ablation_names(const Config& config) {
-  return config.scan_to_scan ? std::vector<std::string_view>{"none", "no-vf", "no-dpp", "no-dr"} : ablation_names();
+  return std::visit(
+      [](const auto& pipeline) {
+        std::vector<std::string_view> names;
+        for (const auto& part : parts_of(pipeline)) {
+          names.push_back(part.name);
+        }
+        return names;
+      },
+      config);
 }
 
 }  // namespace dynamic_icp::odometry

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string_view>
+#include <variant>
 #include <vector>
 
 #include "dynamic_icp/method/base/config_field.hpp"
@@ -13,7 +14,6 @@
 #include "dynamic_icp/method/ego_motion/ego_filter.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/mapping/plane_map_config.hpp"
-#include "dynamic_icp/method/odometry/kiss_config.hpp"
 #include "dynamic_icp/method/odometry/turn_filter_config.hpp"
 #include "dynamic_icp/method/preprocess/declared_times.hpp"
 #include "dynamic_icp/method/preprocess/normals.hpp"
@@ -23,25 +23,25 @@
 #include "dynamic_icp/method/registration/map_align_config.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
+// One struct for each pipeline, with all that it reads and nothing else. An empty one has the values published for its
+// method, or the best ones. `fields` lists its keys, e.g. "preprocess.voxel.voxel_size_m"; `check` throws UsageError
+// naming the first value out of range, or values that do not go together.
 namespace dynamic_icp::odometry {
 
 struct PreprocessConfig {
   preprocess::RangeCropConfig range;
   preprocess::VoxelGridConfig voxel;
-  preprocess::NormalsConfig normals;
 };
 
-struct EgoMotionConfig {
-  ego_motion::DopplerRegressionConfig regression;
-  /// Static Doppler scatters by the noise alone once the regression is not biased: a narrower threshold than the
-  /// paper's.
-  ego_motion::VelocityFilterConfig filter{.tau_0_mps = 0.2, .kappa_per_s = 0.0};
+/// Which scans of a stream can be aligned.
+struct StreamConfig {
+  double max_gap_s = 1.0;  ///< a longer time between two scans is bridged by the last motion, not by alignment
+  int min_points = 6;      ///< a scan with fewer points after preprocessing cannot be aligned
+};
 
-  // Beyond the paper.
-  bool use_consensus = true;  ///< off: Huber regression also with the local map (ablation "no-consensus")
-  ego_motion::ConsensusRegressionConfig consensus;
-  ego_motion::DriftConfig drift;
-  double static_deviations = 4.0;  ///< a point moves only beyond so many deviations of the static Doppler
+struct PaperEgoMotionConfig {
+  ego_motion::DopplerRegressionConfig regression;
+  ego_motion::VelocityFilterConfig filter;
 };
 
 struct DynamicsConfig {
@@ -50,14 +50,69 @@ struct DynamicsConfig {
   dynamics::ObjectVelocityConfig velocity;
 };
 
-/// Of point-to-point, point-to-plane, gicp and doppler-icp. Gate and stopping rule are those of dynamic-icp.
-struct IcpConfig {
-  bool constant_velocity_start = false;  ///< start from the last motion instead of the identity
+/// Dynamic-ICP as published, from scan to scan: preset `paper`.
+struct PaperConfig {
+  PreprocessConfig preprocess;
+  preprocess::NormalsConfig normals;
+  PaperEgoMotionConfig ego_motion;
+  DynamicsConfig dynamics;
+  registration::AlignConfig registration;
+  StreamConfig stream;
 };
 
-/// Of doppler-icp, with its published values. The scales of the kernels are meant for residuals that are multiplied by
-/// the root of their share of the objective.
+ConfigFields fields(PaperConfig& config);
+void check(const PaperConfig& config);
+
+struct EgoMotionConfig {
+  /// Static Doppler scatters by the noise alone once the regression is not biased: a narrower threshold than the
+  /// paper's.
+  ego_motion::VelocityFilterConfig filter{.tau_0_mps = 0.2, .kappa_per_s = 0.0};
+  bool use_consensus = true;                       ///< off: Huber regression (ablation "no-consensus")
+  ego_motion::DopplerRegressionConfig regression;  ///< read, and among the fields, only without consensus
+  ego_motion::ConsensusRegressionConfig consensus;
+  ego_motion::DriftConfig drift;
+  double static_deviations = 4.0;  ///< a point moves only beyond so many deviations of the static Doppler
+};
+
+/// Dynamic-ICP beyond the paper, with a local map: preset `default`.
+struct MapOdometryConfig {
+  PreprocessConfig preprocess;
+  EgoMotionConfig ego_motion;
+  preprocess::SweepConfig sweep;
+  mapping::PlaneMapConfig mapping;
+  registration::MapAlignConfig map_align;
+  TurnFilterConfig turn;
+  bool track_objects = true;  ///< off: moving points are left out (ablation "no-dpp")
+  tracking::TrackerConfig tracking;
+  bool use_displacement = true;               ///< the way between scans from the Doppler, as a term of the alignment
+  double displacement_deviation_mps = 0.003;  ///< error of the integrated velocity over the time between two scans
+  bool search_start = true;                   ///< try several turns for the first pair of scans
+  double lost_match = 0.5;                    ///< lost when less than this share of the usual number of points fits
+  double unknown_deviation_m = 0.1;           ///< directions known worse than this are degenerate
+  StreamConfig stream;
+};
+
+ConfigFields fields(MapOdometryConfig& config);
+void check(const MapOdometryConfig& config);
+
+/// Point-to-point, point-to-plane and plane-to-plane (gicp) from scan to scan. Preprocessing, gate and stopping rule
+/// are those of the paper.
+struct ScanToScanIcpConfig {
+  registration::GeometryTerm geometry = registration::GeometryTerm::kPointToPlane;  ///< what the method is; no key
+  PreprocessConfig preprocess;
+  preprocess::NormalsConfig normals;  ///< read, and among the fields, unless point-to-point
+  registration::MatchingConfig registration;
+  bool constant_velocity_start = false;  ///< start from the last motion instead of the identity
+  StreamConfig stream;
+};
+
+ConfigFields fields(ScanToScanIcpConfig& config);
+void check(const ScanToScanIcpConfig& config);
+
+/// Doppler-ICP as published. The scales of the kernels are meant for residuals that are multiplied by the root of their
+/// share of the objective.
 struct DopplerIcpConfig {
+  ScanToScanIcpConfig icp;  ///< point-to-plane
   double doppler_weight = 0.01;
   double tukey_geometry_m = 0.5;
   double tukey_doppler_mps = 0.2;
@@ -66,61 +121,61 @@ struct DopplerIcpConfig {
 };
 
 ConfigFields fields(DopplerIcpConfig& config);
+void check(const DopplerIcpConfig& config);
 
-/// Everything the odometry can be told, stage by stage. `Config{}` is preset `default`. A method reads only a part of
-/// it, see `effective_fields`.
-struct Config {
-  PreprocessConfig preprocess;
-  EgoMotionConfig ego_motion;
-  DynamicsConfig dynamics;
-  registration::AlignConfig registration;
-  IcpConfig icp;
-  DopplerIcpConfig doppler_icp;
-  KissConfig kiss;
-
-  // Of dynamic-icp beyond the paper, with a local map.
-  bool scan_to_scan = false;  ///< the paper's pipeline; off: preset `default`
-  preprocess::SweepConfig sweep;
-  mapping::PlaneMapConfig mapping;
-  registration::MapAlignConfig map_align;
-  TurnFilterConfig turn;
-  tracking::TrackerConfig tracking;
-  bool use_displacement = true;               ///< the way between scans from the Doppler, as a term of the alignment
-  double displacement_deviation_mps = 0.003;  ///< error of the integrated velocity over the time between two scans
-  bool search_start = true;                   ///< try several turns for the first pair of scans
-  double lost_match = 0.5;                    ///< lost when less than this share of the usual number of points fits
-  double unknown_deviation_m = 0.1;           ///< directions known worse than this are degenerate
-
-  double max_gap_s = 1.0;  ///< a longer time between two scans is bridged by the last motion, not by alignment
-  int min_points = 6;      ///< a scan with fewer points after preprocessing cannot be aligned
+/// KISS-ICP with the defaults of its authors' releases 0.2.10 to 1.2.0.
+struct KissIcpConfig {
+  bool deskew = false;
+  double min_range_m = 5.0;
+  double max_range_m = 100.0;
+  double voxel_size_m = 1.0;  ///< published: a hundredth of max_range_m
+  int max_points_per_voxel = 20;
+  double initial_threshold_m = 2.0;
+  double min_motion_m = 0.1;
+  int max_iterations = 500;
+  double min_step = 1e-4;  ///< of the norm of [omega (rad); rho (m)]
+  int min_points = 6;      ///< a scan with fewer points to be registered cannot be aligned
 };
 
-/// All fields with their keys, e.g. "preprocess.voxel.voxel_size_m".
+ConfigFields fields(KissIcpConfig& config);
+void check(const KissIcpConfig& config);
+
+/// The configuration of any pipeline; `Config{}` is preset `default`.
+using Config = std::variant<MapOdometryConfig, PaperConfig, ScanToScanIcpConfig, DopplerIcpConfig, KissIcpConfig>;
+
 ConfigFields fields(Config& config);
-
-/// Those of them that have an effect on the method of that name (see `method_names`) with this configuration.
-ConfigFields effective_fields(Config& config, std::string_view method);
-
-/// Throws UsageError naming the first value out of range, or values that do not go together.
 void check(const Config& config);
 
-/// A named configuration: "default", `Config{}`, is the best this program can do; "paper" is the paper's method with
-/// its published values and nothing added. Throws UsageError for other names.
-Config preset(std::string_view name);
+/// A pipeline as a user calls it.
+struct Pipeline {
+  std::string_view method;
+  std::string_view preset;  ///< "default" or "paper" for dynamic-icp; empty for methods that have no presets
+  Config config;
+};
+
+/// All that there are; preset `default` first.
+const std::vector<Pipeline>& pipelines();
+
+/// dynamic-icp, doppler-icp, point-to-point, point-to-plane, gicp, kiss-icp.
+std::vector<std::string_view> method_names();
 
 std::vector<std::string_view> preset_names();
+
+/// The configuration of a method by name. The preset is that of dynamic-icp: "default" is the best this program can do;
+/// "paper" is the paper's method with its published values and nothing added. Throws UsageError with the known names
+/// for any other.
+Config configuration(std::string_view method, std::string_view preset = "default");
 
 /// Switches a part off: "none"; as in the paper's ablation study "no-vf" (no velocity filter: all points count as
 /// static), "no-dpp" (no prediction: moving points are left out; with the local map: no tracking), "no-dr" (no Doppler
 /// term in the alignment); with the local map also "no-consensus" (Huber regression of the ego velocity), "no-bias" (no
 /// Doppler bias), "no-deskew", "no-map" (only the last scan), "no-search" (first pair from one start). Throws
-/// UsageError for other names, and for parts the configuration does not have.
+/// UsageError for other names, and for parts the pipeline does not have.
 void apply_ablation(Config& config, std::string_view name);
+void apply_ablation(PaperConfig& config, std::string_view name);
+void apply_ablation(MapOdometryConfig& config, std::string_view name);
 
-/// The parts that dynamic-icp has with this configuration, "none" first.
-std::vector<std::string_view> ablation_names(const Config& config);
-
-/// All of them.
-std::vector<std::string_view> ablation_names();
+/// The parts that a pipeline has, "none" first.
+std::vector<std::string_view> ablation_names(const Config& config = {});
 
 }  // namespace dynamic_icp::odometry

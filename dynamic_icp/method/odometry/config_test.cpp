@@ -2,28 +2,28 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/config.hpp"
 
+#include <algorithm>
 #include <limits>
 #include <set>
+#include <string>
+#include <vector>
 
-#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
-
-#include "testing/synthetic_drive.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
 
 TEST(OdometryConfig, PresetPaperHasThePublishedValues) {
   // The table of the paper's implementation section and of its authors' program.
-  const Config paper = preset("paper");
+  const PaperConfig paper;
   EXPECT_EQ(paper.preprocess.voxel.voxel_size_m, 0.3);
   EXPECT_EQ(paper.preprocess.range.min_range_m, 0.2);
   EXPECT_EQ(paper.preprocess.range.max_range_m, 400.0);
-  EXPECT_EQ(paper.preprocess.normals.radius_m, 2.0);
-  EXPECT_EQ(paper.preprocess.normals.max_neighbours, 30);
+  EXPECT_EQ(paper.normals.radius_m, 2.0);
+  EXPECT_EQ(paper.normals.max_neighbours, 30);
   EXPECT_EQ(paper.ego_motion.regression.huber_delta_mps, 0.3);
   EXPECT_EQ(paper.ego_motion.regression.max_iterations, 50);
   EXPECT_EQ(paper.ego_motion.filter.tau_0_mps, 0.35);
@@ -44,7 +44,7 @@ TEST(OdometryConfig, PresetPaperHasThePublishedValues) {
 
 TEST(OdometryConfig, AMountingThatIsNoRigidMotionIsRefused) {
   const auto make = [](const Eigen::Isometry3d& T_vehicle_sensor) {
-    return make_odometry("doppler-icp", {}, {T_vehicle_sensor, DopplerKind::kRelative}, 1);
+    return make_odometry(DopplerIcpConfig{}, {T_vehicle_sensor, DopplerKind::kRelative}, 1);
   };
   EXPECT_NO_THROW(make(Eigen::Isometry3d::Identity()));
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), 1e150}) {
@@ -57,114 +57,125 @@ TEST(OdometryConfig, AMountingThatIsNoRigidMotionIsRefused) {
   }
 }
 
+std::vector<std::string> texts(Config config) {
+  std::vector<std::string> all;
+  for (const ConfigField& field : fields(config)) {
+    all.push_back(field.key + "=" + value_text(field));
+  }
+  return all;
+}
+
 TEST(OdometryConfig, AnEmptyOneIsPresetDefault) {
-  Config empty;
-  Config named = preset("default");
-  const ConfigFields expected = fields(named);
-  const ConfigFields found = fields(empty);
-  ASSERT_EQ(found.size(), expected.size());
-  for (std::size_t i = 0; i < found.size(); ++i) {
-    EXPECT_EQ(value_text(found[i]), value_text(expected[i])) << found[i].key;
-  }
-  EXPECT_FALSE(empty.scan_to_scan);
+  EXPECT_EQ(texts({}), texts(configuration("dynamic-icp")));
+  EXPECT_TRUE(std::holds_alternative<MapOdometryConfig>(Config{}));
+  EXPECT_TRUE(std::holds_alternative<PaperConfig>(configuration("dynamic-icp", "paper")));
 }
 
-TEST(OdometryConfig, EveryKeyHasAnEffectOnSomeMethod) {
-  std::set<std::string> effective;
-  for (const char* name : {"default", "paper"}) {
-    for (const std::string_view method : method_names()) {
-      Config config = preset(name);
-      for (const ConfigField& field : effective_fields(config, method)) {
-        effective.insert(field.key);
+TEST(OdometryConfig, ThePresetIsThatOfDynamicIcpAlone) {
+  for (const std::string_view method : method_names()) {
+    const bool has_presets = method == "dynamic-icp";
+    EXPECT_EQ(texts(configuration(method, "default")) != texts(configuration(method, "paper")), has_presets) << method;
+    EXPECT_THROW(configuration(method, "best"), UsageError);
+  }
+  EXPECT_THROW(configuration("magic"), UsageError);
+}
+
+TEST(OdometryConfig, EveryPipelineHasEachKeyOnceAndPassesItsOwnCheck) {
+  for (const Pipeline& pipeline : pipelines()) {
+    Config config = pipeline.config;
+    std::set<std::string> keys;
+    for (const ConfigField& field : fields(config)) {
+      EXPECT_TRUE(keys.insert(field.key).second) << field.key;
+      EXPECT_FALSE(field.description.empty()) << field.key;
+      EXPECT_NO_THROW(set_field(fields(config), field.key, value_text(field))) << field.key;
+    }
+    EXPECT_NO_THROW(check(config)) << pipeline.method << pipeline.preset;
+  }
+}
+
+// A value out of its range is found in each of the settings of each pipeline.
+TEST(OdometryConfig, EveryNumberOutOfRangeIsRefused) {
+  for (const Pipeline& pipeline : pipelines()) {
+    Config config = pipeline.config;
+    for (const ConfigField& field : fields(config)) {
+      const Config before = config;
+      if (double* const* number = std::get_if<double*>(&field.value)) {
+        **number = std::numeric_limits<double>::quiet_NaN();
+      } else if (int* const* count = std::get_if<int*>(&field.value)) {
+        **count = static_cast<int>(field.minimum) - 1;
+      } else {
+        continue;
       }
+      EXPECT_THROW(check(config), UsageError) << field.key;
+      EXPECT_THROW(make_odometry(config, {}, 1), UsageError) << field.key;
+      config = before;
     }
   }
-  Config config;
+}
+
+TEST(OdometryConfig, PipelinesHaveTheKeysOfTheirOwnPartsOnly) {
+  const auto has = [](const Config& config, std::string_view part) {
+    const std::vector<std::string> all = texts(config);
+    return std::ranges::any_of(all, [&](const std::string& text) { return text.starts_with(part); });
+  };
+  EXPECT_FALSE(has(configuration("point-to-point"), "preprocess.normals."));
+  EXPECT_TRUE(has(configuration("gicp"), "preprocess.normals."));
+  EXPECT_FALSE(has(configuration("gicp"), "doppler_icp."));
+  EXPECT_FALSE(has(PaperConfig{}, "mapping."));
+  EXPECT_FALSE(has(MapOdometryConfig{}, "registration.tolerance"));
+  EXPECT_FALSE(has(KissIcpConfig{}, "preprocess."));
+  MapOdometryConfig config;
+  EXPECT_FALSE(has(config, "ego_motion.regression.")) << "read only where there is no consensus";
   config.ego_motion.use_consensus = false;
-  for (const ConfigField& field : effective_fields(config, "dynamic-icp")) {
-    effective.insert(field.key);
-  }
-  for (const ConfigField& field : fields(config)) {
-    EXPECT_TRUE(effective.contains(field.key)) << field.key;
-  }
-}
-
-/// Another value that is allowed: the other one of two, or an end of the range.
-void change(const ConfigFields& fields, const ConfigField& field) {
-  if (bool* const* flag = std::get_if<bool*>(&field.value)) {
-    **flag = !**flag;
-    return;
-  }
-  const std::string before = value_text(field);
-  set_field(fields, field.key, fmt::format("{}", field.maximum));
-  if (value_text(field) == before) {
-    set_field(fields, field.key, fmt::format("{}", field.minimum));
-  }
-}
-
-// Each method with all keys changed that it is said not to read.
-TEST(OdometryConfig, KeysWithoutEffectHaveNone) {
-  const synthetic::Drive drive{synthetic::street(), synthetic::circle(10.0, 0.2), {}};
-  for (const char* name : {"default", "paper"}) {
-    for (const std::string_view method : method_names()) {
-      Config plain = preset(name);
-      Config changed = plain;
-      std::set<std::string> effective = {"odometry.scan_to_scan"};
-      for (const ConfigField& field : effective_fields(plain, method)) {
-        effective.insert(field.key);
-      }
-      const ConfigFields all = fields(changed);
-      for (const ConfigField& field : all) {
-        if (!effective.contains(field.key) && field.key != "ego_motion.consensus.min_noise_mps") {
-          change(all, field);
-        }
-      }
-      const auto expected = make_odometry(method, plain, {}, 1);
-      const auto found = make_odometry(method, changed, {}, 1);
-      for (int k = 0; k < 4; ++k) {
-        const RawScan scan = drive.scan(k);
-        EXPECT_EQ(found->process(scan).T_world_sensor.matrix(), expected->process(scan).T_world_sensor.matrix())
-            << method << " " << name << " scan " << k;
-      }
-    }
-  }
-}
-
-TEST(OdometryConfig, EveryFieldHasItsOwnKeyAndPassesItsOwnCheck) {
-  Config config;
-  std::set<std::string> keys;
-  for (const ConfigField& field : fields(config)) {
-    EXPECT_TRUE(keys.insert(field.key).second) << field.key;
-    EXPECT_FALSE(field.description.empty()) << field.key;
-    EXPECT_NO_THROW(set_field(fields(config), field.key, value_text(field))) << field.key;
-  }
-  EXPECT_NO_THROW(check(config));
+  EXPECT_TRUE(has(config, "ego_motion.regression."));
 }
 
 TEST(OdometryConfig, ValuesThatDoNotGoTogetherAreRefused) {
-  Config config;
-  config.preprocess.range.min_range_m = 500.0;
-  EXPECT_THROW(check(config), UsageError);
-  config = Config{};
+  PaperConfig paper;
+  paper.preprocess.range.min_range_m = 500.0;
+  EXPECT_THROW(check(paper), UsageError);
+  DopplerIcpConfig doppler_icp;
+  doppler_icp.icp.preprocess.range.min_range_m = 500.0;
+  EXPECT_THROW(check(doppler_icp), UsageError);
+  MapOdometryConfig config;
   config.preprocess.voxel.voxel_size_m = 1e-5;
   EXPECT_THROW(check(config), UsageError);
   config.preprocess.voxel.voxel_size_m = 0.0;
   EXPECT_NO_THROW(check(config));
+  config.ego_motion.consensus.min_noise_mps = 2.0 * config.ego_motion.consensus.max_noise_mps;
+  EXPECT_THROW(check(config), UsageError);
 }
 
 TEST(OdometryConfig, AblationsSwitchOffWhatThePaperSwitchesOff) {
-  Config config = preset("paper");
-  apply_ablation(config, "no-vf");
-  EXPECT_FALSE(config.ego_motion.filter.enabled);
-  config = Config{};
-  apply_ablation(config, "no-dpp");
-  EXPECT_FALSE(config.dynamics.predict);
-  config = Config{};
-  apply_ablation(config, "no-dr");
-  EXPECT_EQ(config.registration.doppler_weight, 0.0);
-  EXPECT_NO_THROW(apply_ablation(config, "none"));
-  EXPECT_THROW(apply_ablation(config, "no-such"), UsageError);
-  EXPECT_THROW(preset("best"), UsageError);
+  PaperConfig paper;
+  apply_ablation(paper, "no-vf");
+  EXPECT_FALSE(paper.ego_motion.filter.enabled);
+  apply_ablation(paper, "no-dpp");
+  EXPECT_FALSE(paper.dynamics.predict);
+  apply_ablation(paper, "no-dr");
+  EXPECT_EQ(paper.registration.doppler_weight, 0.0);
+  EXPECT_NO_THROW(apply_ablation(paper, "none"));
+  EXPECT_THROW(apply_ablation(paper, "no-such"), UsageError);
+  EXPECT_THROW(apply_ablation(paper, "no-map"), UsageError);
+  Config baseline = configuration("gicp");
+  EXPECT_NO_THROW(apply_ablation(baseline, "none"));
+  EXPECT_THROW(apply_ablation(baseline, "no-vf"), UsageError);
+}
+
+// Each is one switch or number that is off or zero afterwards.
+TEST(OdometryConfig, EachAblationChangesOneSetting) {
+  for (const Pipeline& pipeline : pipelines()) {
+    for (const std::string_view name : ablation_names(pipeline.config)) {
+      Config config = pipeline.config;
+      apply_ablation(config, name);
+      const std::vector<std::string> before = texts(pipeline.config);
+      std::vector<std::string> changed = texts(config);
+      std::erase_if(changed, [&](const std::string& text) { return std::ranges::find(before, text) != before.end(); });
+      std::erase_if(changed, [](const std::string& text) { return text.starts_with("ego_motion.regression."); });
+      ASSERT_EQ(changed.size(), name == "none" ? 0u : 1u) << name;
+      EXPECT_TRUE(name == "none" || changed[0].ends_with("=false") || changed[0].ends_with("=0")) << changed[0];
+    }
+  }
 }
 
 }  // namespace

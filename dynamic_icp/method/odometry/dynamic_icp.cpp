@@ -53,10 +53,8 @@ struct DynamicIcp::Reference {
   std::optional<Vector6d> twist;  // log(T_target_source) / dt of the motion that ended here, where one was found
 };
 
-DynamicIcp::DynamicIcp(const Config& config, int threads, DopplerKind expected)
-    : config_(config), workers_(threads), expected_(expected) {
-  check(config_);
-}
+DynamicIcp::DynamicIcp(const PaperConfig& config, int threads, DopplerKind expected)
+    : config_(checked(config)), workers_(threads), expected_(expected) {}
 
 DynamicIcp::~DynamicIcp() = default;
 DynamicIcp::DynamicIcp(DynamicIcp&&) noexcept = default;
@@ -76,7 +74,7 @@ Frame DynamicIcp::process(const RawScan& raw) {
   const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
-  const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_);
+  const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_.stream);
   if (found == FrameStatus::kNotRun) {
     align_to_last(scan, frame, clock);  // Eq. (9)-(14)
   } else {
@@ -114,8 +112,7 @@ Frame DynamicIcp::process(const RawScan& raw) {
 
 void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const {
   const spatial::KdTree tree(scan.points(), workers_);
-  const preprocess::Normals normals =
-      preprocess::estimate_normals(scan.points(), tree, config_.preprocess.normals, workers_);
+  const preprocess::Normals normals = preprocess::estimate_normals(scan.points(), tree, config_.normals, workers_);
   clock.finish(Stage::kNormals);
 
   const double dt_s = seconds_between(last_->scan.stamp(), frame.stamp);

@@ -18,7 +18,7 @@ namespace dynamic_icp::odometry {
 
 /// Dynamic-ICP over a stream of scans: from each scan to the next, with no other sensor and no calibration.
 ///
-///   DynamicIcp odometry(preset("paper"));
+///   DynamicIcp odometry(PaperConfig{});
 ///   for (const RawScan& scan : scans) { Frame frame = odometry.process(scan); ... frame.T_world_sensor ... }
 ///
 /// The same scans give the same bits for any number of threads.
@@ -26,7 +26,7 @@ class DynamicIcp final : public Odometry {
  public:
   /// `threads` = 0 takes as many as the machine has; `expected` is what the Doppler will be, for `assumptions`. Throws
   /// UsageError when the configuration is out of range.
-  explicit DynamicIcp(const Config& config, int threads = 0, DopplerKind expected = DopplerKind::kRelative);
+  explicit DynamicIcp(const PaperConfig& config, int threads = 0, DopplerKind expected = DopplerKind::kRelative);
   ~DynamicIcp() override;
   DynamicIcp(DynamicIcp&&) noexcept;
   DynamicIcp& operator=(DynamicIcp&&) noexcept;
@@ -52,7 +52,7 @@ class DynamicIcp final : public Odometry {
   [[nodiscard]] Eigen::Vector3d velocity_prior(const Frame& frame) const;
   [[nodiscard]] std::vector<std::int32_t> cluster(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) const;
 
-  Config config_;
+  PaperConfig config_;
   Workers workers_;
   DopplerKind expected_;
   std::optional<Stamp> last_stamp_;

@@ -83,7 +83,7 @@ bool is_aligned(const Frame& frame) {
 
 TEST(DynamicIcp, FollowsAStraightDrive) {
   const Street street;
-  DynamicIcp odometry(preset("paper"), 2);
+  DynamicIcp odometry(PaperConfig{}, 2);
   const Frame first = odometry.process(street.scan(0));
   EXPECT_EQ(first.status, FrameStatus::kFirst);
   EXPECT_TRUE(first.T_world_sensor.isApprox(Eigen::Isometry3d::Identity()));
@@ -99,7 +99,7 @@ TEST(DynamicIcp, FollowsAStraightDrive) {
 
 TEST(DynamicIcp, FindsTheMovingCars) {
   const Street street;
-  DynamicIcp odometry(preset("paper"), 1);
+  DynamicIcp odometry(PaperConfig{}, 1);
   const Frame frame = odometry.process(street.scan(0));
   EXPECT_GT(frame.dynamic_candidates, 60u);
   EXPECT_GE(frame.dynamic_candidates, frame.dynamic_clustered);
@@ -122,7 +122,7 @@ TEST(DynamicIcp, LabelsEveryPointAsRead) {
   RawScan raw = street.scan(0);
   raw.points[0] = {NAN, 0.0, 0.0};
   raw.points[1] = {5000.0, 0.0, 0.0};
-  DynamicIcp odometry(preset("paper"), 1);
+  DynamicIcp odometry(PaperConfig{}, 1);
   const Frame frame = odometry.process(raw);
   ASSERT_EQ(frame.labels.size(), raw.points.size());
   EXPECT_EQ(frame.labels[0], -1);
@@ -144,7 +144,7 @@ TEST(DynamicIcp, LabelsEveryPointAsRead) {
 
 TEST(DynamicIcp, RecoversAfterAnEmptyScan) {
   const Street street;
-  DynamicIcp odometry(preset("paper"), 1);
+  DynamicIcp odometry(PaperConfig{}, 1);
   odometry.process(street.scan(0));
   odometry.process(street.scan(1));
   const Frame lost = odometry.process(empty_scan(2));
@@ -157,7 +157,7 @@ TEST(DynamicIcp, RecoversAfterAnEmptyScan) {
 
 TEST(DynamicIcp, RecoversAfterAScanThatDoesNotFit) {
   const Street street;
-  DynamicIcp odometry(preset("paper"), 1);
+  DynamicIcp odometry(PaperConfig{}, 1);
   odometry.process(street.scan(0));
   odometry.process(street.scan(1));
   RawScan elsewhere = empty_scan(2);  // a few points far from everything, seen with the right Doppler
@@ -178,7 +178,7 @@ TEST(DynamicIcp, RecoversAfterAScanThatDoesNotFit) {
 
 TEST(DynamicIcp, RecoversAfterATimeGap) {
   const Street street;
-  DynamicIcp odometry(preset("paper"), 1);
+  DynamicIcp odometry(PaperConfig{}, 1);
   odometry.process(street.scan(0));
   odometry.process(street.scan(1));
   const Frame late = odometry.process(street.scan(31));
@@ -191,7 +191,7 @@ TEST(DynamicIcp, RecoversAfterATimeGap) {
 
 TEST(DynamicIcp, RefusesTimeThatStandsStillOrRunsBackwards) {
   const Street street;
-  DynamicIcp odometry(preset("paper"), 1);
+  DynamicIcp odometry(PaperConfig{}, 1);
   odometry.process(street.scan(3));
   EXPECT_THROW(odometry.process(street.scan(3)), DataError);
   EXPECT_THROW(odometry.process(street.scan(1)), DataError);
@@ -213,7 +213,7 @@ TEST(DynamicIcp, DegenerateScansHaveAStatusAndFinitePoses) {
   }
   RawScan not_a_number = Street{}.scan(4);
   not_a_number.doppler.assign(not_a_number.points.size(), std::nan(""));
-  DynamicIcp odometry(preset("paper"), 1);
+  DynamicIcp odometry(PaperConfig{}, 1);
   for (const RawScan& raw : {one, same_voxel, no_doppler, all_wild, not_a_number}) {
     const Frame frame = odometry.process(raw);
     EXPECT_NE(frame.status, FrameStatus::kNotRun);
@@ -224,15 +224,15 @@ TEST(DynamicIcp, DegenerateScansHaveAStatusAndFinitePoses) {
 
 TEST(DynamicIcp, AblationsDoWhatTheirNamesSay) {
   const Street street;
-  Config config = preset("paper");
+  PaperConfig config;
   apply_ablation(config, "no-vf");
   EXPECT_EQ(DynamicIcp(config, 1).process(street.scan(0)).dynamic_candidates, 0u);
-  config = preset("paper");
+  config = PaperConfig{};
   apply_ablation(config, "no-dpp");
   const Frame frame = DynamicIcp(config, 1).process(street.scan(0));
   EXPECT_GT(frame.dynamic_candidates, 60u);
   EXPECT_TRUE(frame.clusters.empty());
-  config = preset("paper");
+  config = PaperConfig{};
   apply_ablation(config, "no-dr");
   DynamicIcp odometry(config, 1);
   odometry.process(street.scan(0));
@@ -242,7 +242,7 @@ TEST(DynamicIcp, AblationsDoWhatTheirNamesSay) {
 TEST(DynamicIcp, SameBitsForAnyNumberOfThreadsAndEveryRun) {
   const Street street;
   const auto last_pose = [&](int threads) {
-    DynamicIcp odometry(preset("paper"), threads);
+    DynamicIcp odometry(PaperConfig{}, threads);
     Frame frame;
     for (int k = 0; k < 4; ++k) {
       frame = odometry.process(street.scan(k));
@@ -256,7 +256,7 @@ TEST(DynamicIcp, SameBitsForAnyNumberOfThreadsAndEveryRun) {
 }
 
 TEST(DynamicIcp, RefusesConfigurationsOutOfRange) {
-  Config config = preset("paper");
+  PaperConfig config;
   config.registration.max_iterations = 0;
   EXPECT_THROW(DynamicIcp(config, 1), UsageError);
 }

@@ -34,7 +34,7 @@ Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Worker
   return scan;
 }
 
-FrameStatus obstacle(std::size_t points, std::optional<double> interval_s, const Config& config) {
+FrameStatus obstacle(std::size_t points, std::optional<double> interval_s, const StreamConfig& config) {
   if (points < static_cast<std::size_t>(config.min_points)) {
     return FrameStatus::kTooFewPoints;
   }

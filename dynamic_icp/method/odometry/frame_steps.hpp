@@ -12,6 +12,13 @@
 // The steps that every method makes with a scan.
 namespace dynamic_icp::odometry {
 
+/// The configuration, before anything is made from it. Throws UsageError when it is out of range.
+template <class PipelineConfig>
+const PipelineConfig& checked(const PipelineConfig& config) {
+  check(config);
+  return config;
+}
+
 /// Throws DataError when the scan is not later than the last one.
 void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp);
 
@@ -24,7 +31,7 @@ Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Worker
 
 /// Why a scan with so many usable points, taken `interval_s` after the last usable one, is not aligned to it: kFirst
 /// when there is none (no interval), kTooFewPoints, kTooSoon or kTimeGap. kNotRun: it can be aligned.
-FrameStatus obstacle(std::size_t points, std::optional<double> interval_s, const Config& config);
+FrameStatus obstacle(std::size_t points, std::optional<double> interval_s, const StreamConfig& config);
 
 /// Whether a scan with this obstacle takes no part: the reference and the state stay those of the scan before.
 bool is_skipped(FrameStatus obstacle);

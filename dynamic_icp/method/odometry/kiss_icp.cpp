@@ -76,11 +76,6 @@ class ScanToMap final : public registration::Problem {
   const Workers& workers_;
 };
 
-const KissConfig& checked(const Config& config) {
-  check(config);
-  return config.kiss;
-}
-
 }  // namespace
 
 ThinnedScan thin(const Scan& scan, double map_voxel_size_m) {
@@ -90,9 +85,8 @@ ThinnedScan thin(const Scan& scan, double map_voxel_size_m) {
   return result;
 }
 
-KissIcp::KissIcp(const Config& config, int threads)
+KissIcp::KissIcp(const KissIcpConfig& config, int threads)
     : config_(checked(config)),
-      min_points_(config.min_points),
       workers_(threads),
       map_(config_.voxel_size_m, config_.max_points_per_voxel),
       threshold_(config_.initial_threshold_m, config_.min_motion_m, config_.max_range_m) {}
@@ -109,7 +103,7 @@ Frame KissIcp::process(const RawScan& raw) {
   const std::optional<Stamp> before = std::exchange(last_stamp_, raw.stamp);
   const Eigen::Isometry3d T_world_predicted = T_world_last_.value_or(Eigen::Isometry3d::Identity()) * T_last_now_;
   frame.T_world_sensor = T_world_predicted;
-  if (source.size() < static_cast<std::size_t>(min_points_)) {
+  if (source.size() < static_cast<std::size_t>(config_.min_points)) {
     frame.status = FrameStatus::kTooFewPoints;
     if (T_world_last_) {
       continue_from(*T_world_last_, frame);

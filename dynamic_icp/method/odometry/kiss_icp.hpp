@@ -21,7 +21,7 @@ ThinnedScan thin(const Scan& scan, double map_voxel_size_m);
 
 /// KISS-ICP as published (Vizzo et al., IEEE RA-L 2023), which uses no Doppler velocities: robust point-to-point
 /// registration of each scan to a local map, from the pose that a constant velocity predicts. It has its own
-/// preprocessing: of `Config` it takes `kiss` and `min_points` alone. It knows no time between scans, which are taken
+/// preprocessing. It knows no time between scans, which are taken
 /// as evenly spaced; stamps only have to increase.
 ///
 /// Rules and defaults are those of its authors' releases 0.2.10 to 1.2.0. In details it is not their program: voxels
@@ -41,7 +41,7 @@ ThinnedScan thin(const Scan& scan, double map_voxel_size_m);
 class KissIcp final : public Odometry {
  public:
   /// `threads` = 0 takes as many as the machine has. Throws UsageError when the configuration is out of range.
-  explicit KissIcp(const Config& config, int threads = 0);
+  explicit KissIcp(const KissIcpConfig& config, int threads = 0);
 
   /// A scan that cannot be aligned stands at the predicted pose, also in the map, unless it has too few points.
   Frame process(const RawScan& raw) override;
@@ -52,8 +52,7 @@ class KissIcp final : public Odometry {
   void update_map(const Scan& points, const Eigen::Isometry3d& T_world_sensor);
   void continue_from(Eigen::Isometry3d T_world_before, Frame& frame);
 
-  KissConfig config_;
-  int min_points_;
+  KissIcpConfig config_;
   Workers workers_;
   spatial::VoxelHashMap map_;  ///< in the world frame
   AdaptiveThreshold threshold_;

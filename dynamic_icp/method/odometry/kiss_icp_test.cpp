@@ -126,7 +126,7 @@ TEST(KissIcp, ThinsByTheFirstPointsOfTwoGrids) {
 }
 
 TEST(KissIcp, RecoversTheExactMotionOfPointsSeenAgain) {
-  KissIcp odometry(Config{}, 1);
+  KissIcp odometry(KissIcpConfig{}, 1);
   EXPECT_EQ(odometry.process(seen_from(Isometry3d::Identity(), lattice(), 0)).points_used, lattice().size());
   const Frame again = odometry.process(seen_from(Isometry3d::Identity(), lattice(), 1));
   EXPECT_EQ(again.status, FrameStatus::kConverged);
@@ -150,7 +150,7 @@ TEST(KissIcp, RecoversTheExactMotionOfPointsSeenAgain) {
 
 TEST(KissIcp, FollowsADriveThatStartsSlowly) {
   const Drive drive{0.0, 2.0, 8.0, 0.0};
-  KissIcp odometry(Config{}, 2);
+  KissIcp odometry(KissIcpConfig{}, 2);
   const Frame first = odometry.process(scan_of(drive, 0));
   EXPECT_EQ(first.status, FrameStatus::kFirst);
   EXPECT_EQ(first.T_world_sensor.matrix(), Isometry3d::Identity().matrix());
@@ -169,8 +169,8 @@ TEST(KissIcp, DeskewsTheSweepToItsMiddle) {
   const Isometry3d T_first_middle = drive.pose(0.5 * kPeriod_s);
   double mean_error[2] = {0.0, 0.0};
   for (const bool deskew : {false, true}) {
-    Config config;
-    config.kiss.deskew = deskew;
+    KissIcpConfig config;
+    config.deskew = deskew;
     KissIcp odometry(config, 2);
     for (int k = 0; k <= 60; ++k) {
       const Frame frame = odometry.process(scan_of(drive, k, true));
@@ -185,7 +185,7 @@ TEST(KissIcp, DeskewsTheSweepToItsMiddle) {
 TEST(KissIcp, DoesNotStartAtFullSpeed) {
   // 2.7 m from scan to scan, but the prediction is to stand still and the search reaches 1 to 2 m.
   const Drive drive{27.0, 0.0, 27.0, 0.0};
-  KissIcp odometry(Config{}, 2);
+  KissIcp odometry(KissIcpConfig{}, 2);
   Frame frame;
   for (int k = 0; k <= 30; ++k) {
     frame = odometry.process(scan_of(drive, k));
@@ -197,7 +197,7 @@ TEST(KissIcp, DoesNotStartAtFullSpeed) {
 
 TEST(KissIcp, KeepsThePredictedMotionWhereThereIsNothingToSee) {
   const Drive drive{5.0, 0.0, 5.0, 0.0};
-  KissIcp odometry(Config{}, 1);
+  KissIcp odometry(KissIcpConfig{}, 1);
   EXPECT_EQ(odometry.process(empty_scan(0)).status, FrameStatus::kTooFewPoints);
   EXPECT_EQ(odometry.process(scan_of(drive, 1)).status, FrameStatus::kFirst);
   const Isometry3d T_first = drive.pose(kPeriod_s);
@@ -229,7 +229,7 @@ TEST(KissIcp, LabelsThePointsItRegisters) {
   RawScan raw = seen_from(Isometry3d::Identity(), lattice(), 0);
   raw.points.insert(raw.points.end(), {{NAN, 0, 0}, {4.9, 0, 0}, {100.1, 0, 0}, raw.points[0] + Vector3d(0.01, 0, 0)});
   raw.doppler.resize(raw.points.size(), 0.0);
-  const Frame frame = KissIcp(Config{}, 1).process(raw);
+  const Frame frame = KissIcp(KissIcpConfig{}, 1).process(raw);
   std::vector<std::int32_t> expected(raw.points.size(), 0);
   std::fill(expected.end() - 4, expected.end(), -1);
   EXPECT_EQ(frame.labels, expected);
@@ -241,7 +241,7 @@ TEST(KissIcp, LabelsThePointsItRegisters) {
 
 TEST(KissIcp, RefusesTimeThatStandsStillOrRunsBackwards) {
   const Drive drive{5.0, 0.0, 5.0, 0.0};
-  KissIcp odometry(Config{}, 1);
+  KissIcp odometry(KissIcpConfig{}, 1);
   odometry.process(scan_of(drive, 3));
   EXPECT_THROW(odometry.process(scan_of(drive, 3)), DataError);
   EXPECT_THROW(odometry.process(scan_of(drive, 1)), DataError);
@@ -251,7 +251,7 @@ TEST(KissIcp, RefusesTimeThatStandsStillOrRunsBackwards) {
 TEST(KissIcp, SameBitsForAnyNumberOfThreads) {
   const Drive drive{2.0, 2.0, 8.0, 0.003};
   const auto last_pose = [&](int threads) {
-    KissIcp odometry(Config{}, threads);
+    KissIcp odometry(KissIcpConfig{}, threads);
     Frame frame;
     for (int k = 0; k < 8; ++k) {
       frame = odometry.process(scan_of(drive, k, true));
@@ -265,16 +265,16 @@ TEST(KissIcp, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(KissIcp, RefusesConfigurationsOutOfRange) {
-  Config config;
-  config.kiss.voxel_size_m = 0.0;
+  KissIcpConfig config;
+  config.voxel_size_m = 0.0;
   EXPECT_THROW(KissIcp(config, 1), UsageError);
-  config = Config{};
-  config.kiss.min_range_m = config.kiss.max_range_m;
+  config = KissIcpConfig{};
+  config.min_range_m = config.max_range_m;
   EXPECT_THROW(KissIcp(config, 1), UsageError);
 }
 
 TEST(KissIcp, HasTheDefaultsOfReleaseOneTwo) {
-  const KissConfig kiss;
+  const KissIcpConfig kiss;
   EXPECT_FALSE(kiss.deskew);
   EXPECT_EQ(kiss.min_range_m, 5.0);
   EXPECT_EQ(kiss.max_range_m, 100.0);

@@ -78,10 +78,12 @@ std::vector<std::uint32_t> still_rows(std::vector<std::uint32_t> rows, const std
 
 }  // namespace
 
-MapOdometry::MapOdometry(const Config& config, int threads, DopplerKind expected)
-    : config_(config), workers_(threads), expected_(expected), map_(config.mapping), tracker_(config.tracking) {
-  check(config_);
-}
+MapOdometry::MapOdometry(const MapOdometryConfig& config, int threads, DopplerKind expected)
+    : config_(checked(config)),
+      workers_(threads),
+      expected_(expected),
+      map_(config.mapping),
+      tracker_(config.tracking) {}
 
 std::vector<std::string> MapOdometry::assumptions() const {
   return expected_ == DopplerKind::kCompensated ? std::vector{compensated_sentence()} : std::vector<std::string>{};
@@ -108,7 +110,7 @@ Frame MapOdometry::process(const RawScan& raw) {
   Moment now;
   now.stamp_s = seconds_between(first_stamp_.value_or(raw.stamp), raw.stamp);
   const std::optional<double> interval_s = state_ ? std::optional(now.stamp_s - state_->stamp_s) : std::nullopt;
-  const FrameStatus found = obstacle(thinned.size(), interval_s, config_);
+  const FrameStatus found = obstacle(thinned.size(), interval_s, config_.stream);
   frame.status = found;
   if (is_skipped(found)) {
     if (state_) {
@@ -378,7 +380,7 @@ void MapOdometry::track_objects(Frame& frame) {
   workers_.for_each(scan.size(), kBlock,
                     [&](std::size_t row) { frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0; });
   std::vector<std::uint8_t> in_track(scan.size(), 0);
-  if (config_.dynamics.predict) {
+  if (config_.track_objects) {
     scan = registration::undo_sweep(std::move(scan), state_->sweep, workers_);
     for (tracking::TrackedObject& object :
          tracker_.update(scan, memory_.radial, is_moving, frame.T_world_sensor, workers_)) {

@@ -31,7 +31,7 @@ class MapOdometry final : public Odometry {
  public:
   /// `threads` = 0 takes as many as the machine has; `expected` is what the Doppler will be, for `assumptions`. Throws
   /// UsageError when the configuration is out of range.
-  explicit MapOdometry(const Config& config, int threads = 0, DopplerKind expected = DopplerKind::kRelative);
+  explicit MapOdometry(const MapOdometryConfig& config, int threads = 0, DopplerKind expected = DopplerKind::kRelative);
 
   Frame process(const RawScan& raw) override;
 
@@ -102,7 +102,7 @@ class MapOdometry final : public Odometry {
   std::vector<Eigen::Vector3d> add_to_map(const Moment& now);
   void track_objects(Frame& frame);
 
-  Config config_;
+  MapOdometryConfig config_;
   Workers workers_;
   DopplerKind expected_;
   ScanMemory memory_;

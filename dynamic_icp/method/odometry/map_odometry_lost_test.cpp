@@ -146,7 +146,7 @@ TEST(MapOdometry, LeavesOutPointsThatAreNoNumbers) {
 }
 
 TEST(MapOdometry, RefusesConfigurationsOutOfRange) {
-  Config config = with_ablation();
+  MapOdometryConfig config = with_ablation();
   config.map_align.max_iterations = 0;
   EXPECT_THROW(MapOdometry(config, 1), UsageError);
 }

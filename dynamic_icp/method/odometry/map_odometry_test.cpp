@@ -59,7 +59,7 @@ TEST(MapOdometry, UndoesSweeps) {
   const MotionError timed = rms_error(drive, drive.run(with_ablation(), 14), 4);
   const MotionError not_undone = rms_error(drive, drive.run(with_ablation("no-deskew"), 14), 4);
   drive.sensor.gives_times = false;
-  Config declared = with_ablation();
+  MapOdometryConfig declared = with_ablation();
   declared.sweep.declared_duration_s = 0.1;
   const MotionError as_declared = rms_error(drive, drive.run(declared, 14), 4);
   const MotionError untimed = rms_error(drive, drive.run(with_ablation(), 14), 4);
@@ -195,7 +195,7 @@ TEST(MapOdometry, SameBitsForAnyNumberOfThreads) {
 
 TEST(MapOdometry, EveryAblationRuns) {
   const Drive drive{street_with_cars(), lively(10.0), sweeping()};
-  for (const std::string_view name : ablation_names(preset("default"))) {
+  for (const std::string_view name : ablation_names(MapOdometryConfig{})) {
     const std::vector<Frame> frames = drive.run(with_ablation(name), 3);
     EXPECT_TRUE(frames.back().T_world_sensor.matrix().allFinite()) << name;
     EXPECT_NE(verdict(frames.back().status), "lost") << name;
@@ -206,7 +206,7 @@ TEST(MapOdometry, EveryAblationRuns) {
 
 TEST(MapOdometry, WithoutAMapOnlyTheLastScanCounts) {
   const Drive drive{street(), lively(10.0), {}};
-  const Config config = with_ablation("no-map");
+  const MapOdometryConfig config = with_ablation("no-map");
   const MotionError error = rms_error(drive, drive.run(config, 12), 3);
   EXPECT_GT(error.turn_deg, 1.2 * rms_error(drive, drive.run(with_ablation(), 12), 3).turn_deg);
 }

@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/odometry.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/odometry/dynamic_icp.hpp"
@@ -14,17 +11,6 @@
 #include "dynamic_icp/method/odometry/scan_to_scan_icp.hpp"
 
 namespace dynamic_icp::odometry {
-
-std::vector<std::string_view> method_names() {
-  return {"dynamic-icp", "doppler-icp", "point-to-point", "point-to-plane", "gicp", "kiss-icp"};
-}
-
-void check_method(std::string_view name) {
-  const std::vector<std::string_view> known = method_names();
-  if (std::find(known.begin(), known.end(), name) == known.end()) {
-    throw UsageError(fmt::format("unknown method '{}'; known are: {}", name, fmt::join(known, ", ")));
-  }
-}
 
 bool needs_doppler(std::string_view method) { return method == "dynamic-icp" || method == "doppler-icp"; }
 
@@ -44,36 +30,34 @@ void check_mounting(const Eigen::Isometry3d& T_vehicle_sensor) {
   }
 }
 
+struct Maker {
+  const Surroundings& surroundings;
+  int threads;
+
+  std::unique_ptr<Odometry> operator()(const MapOdometryConfig& config) const {
+    return std::make_unique<MapOdometry>(config, threads, surroundings.doppler_kind);
+  }
+  std::unique_ptr<Odometry> operator()(const PaperConfig& config) const {
+    return std::make_unique<DynamicIcp>(config, threads, surroundings.doppler_kind);
+  }
+  std::unique_ptr<Odometry> operator()(const ScanToScanIcpConfig& config) const {
+    return std::make_unique<ScanToScanIcp>(config, threads);
+  }
+  std::unique_ptr<Odometry> operator()(const DopplerIcpConfig& config) const {
+    return std::make_unique<ScanToScanIcp>(config, surroundings, threads);
+  }
+  std::unique_ptr<Odometry> operator()(const KissIcpConfig& config) const {
+    return std::make_unique<KissIcp>(config, threads);
+  }
+};
+
 }  // namespace
 
-std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config, const Surroundings& surroundings,
-                                        int threads) {
-  check_method(method);
+std::unique_ptr<Odometry> make_odometry(const Config& config, const Surroundings& surroundings, int threads) {
   if (surroundings.T_vehicle_sensor) {
     check_mounting(*surroundings.T_vehicle_sensor);
   }
-  const auto scan_to_scan = [&](ScanToScanMethod kind) {
-    return std::make_unique<ScanToScanIcp>(kind, config, surroundings, threads);
-  };
-  if (method == "dynamic-icp") {
-    if (config.scan_to_scan) {
-      return std::make_unique<DynamicIcp>(config, threads, surroundings.doppler_kind);
-    }
-    return std::make_unique<MapOdometry>(config, threads, surroundings.doppler_kind);
-  }
-  if (method == "doppler-icp") {
-    return scan_to_scan(ScanToScanMethod::kDopplerIcp);
-  }
-  if (method == "point-to-point") {
-    return scan_to_scan(ScanToScanMethod::kPointToPoint);
-  }
-  if (method == "point-to-plane") {
-    return scan_to_scan(ScanToScanMethod::kPointToPlane);
-  }
-  if (method == "gicp") {
-    return scan_to_scan(ScanToScanMethod::kGicp);
-  }
-  return std::make_unique<KissIcp>(config, threads);
+  return std::visit(Maker{surroundings, threads}, config);
 }
 
 }  // namespace dynamic_icp::odometry

@@ -38,18 +38,13 @@ struct Surroundings {
   DopplerKind doppler_kind = DopplerKind::kRelative;
 };
 
-/// dynamic-icp, doppler-icp, point-to-point, point-to-plane, gicp, kiss-icp.
-std::vector<std::string_view> method_names();
-
-/// Throws UsageError with the known names for any other.
-void check_method(std::string_view name);
-
 /// Whether the method of that name takes the Doppler into account: without any, its results are not its own.
 bool needs_doppler(std::string_view method);
 
-/// The method of that name. `threads` = 0 takes as many as the machine has. Throws UsageError with the known names, or
-/// when the configuration or the mounting is out of range.
-std::unique_ptr<Odometry> make_odometry(std::string_view method, const Config& config,
-                                        const Surroundings& surroundings = {}, int threads = 0);
+/// The pipeline of a configuration: `make_odometry(PaperConfig{})`, `make_odometry(configuration("kiss-icp"))`; an
+/// empty one is preset `default`. `threads` = 0 takes as many as the machine has. Throws UsageError when the
+/// configuration or the mounting is out of range.
+std::unique_ptr<Odometry> make_odometry(const Config& config = {}, const Surroundings& surroundings = {},
+                                        int threads = 0);
 
 }  // namespace dynamic_icp::odometry

@@ -47,24 +47,25 @@ struct ScanToScanIcp::Reference {
   Vector6d twist = Vector6d::Zero();  // of the last alignment, log(T_target_source) / dt, sensor frame
 };
 
-ScanToScanIcp::ScanToScanIcp(ScanToScanMethod method, const Config& config, const Surroundings& surroundings,
-                             int threads)
-    : method_(method), config_(config), workers_(threads), expected_(surroundings.doppler_kind) {
-  check(config_);
-  if (method == ScanToScanMethod::kDopplerIcp) {
-    T_vehicle_sensor_ = surroundings.T_vehicle_sensor;
-  }
-}
+ScanToScanIcp::ScanToScanIcp(const ScanToScanIcpConfig& config, int threads)
+    : config_(checked(config)), workers_(threads), expected_(DopplerKind::kRelative) {}
+
+ScanToScanIcp::ScanToScanIcp(const DopplerIcpConfig& config, const Surroundings& surroundings, int threads)
+    : config_(checked(config).icp),
+      doppler_icp_(config),
+      T_vehicle_sensor_(surroundings.T_vehicle_sensor),
+      workers_(threads),
+      expected_(surroundings.doppler_kind) {}
 
 ScanToScanIcp::~ScanToScanIcp() = default;
 
 std::vector<std::string> ScanToScanIcp::assumptions() const {
   std::vector<std::string> sentences;
-  if (method_ == ScanToScanMethod::kDopplerIcp && !T_vehicle_sensor_) {
+  if (doppler_icp_ && !T_vehicle_sensor_) {
     sentences.emplace_back(
         "doppler-icp needs the mounting of the sensor and was given no calibration: the identity is taken");
   }
-  if (method_ == ScanToScanMethod::kDopplerIcp && expected_ == DopplerKind::kCompensated) {
+  if (doppler_icp_ && expected_ == DopplerKind::kCompensated) {
     sentences.emplace_back(
         "the Doppler is compensated: doppler-icp has no Doppler term then, only its robust point-to-plane term is "
         "left");
@@ -79,7 +80,7 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
   const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
-  const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_);
+  const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_.stream);
   if (is_skipped(found)) {
     continue_motion(frame, found);
     return frame;
@@ -91,8 +92,8 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
   auto now = std::make_unique<Reference>();
   now->scan = T_vehicle_sensor_ ? scan.transformed(*T_vehicle_sensor_) : scan;
   const spatial::KdTree tree(now->scan.points(), workers_);
-  if (method_ != ScanToScanMethod::kPointToPoint) {
-    now->normals = preprocess::estimate_normals(now->scan.points(), tree, config_.preprocess.normals, workers_);
+  if (config_.geometry != registration::GeometryTerm::kPointToPoint) {
+    now->normals = preprocess::estimate_normals(now->scan.points(), tree, config_.normals, workers_);
   }
   clock.finish(Stage::kNormals);
 
@@ -144,7 +145,7 @@ void ScanToScanIcp::continue_motion(Frame& frame, FrameStatus status) const {
 }
 
 Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
-  if (!config_.icp.constant_velocity_start) {
+  if (!config_.constant_velocity_start) {
     return Eigen::Isometry3d::Identity();
   }
   return exp_se3(prediction_time_s(last_->scan.stamp(), stamp) * last_->twist);
@@ -152,37 +153,28 @@ Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
 
 registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {
   registration::Objective objective;
+  objective.geometry = config_.geometry;
   objective.doppler = registration::DopplerTerm::kNone;
   objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
-  switch (method_) {
-    case ScanToScanMethod::kPointToPoint:
-      objective.geometry = registration::GeometryTerm::kPointToPoint;
-      break;
-    case ScanToScanMethod::kPointToPlane:
-      objective.geometry = registration::GeometryTerm::kPointToPlane;
-      break;
-    case ScanToScanMethod::kGicp:
-      objective.geometry = registration::GeometryTerm::kPlaneToPlane;
-      break;
-    case ScanToScanMethod::kDopplerIcp:
-      // What the sensor's own motion was taken out of cannot tell it.
-      objective.doppler = kind == DopplerKind::kRelative ? registration::DopplerTerm::kSensorVelocity
-                                                         : registration::DopplerTerm::kNone;
-      objective.doppler_weight = config_.doppler_icp.doppler_weight;
-      // Published: a row is scaled by the root of its share before the kernel sees it. A residual without that factor
-      // meets a kernel that is wider by it.
-      objective.tukey_geometry_m = config_.doppler_icp.tukey_geometry_m / std::sqrt(1.0 - objective.doppler_weight);
-      if (objective.doppler_weight > 0.0) {
-        objective.tukey_doppler_mps = config_.doppler_icp.tukey_doppler_mps / std::sqrt(objective.doppler_weight);
-      }
-      objective.tukey_doppler_from_iteration = config_.doppler_icp.robust_from_iteration;
-      objective.reject_doppler_mps = config_.doppler_icp.reject_doppler_mps;
-      objective.reject_from_iteration = config_.doppler_icp.robust_from_iteration;
-      objective.vehicle.dt_s = dt_s;
-      if (T_vehicle_sensor_) {
-        objective.vehicle.sensor_vehicle = T_vehicle_sensor_->translation();
-      }
-      break;
+  if (!doppler_icp_) {
+    return objective;
+  }
+  if (kind == DopplerKind::kRelative) {  // what the sensor's own motion was taken out of cannot tell it
+    objective.doppler = registration::DopplerTerm::kSensorVelocity;
+  }
+  objective.doppler_weight = doppler_icp_->doppler_weight;
+  // Published: a row is scaled by the root of its share before the kernel sees it. A residual without that factor meets
+  // a kernel that is wider by it.
+  objective.tukey_geometry_m = doppler_icp_->tukey_geometry_m / std::sqrt(1.0 - objective.doppler_weight);
+  if (objective.doppler_weight > 0.0) {
+    objective.tukey_doppler_mps = doppler_icp_->tukey_doppler_mps / std::sqrt(objective.doppler_weight);
+  }
+  objective.tukey_doppler_from_iteration = doppler_icp_->robust_from_iteration;
+  objective.reject_doppler_mps = doppler_icp_->reject_doppler_mps;
+  objective.reject_from_iteration = doppler_icp_->robust_from_iteration;
+  objective.vehicle.dt_s = dt_s;
+  if (T_vehicle_sensor_) {
+    objective.vehicle.sensor_vehicle = T_vehicle_sensor_->translation();
   }
   return objective;
 }

@@ -12,20 +12,15 @@
 
 namespace dynamic_icp::odometry {
 
-/// The methods that align each scan to the one before and know no moving objects.
-enum class ScanToScanMethod {
-  kPointToPoint,  ///< as Open3D's registration_icp with TransformationEstimationPointToPoint
-  kPointToPlane,  ///< as Open3D's registration_icp with TransformationEstimationPointToPlane
-  kGicp,          ///< as Open3D's registration_generalized_icp with normals
-  kDopplerIcp     ///< Doppler-ICP as published, with the mounting of the sensor
-};
-
-/// Preprocessing, gate and stopping rule are those of dynamic-icp; terms, weights and rejection rules are the method's.
-/// The start is the identity or the last motion (`icp.constant_velocity_start`).
+/// The methods that align each scan to the one before and know no moving objects: point-to-point, point-to-plane and
+/// plane-to-plane as Open3D's registration_icp and registration_generalized_icp with normals, and Doppler-ICP as
+/// published, with the mounting of the sensor. The start is the identity or the last motion
+/// (`icp.constant_velocity_start`).
 class ScanToScanIcp final : public Odometry {
  public:
-  /// Throws UsageError when the configuration is out of range.
-  ScanToScanIcp(ScanToScanMethod method, const Config& config, const Surroundings& surroundings, int threads = 0);
+  /// Both throw UsageError when the configuration is out of range.
+  explicit ScanToScanIcp(const ScanToScanIcpConfig& config, int threads = 0);
+  ScanToScanIcp(const DopplerIcpConfig& config, const Surroundings& surroundings, int threads = 0);
   ~ScanToScanIcp() override;
 
   Frame process(const RawScan& raw) override;
@@ -40,8 +35,8 @@ class ScanToScanIcp final : public Odometry {
   [[nodiscard]] Eigen::Isometry3d predicted_motion(Stamp stamp) const;
   [[nodiscard]] registration::Objective objective(DopplerKind kind, double dt_s) const;
 
-  ScanToScanMethod method_;
-  Config config_;
+  ScanToScanIcpConfig config_;
+  std::optional<DopplerIcpConfig> doppler_icp_;        ///< of Doppler-ICP only
   std::optional<Eigen::Isometry3d> T_vehicle_sensor_;  ///< of Doppler-ICP only: it then works in the vehicle frame
   Workers workers_;
   DopplerKind expected_;

@@ -42,27 +42,26 @@ struct Hall {
   std::vector<Vector3d> points;
 };
 
-Config dense() {
-  Config config;
-  config.preprocess.voxel.voxel_size_m = 0.0;
-  config.preprocess.range.min_range_m = 0.0;
-  config.registration.tolerance = 1e-12;
+Config dense(std::string_view method) {
+  Config config = configuration(method);
+  set_field(fields(config), "preprocess.voxel.voxel_size_m", "0");
+  set_field(fields(config), "preprocess.range.min_range_m", "0");
+  set_field(fields(config), "registration.tolerance", "1e-12");
   return config;
 }
 
-const std::array kMethods = {ScanToScanMethod::kPointToPoint, ScanToScanMethod::kPointToPlane, ScanToScanMethod::kGicp,
-                             ScanToScanMethod::kDopplerIcp};
+const std::array kMethods = {"point-to-point", "point-to-plane", "gicp", "doppler-icp"};
 
 TEST(ScanToScanIcp, EveryMethodFollowsASlowDrive) {
   const Hall hall(9000);
-  for (const ScanToScanMethod method : kMethods) {
-    ScanToScanIcp odometry(method, dense(), {}, 2);
+  for (const char* method : kMethods) {
+    const auto odometry = make_odometry(dense(method), {}, 2);
     for (int k = 0; k < 5; ++k) {
       Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
       T.translation().x() = 0.05 * k;
-      const Frame frame = odometry.process(hall.scan({100'000'000LL * k}, T, {0.5, 0.0, 0.0}));
+      const Frame frame = odometry->process(hall.scan({100'000'000LL * k}, T, {0.5, 0.0, 0.0}));
       EXPECT_EQ(frame.status, k == 0 ? FrameStatus::kFirst : FrameStatus::kConverged);
-      EXPECT_LT((frame.T_world_sensor.translation() - T.translation()).norm(), 1e-6) << static_cast<int>(method);
+      EXPECT_LT((frame.T_world_sensor.translation() - T.translation()).norm(), 1e-6) << method;
       EXPECT_EQ(frame.dynamic_candidates, 0U);
     }
   }
@@ -74,14 +73,14 @@ TEST(ScanToScanIcp, DopplerIcpRecoversAStraightMotionWithATurnedAndOffsetMountin
   T_vehicle_sensor.rotate(Eigen::AngleAxisd(0.3, Vector3d(1.0, 2.0, -1.0).normalized()));
   T_vehicle_sensor.pretranslate(Vector3d(1.4, -0.3, 1.8));
   const Vector3d velocity(20.0, 0.0, 0.0);
-  ScanToScanIcp odometry(ScanToScanMethod::kDopplerIcp, dense(), {T_vehicle_sensor}, 2);
-  EXPECT_TRUE(odometry.assumptions().empty());
+  const auto odometry = make_odometry(dense("doppler-icp"), {T_vehicle_sensor}, 2);
+  EXPECT_TRUE(odometry->assumptions().empty());
   Eigen::Isometry3d T_first_world = Eigen::Isometry3d::Identity();
   for (int k = 0; k < 4; ++k) {
     const Eigen::Isometry3d T_world_vehicle(Eigen::Translation3d(0.1 * k * velocity));
     const Eigen::Isometry3d T_world_sensor = T_world_vehicle * T_vehicle_sensor;
     T_first_world = k == 0 ? T_world_sensor.inverse() : T_first_world;
-    const Frame frame = odometry.process(hall.scan({100'000'000LL * k}, T_world_sensor, velocity));
+    const Frame frame = odometry->process(hall.scan({100'000'000LL * k}, T_world_sensor, velocity));
     const Eigen::Isometry3d expected = T_first_world * T_world_sensor;
     EXPECT_LT((frame.T_world_sensor.translation() - expected.translation()).norm(), 1e-6 * (k + 1));
     EXPECT_LT(rotation_angle(frame.T_world_sensor.linear().transpose() * expected.linear()), 1e-6 * (k + 1));
@@ -98,30 +97,30 @@ TEST(ScanToScanIcp, DopplerKernelIsMeantForTheScaledResidual) {
   for (double& doppler : first.doppler) {
     doppler += 0.5;
   }
-  ScanToScanIcp odometry(ScanToScanMethod::kDopplerIcp, dense(), {}, 1);
-  (void)odometry.process(first);
-  const Frame frame = odometry.process(hall.scan({100'000'000}, Eigen::Isometry3d::Identity(), Vector3d::Zero()));
+  const auto odometry = make_odometry(dense("doppler-icp"), {}, 1);
+  (void)odometry->process(first);
+  const Frame frame = odometry->process(hall.scan({100'000'000}, Eigen::Isometry3d::Identity(), Vector3d::Zero()));
   ASSERT_GT(frame.alignment.iterations, 2);
   EXPECT_GT(frame.alignment.doppler.inliers, 5900U);
 }
 
 TEST(ScanToScanIcp, DopplerIcpSaysWhenItHasNoMounting) {
-  EXPECT_EQ(ScanToScanIcp(ScanToScanMethod::kDopplerIcp, {}, {}).assumptions().size(), 1U);
-  EXPECT_TRUE(ScanToScanIcp(ScanToScanMethod::kGicp, {}, {}).assumptions().empty());
+  EXPECT_EQ(ScanToScanIcp(DopplerIcpConfig{}, {}).assumptions().size(), 1U);
+  EXPECT_TRUE(ScanToScanIcp(ScanToScanIcpConfig{}).assumptions().empty());
 }
 
 TEST(ScanToScanIcp, GeometryAloneDoesNotStartAtSpeedButGoesOnWithTheLastMotion) {
   const Hall hall(3000);
   const auto position_after = [&](bool constant_velocity) {
-    Config config = dense();
-    config.registration.tolerance = 1e-7;
-    config.icp.constant_velocity_start = constant_velocity;
-    ScanToScanIcp odometry(ScanToScanMethod::kPointToPlane, config, {}, 2);
+    Config config = dense("point-to-plane");
+    set_field(fields(config), "registration.tolerance", "1e-7");
+    std::get<ScanToScanIcpConfig>(config).constant_velocity_start = constant_velocity;
+    const auto odometry = make_odometry(config, {}, 2);
     double x = 0.0;
     Frame frame;
     for (int k = 0; k < 30; ++k) {
       x += 0.03 * k;  // faster and faster, up to 8.7 m/s: 0.87 m a scan, beyond the gate of 0.3 m
-      frame = odometry.process(
+      frame = odometry->process(
           hall.scan({100'000'000LL * k}, Eigen::Isometry3d(Eigen::Translation3d(x, 0.0, 0.0)), Vector3d::Zero()));
     }
     return std::abs(frame.T_world_sensor.translation().x() - x);
@@ -132,14 +131,14 @@ TEST(ScanToScanIcp, GeometryAloneDoesNotStartAtSpeedButGoesOnWithTheLastMotion) 
 
 TEST(ScanToScanIcp, SameBitsForAnyNumberOfThreads) {
   const Hall hall(6000);
-  for (const ScanToScanMethod method : kMethods) {
+  for (const char* method : kMethods) {
     std::vector<Eigen::Matrix4d> expected;
     for (const int threads : {1, 2, 7}) {
-      ScanToScanIcp odometry(method, {}, {}, threads);
+      const auto odometry = make_odometry(configuration(method), {}, threads);
       std::vector<Eigen::Matrix4d> poses;
       for (int k = 0; k < 3; ++k) {
         const Eigen::Isometry3d T(Eigen::Translation3d(0.1 * k, 0.02 * k, 0.0));
-        poses.push_back(odometry.process(hall.scan({100'000'000LL * k}, T, {1.0, 0.2, 0.0})).T_world_sensor.matrix());
+        poses.push_back(odometry->process(hall.scan({100'000'000LL * k}, T, {1.0, 0.2, 0.0})).T_world_sensor.matrix());
       }
       expected = expected.empty() ? poses : expected;
       EXPECT_EQ(poses, expected);
@@ -149,23 +148,24 @@ TEST(ScanToScanIcp, SameBitsForAnyNumberOfThreads) {
 
 TEST(ScanToScanIcp, EmptyScansAreBridgedAndOldOnesRefused) {
   const Hall hall(3000);
-  ScanToScanIcp odometry(ScanToScanMethod::kGicp, dense(), {}, 1);
+  const auto odometry = make_odometry(dense("gicp"), {}, 1);
   const Eigen::Isometry3d here = Eigen::Isometry3d::Identity();
-  EXPECT_EQ(odometry.process(RawScan{}).status, FrameStatus::kTooFewPoints);
-  EXPECT_EQ(odometry.process(hall.scan({1}, here, Vector3d::Zero())).status, FrameStatus::kFirst);
+  EXPECT_EQ(odometry->process(RawScan{}).status, FrameStatus::kTooFewPoints);
+  EXPECT_EQ(odometry->process(hall.scan({1}, here, Vector3d::Zero())).status, FrameStatus::kFirst);
   RawScan empty;
   empty.stamp = {100'000'000};
-  EXPECT_EQ(odometry.process(empty).status, FrameStatus::kTooFewPoints);
-  EXPECT_EQ(odometry.process(hall.scan({200'000'000}, here, Vector3d::Zero())).status, FrameStatus::kConverged);
-  EXPECT_EQ(odometry.process(hall.scan({5'000'000'000}, here, Vector3d::Zero())).status, FrameStatus::kTimeGap);
-  EXPECT_THROW((void)odometry.process(hall.scan({200'000'000}, here, Vector3d::Zero())), DataError);
+  EXPECT_EQ(odometry->process(empty).status, FrameStatus::kTooFewPoints);
+  EXPECT_EQ(odometry->process(hall.scan({200'000'000}, here, Vector3d::Zero())).status, FrameStatus::kConverged);
+  EXPECT_EQ(odometry->process(hall.scan({5'000'000'000}, here, Vector3d::Zero())).status, FrameStatus::kTimeGap);
+  EXPECT_THROW((void)odometry->process(hall.scan({200'000'000}, here, Vector3d::Zero())), DataError);
 }
 
 TEST(Methods, AreMadeByName) {
   for (const std::string_view name : method_names()) {
-    EXPECT_NE(make_odometry(name, {}, {}, 1), nullptr) << name;
+    EXPECT_NE(make_odometry(configuration(name), {}, 1), nullptr) << name;
   }
-  EXPECT_THROW((void)make_odometry("magic", {}, {}, 1), UsageError);
+  EXPECT_THROW((void)configuration("magic"), UsageError);
+  EXPECT_THROW((void)configuration("dynamic-icp", "best"), UsageError);
 }
 
 }  // namespace

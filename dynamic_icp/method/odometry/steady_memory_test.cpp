@@ -64,7 +64,7 @@ RawScan hall(int k) {
 }
 
 TEST(SteadyMemory, NothingAsLargeAsAColumnOfAScanIsAllocated) {
-  MapOdometry odometry(preset("default"), 2);
+  MapOdometry odometry(MapOdometryConfig{}, 2);
   constexpr int kWarmUp = 6;
   for (int k = 0; k < kWarmUp + 6; ++k) {
     const RawScan raw = hall(k);

@@ -88,7 +88,7 @@ Objective dynamic_icp_objective(const AlignConfig& config) {
   return objective;
 }
 
-StopRule stop_rule(const AlignConfig& config) {
+StopRule stop_rule(const MatchingConfig& config) {
   return {config.max_iterations, config.tolerance, 0.0, config.min_correspondences, config.rank_tolerance};
 }
 

@@ -15,8 +15,8 @@ namespace dynamic_icp::registration {
 /// The paper's objective with the weights and scales of a configuration.
 Objective dynamic_icp_objective(const AlignConfig& config);
 
-/// Its stopping rule: fitness and inlier RMSE both change by less than the tolerance.
-StopRule stop_rule(const AlignConfig& config);
+/// The stopping rule: fitness and inlier RMSE both change by less than the tolerance.
+StopRule stop_rule(const MatchingConfig& config);
 
 /// Aligns two scans: each iteration pairs every source point with its nearest target point within
 /// `max_correspondence_distance_m` and makes a Gauss-Newton step of the objective. The result is the same bits for any

@@ -2,16 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/registration/align_config.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 namespace dynamic_icp::registration {
 
-ConfigFields fields(AlignConfig& config) {
+ConfigFields fields(MatchingConfig& config) {
   return {
-      {"doppler_weight", &config.doppler_weight, 0.0, 0.999, "",
-       "share of the Doppler term in the objective (lambda_v); 0 leaves it out"},
-      {"tukey_geometry_m", &config.tukey_geometry_m, 1e-6, 1e3, "m",
-       "point-to-plane residuals beyond this have no weight (rho_g)"},
-      {"tukey_doppler_mps", &config.tukey_doppler_mps, 1e-6, 1e3, "m/s",
-       "Doppler residuals beyond this have no weight (rho_v)"},
       {"max_correspondence_distance_m", &config.max_correspondence_distance_m, 1e-3, 1e3, "m",
        "a point farther than this from its nearest target point has no correspondence"},
       {"max_iterations", &config.max_iterations, 1, 10000, "", "most Gauss-Newton steps (I_max)"},
@@ -21,6 +18,19 @@ ConfigFields fields(AlignConfig& config) {
       {"rank_tolerance", &config.rank_tolerance, 0.0, 0.1, "",
        "a direction with less than this share of the best direction's information is degenerate"},
   };
+}
+
+ConfigFields fields(AlignConfig& config) {
+  ConfigFields all = {
+      {"doppler_weight", &config.doppler_weight, 0.0, 0.999, "",
+       "share of the Doppler term in the objective (lambda_v); 0 leaves it out"},
+      {"tukey_geometry_m", &config.tukey_geometry_m, 1e-6, 1e3, "m",
+       "point-to-plane residuals beyond this have no weight (rho_g)"},
+      {"tukey_doppler_mps", &config.tukey_doppler_mps, 1e-6, 1e3, "m/s",
+       "Doppler residuals beyond this have no weight (rho_v)"},
+  };
+  std::ranges::copy(fields(static_cast<MatchingConfig&>(config)), std::back_inserter(all));
+  return all;
 }
 
 }  // namespace dynamic_icp::registration

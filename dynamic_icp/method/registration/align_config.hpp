@@ -6,10 +6,8 @@
 
 namespace dynamic_icp::registration {
 
-struct AlignConfig {
-  double doppler_weight = 0.2;     ///< lambda_v; 0 leaves the Doppler term out (ablation "w/o DR")
-  double tukey_geometry_m = 0.5;   ///< rho_g
-  double tukey_doppler_mps = 0.3;  ///< rho_v
+/// Gate and stopping rule of an alignment of two scans, whatever it minimises.
+struct MatchingConfig {
   double max_correspondence_distance_m = 0.3;
   int max_iterations = 100;
   double tolerance = 1e-5;  ///< on the change of fitness and of inlier RMSE (m)
@@ -17,6 +15,21 @@ struct AlignConfig {
   double rank_tolerance = 1e-12;
 };
 
+/// With the weights and kernels of the paper's objective.
+struct AlignConfig : MatchingConfig {
+  double doppler_weight = 0.2;     ///< lambda_v; 0 leaves the Doppler term out (ablation "w/o DR")
+  double tukey_geometry_m = 0.5;   ///< rho_g
+  double tukey_doppler_mps = 0.3;  ///< rho_v
+};
+
+ConfigFields fields(MatchingConfig& config);
 ConfigFields fields(AlignConfig& config);
+
+/// What an alignment of two scans minimises between their points.
+enum class GeometryTerm {
+  kPointToPoint,
+  kPointToPlane,  ///< needs the target's normals
+  kPlaneToPlane   ///< Generalized ICP: uses the normals of both
+};
 
 }  // namespace dynamic_icp::registration

@@ -7,17 +7,12 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/registration/align_config.hpp"
 #include "dynamic_icp/method/registration/correspondences.hpp"
 #include "dynamic_icp/method/registration/linearisation.hpp"
 #include "dynamic_icp/method/registration/sensor_velocity.hpp"
 
 namespace dynamic_icp::registration {
-
-enum class GeometryTerm {
-  kPointToPoint,
-  kPointToPlane,  ///< needs the target's normals
-  kPlaneToPlane   ///< Generalized ICP: uses the normals of both
-};
 
 enum class DopplerTerm {
   kNone,
