@@ -12,15 +12,15 @@
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/method/ego_motion/ego_filter.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/mapping/map_align_config.hpp"
 #include "dynamic_icp/method/mapping/plane_map_config.hpp"
+#include "dynamic_icp/method/motion/rotation_filter_config.hpp"
+#include "dynamic_icp/method/motion/sweep_times.hpp"
 #include "dynamic_icp/method/odometry/kiss_config.hpp"
-#include "dynamic_icp/method/odometry/turn_filter_config.hpp"
-#include "dynamic_icp/method/preprocess/declared_times.hpp"
 #include "dynamic_icp/method/preprocess/normals.hpp"
 #include "dynamic_icp/method/preprocess/range_crop.hpp"
 #include "dynamic_icp/method/preprocess/voxel_grid.hpp"
 #include "dynamic_icp/method/registration/align_config.hpp"
-#include "dynamic_icp/method/registration/map_align_config.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
 namespace dynamic_icp::odometry {
@@ -80,10 +80,10 @@ struct Config {
 
   // Of dynamic-icp beyond the paper, with a local map.
   bool scan_to_scan = false;  ///< the paper's pipeline; off: preset `default`
-  preprocess::SweepConfig sweep;
+  motion::SweepConfig sweep;
   mapping::PlaneMapConfig mapping;
-  registration::MapAlignConfig map_align;
-  TurnFilterConfig turn;
+  mapping::MapAlignConfig map_align;
+  motion::RotationFilterConfig turn;
   tracking::TrackerConfig tracking;
   bool use_displacement = true;               ///< the way between scans from the Doppler, as a term of the alignment
   double displacement_deviation_mps = 0.003;  ///< error of the integrated velocity over the time between two scans
