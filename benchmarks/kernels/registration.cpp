@@ -60,7 +60,7 @@ void linearise(benchmark::State& state) {
   const registration::Correspondences found = search.find(pair().T_true);
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
-        registration::linearise({pair().source_scan}, pair().target(), found, pair().T_true, objective, 0, workers));
+        registration::linearise({{pair().source_scan}, pair().target(), found}, pair().T_true, objective, 0, workers));
   }
   // Two residuals, each with Jacobian and weight (40), normal equations and score of six unknowns (lower halves: 100).
   // The rows of the target lie anywhere.
@@ -74,7 +74,7 @@ void solve(benchmark::State& state) {
   const auto objective = registration::dynamic_icp_objective(odometry::preset("paper").registration);
   registration::CorrespondenceSearch search(pair().source_scan, pair().target(), 0.3, true, workers);
   const registration::Linearisation linear = registration::linearise(
-      {pair().source_scan}, pair().target(), search.find(pair().T_true), pair().T_true, objective, 0, workers);
+      {{pair().source_scan}, pair().target(), search.find(pair().T_true)}, pair().T_true, objective, 0, workers);
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(estimation::solve(linear.equations, 20.0, 1e-12));
   }

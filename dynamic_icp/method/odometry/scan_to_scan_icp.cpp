@@ -121,7 +121,6 @@ void ScanToScanIcp::align_to_last(const Reference& now, Frame& frame) const {
     T_initial = *T_vehicle_sensor_ * T_initial * T_vehicle_sensor_->inverse();
   }
   frame.alignment = registration::align(source, target, T_initial, objective(target.scan.doppler_kind(), dt_s),
-                                        config_.registration.max_correspondence_distance_m,
                                         stop_rule(config_.registration), workers_);
   if (T_vehicle_sensor_) {
     tell_in_sensor_frame(frame.alignment, *T_vehicle_sensor_);
@@ -151,6 +150,7 @@ Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
 
 registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {
   registration::Objective objective;
+  objective.max_correspondence_distance_m = config_.registration.max_correspondence_distance_m;
   objective.doppler = registration::DopplerTerm::kNone;
   objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
   switch (method_) {

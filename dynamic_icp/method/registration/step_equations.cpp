@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/method/registration/pair_sums.hpp"
+#include "dynamic_icp/method/registration/step_equations.hpp"
 
 #include <array>
 #include <cmath>
@@ -90,8 +90,8 @@ struct LaneSums {
     sums[5] += a.z * b.z;
   }
 
-  [[nodiscard]] PairSums finish() const {
-    PairSums sums;
+  [[nodiscard]] StepEquations finish() const {
+    StepEquations sums;
     estimation::NormalEquations& equations = sums.equations;
     Eigen::Index k = 0;
     for (Eigen::Index i = 0; i < 3; ++i) {
@@ -154,20 +154,20 @@ DYNAMIC_ICP_INLINE void add_doppler(LaneSums& sums, const SourceRows& group, con
 
 }  // namespace
 
-PairSums& PairSums::operator+=(const PairSums& other) {
+StepEquations& StepEquations::operator+=(const StepEquations& other) {
   equations += other.equations;
   pairs += other.pairs;
   squared_distances += other.squared_distances;
   return *this;
 }
 
-bool can_sum_pairs(const Objective& objective) {
+bool has_step_equations(const Objective& objective) {
   return objective.geometry == GeometryTerm::kPointToPlane && std::isinf(objective.reject_doppler_mps) &&
          (!has_doppler(objective) ||
           (objective.doppler == DopplerTerm::kRotation && objective.tukey_doppler_from_iteration <= 0));
 }
 
-PairSums sum_pairs(std::span<const SourceRows> groups, const Eigen::Matrix3d& R, const Objective& objective) {
+StepEquations step_equations(std::span<const SourceRows> groups, const Eigen::Matrix3d& R, const Objective& objective) {
   const bool with_doppler = has_doppler(objective);
   const double share = with_doppler ? 1.0 - objective.doppler_weight : 1.0;
   std::array<double, 9> rotation;

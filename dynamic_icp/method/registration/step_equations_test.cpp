@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/method/registration/pair_sums.hpp"
+#include "dynamic_icp/method/registration/step_equations.hpp"
 
 #include <limits>
 #include <random>
@@ -35,7 +35,7 @@ class Cloud {
   std::uniform_real_distribution<double> uniform_{-1.0, 1.0};
 };
 
-TEST(PairSums, AreTheSlowLinearisation) {
+TEST(StepEquations, AreThoseOfTheGeneralLinearisation) {
   const Workers workers(1);
   for (const std::size_t n : {3u, 400u, 2001u}) {
     Cloud source(1, n);
@@ -52,10 +52,10 @@ TEST(PairSums, AreTheSlowLinearisation) {
         objective.tukey_geometry_m = tukey;
         objective.tukey_doppler_mps = 2.0 * tukey;
         objective.doppler_weight = weight;
-        ASSERT_TRUE(can_sum_pairs(objective));
+        ASSERT_TRUE(has_step_equations(objective));
         const Correspondences pairs = search.find(T);
-        const Linearisation slow = linearise({source.scan}, target, pairs, T, objective, 0, workers);
-        const PairSums fast = sum_pairs(search.groups(), T.linear(), objective);
+        const Linearisation slow = linearise({{source.scan}, target, pairs}, T, objective, 0, workers);
+        const StepEquations fast = step_equations(search.groups(), T.linear(), objective);
         EXPECT_EQ(fast.pairs, pairs.pairs.size());
         const Fit fit = fit_of(fast.pairs, fast.squared_distances, n);
         EXPECT_NEAR(fit.fitness, pairs.fitness, 1e-15);
@@ -69,23 +69,23 @@ TEST(PairSums, AreTheSlowLinearisation) {
   }
 }
 
-TEST(PairSums, KnowWhatTheyCannotDo) {
+TEST(StepEquations, KnowWhatTheyCannotDo) {
   Objective objective;
-  EXPECT_TRUE(can_sum_pairs(objective));
+  EXPECT_TRUE(has_step_equations(objective));
   objective.doppler = DopplerTerm::kNone;
-  EXPECT_TRUE(can_sum_pairs(objective));
+  EXPECT_TRUE(has_step_equations(objective));
   objective.doppler = DopplerTerm::kSensorVelocity;
-  EXPECT_FALSE(can_sum_pairs(objective));
+  EXPECT_FALSE(has_step_equations(objective));
   objective = {};
   objective.tukey_doppler_from_iteration = 1;
-  EXPECT_FALSE(can_sum_pairs(objective));
+  EXPECT_FALSE(has_step_equations(objective));
   objective = {};
   objective.reject_doppler_mps = 2.0;
-  EXPECT_FALSE(can_sum_pairs(objective));
+  EXPECT_FALSE(has_step_equations(objective));
   for (const GeometryTerm geometry : {GeometryTerm::kPointToPoint, GeometryTerm::kPlaneToPlane}) {
     objective = {};
     objective.geometry = geometry;
-    EXPECT_FALSE(can_sum_pairs(objective));
+    EXPECT_FALSE(has_step_equations(objective));
   }
 }
 
