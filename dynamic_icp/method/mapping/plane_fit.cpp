@@ -96,16 +96,18 @@ Eigen::Matrix3d PlaneFit::position_information_of_noise(const PlaneNoise& noise,
   return workers_.sum_blocks(count, kBlock, zero, [&](std::size_t begin, std::size_t end) {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     PlaneRows rows;
+    RowWeights row_weights;
     for (; begin < end; begin += kBlock) {
       const std::size_t last = std::min(end, begin + kBlock);
       fill(rows, begin, last, noise);
+      weigh(rows, weights, row_weights);
       std::size_t row = 0;
       for (std::size_t k = begin; k < last; ++k) {
         if (const Patch* const patch = met_[k * stride_]; patch != nullptr) {
           // The height of a plane under a point d from its mean errs by variance / points * d^T tangential d more than
           // at the mean: by the normal.
           const double scale = patch->plane.variance / patch->plane.points;
-          sum += plane_weight(rows, row++, weights) * scale * patch->plane.tangential;
+          sum += row_weights.w[row++] * scale * patch->plane.tangential;
         }
       }
     }

@@ -59,7 +59,7 @@ TEST(PlaneFit, PatchMeansAreThoseOfTheDistancesOnEachPatch) {
   const PlaneMap map = map_of(noisy_floor(7, 10000), workers);
   const Scan scan = noisy_floor(8, 2500);
   Isometry3d T_map_sensor = Isometry3d::Identity();
-  T_map_sensor.translation() = {0.3, -0.2, 0.05};
+  T_map_sensor.translation() = Vector3d(0.3, -0.2, 0.05);
   PlaneFit fit(scan, map, workers);
   fit.associate(T_map_sensor, {}, 1);
 

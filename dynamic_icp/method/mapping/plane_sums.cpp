@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/mapping/plane_sums.hpp"
 
-#include <algorithm>
-#include <cmath>
-
 #include "dynamic_icp/method/base/lane_sums.hpp"
 #include "dynamic_icp/method/base/simd.hpp"
 
@@ -25,34 +22,6 @@ struct LaneSums {
   Lanes squares{};
   Lanes chi_squares{};
 };
-
-/// Weights of some rows.
-struct RowWeights {
-  PlaneRows::Column robust;
-  PlaneRows::Column w;
-};
-
-void weigh(const PlaneRows& rows, const PlaneWeights& weights, RowWeights& result) {
-  simd::run([&]() DYNAMIC_ICP_KERNEL {
-    const double* const e = rows.e.data();
-    const double* const own = rows.own.data();
-    const double* const common = rows.common.data();
-    const double* const members = rows.members.data();
-    double* const __restrict robust_out = result.robust.data();
-    double* const __restrict w_out = result.w.data();
-    const double kernel2 = weights.kernel * weights.kernel;
-    const double gate2 = weights.gate_m * weights.gate_m;
-    for (std::size_t i = 0; i < rows.size; ++i) {
-      const double expected2 = kernel2 * (own[i] + common[i]);
-      const double reach2 = expected2 > gate2 ? expected2 : gate2;
-      const double inside = 1.0 - e[i] * e[i] / reach2;
-      const double positive = inside > 0.0 ? inside : 0.0;
-      const double robust = positive * positive;
-      robust_out[i] = robust;
-      w_out[i] = robust / (own[i] + members[i] * common[i]);
-    }
-  });
-}
 
 /// Adds `lanes` rows from `first` on, row first + l to lane l.
 template <bool kTimed>
@@ -166,11 +135,26 @@ PlaneSums& PlaneSums::operator+=(const PlaneSums& other) {
   return *this;
 }
 
-double plane_weight(const PlaneRows& rows, std::size_t row, const PlaneWeights& weights) {
-  const double expected2 = weights.kernel * weights.kernel * (rows.own[row] + rows.common[row]);
-  const double inside =
-      std::max(0.0, 1.0 - rows.e[row] * rows.e[row] / std::max(expected2, weights.gate_m * weights.gate_m));
-  return inside * inside / (rows.own[row] + rows.members[row] * rows.common[row]);
+void weigh(const PlaneRows& rows, const PlaneWeights& weights, RowWeights& result) {
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const double* const e = rows.e.data();
+    const double* const own = rows.own.data();
+    const double* const common = rows.common.data();
+    const double* const members = rows.members.data();
+    double* const __restrict robust_out = result.robust.data();
+    double* const __restrict w_out = result.w.data();
+    const double kernel2 = weights.kernel * weights.kernel;
+    const double gate2 = weights.gate_m * weights.gate_m;
+    for (std::size_t i = 0; i < rows.size; ++i) {
+      const double expected2 = kernel2 * (own[i] + common[i]);
+      const double reach2 = expected2 > gate2 ? expected2 : gate2;
+      const double inside = 1.0 - e[i] * e[i] / reach2;
+      const double positive = inside > 0.0 ? inside : 0.0;
+      const double robust = positive * positive;
+      robust_out[i] = robust;
+      w_out[i] = robust / (own[i] + members[i] * common[i]);
+    }
+  });
 }
 
 PlaneSums sum_planes(const PlaneRows& rows, const Eigen::Matrix3d& R_map_sensor, bool has_times,

@@ -48,11 +48,16 @@ struct PlaneWeights {
   double gate_m = 0.0;
 };
 
-/// The weight of one row in these sums.
-double plane_weight(const PlaneRows& rows, std::size_t row, const PlaneWeights& weights);
+/// The weights of some rows.
+struct RowWeights {
+  PlaneRows::Column robust;  ///< kernel(e)
+  PlaneRows::Column w;       ///< kernel(e) / (own + members common), 1/m^2
+};
 
-/// Sums over rows, each with the weight kernel(e) / (own + members common). `R_map_sensor` is R above; without times
-/// tau does not count and the sums of omega and alpha stay zero. The same bits for every instruction set.
+void weigh(const PlaneRows& rows, const PlaneWeights& weights, RowWeights& result);
+
+/// Sums over rows, each with its weight. `R_map_sensor` is R above; without times tau does not count and the sums of
+/// omega and alpha stay zero. The same bits for every instruction set.
 PlaneSums sum_planes(const PlaneRows& rows, const Eigen::Matrix3d& R_map_sensor, bool has_times,
                      const PlaneWeights& weights);
 

@@ -29,7 +29,8 @@ constexpr double kWorstCost = 0.5;  // misfit of the best translation
 // The geometry must hold the way this well; its own covariance is a lower bound.
 constexpr double kTrustedDeviation_m = 0.02;
 
-/// The points as they would have been seen at the stamp by a sensor that moves evenly by T_from_to in `dt_s`.
+/// The points as they would have been seen at the stamp by a sensor that moves at a constant twist, by T_from_to in
+/// `dt_s`.
 Scan deskewed(const Scan& scan, const Eigen::Isometry3d& T_from_to, double dt_s, const Workers& workers) {
   if (dt_s <= 0.0) {
     return scan;
