@@ -78,7 +78,7 @@ void SweepRecord::add(const odometry::Frame& frame, const RawScan& scan) {
   if (frame.status == odometry::FrameStatus::kTooFewPoints) {
     return;
   }
-  const odometry::SweepReport report = frame.sweep.value_or(odometry::sweep_in_data(scan));
+  const motion::SweepReport report = frame.sweep.value_or(motion::sweep_in_data(scan));
   first = first.value_or(report);
   same_times = same_times && report.times == first->times;
   all_undone = all_undone && report.undone;
@@ -88,12 +88,12 @@ std::string SweepRecord::times() const {
   if (!same_times) {
     return "mixed";
   }
-  switch (first.value_or(odometry::SweepReport{}).times) {
-    case odometry::SweepTimes::kInData:
+  switch (first.value_or(motion::SweepReport{}).times) {
+    case motion::SweepTimes::kInData:
       return "in the data";
-    case odometry::SweepTimes::kDeclared:
+    case motion::SweepTimes::kDeclared:
       return "declared";
-    case odometry::SweepTimes::kNone:
+    case motion::SweepTimes::kNone:
       break;
   }
   return "none";

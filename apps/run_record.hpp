@@ -35,7 +35,7 @@ struct RunOptions {
 
 /// What was found and done about the time that scans take: as in the first usable scan, and whether the others agree.
 struct SweepRecord {
-  std::optional<odometry::SweepReport> first;
+  std::optional<motion::SweepReport> first;
   bool same_times = true;
   bool all_undone = true;
 

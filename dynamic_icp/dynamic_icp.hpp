@@ -14,6 +14,6 @@
 #include "dynamic_icp/method/base/scan_limits.hpp"
 #include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/method/dynamics/prediction.hpp"
+#include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
-#include "dynamic_icp/method/preprocess/deskew.hpp"

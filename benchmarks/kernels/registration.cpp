@@ -2,9 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include <optional>
 
+#include "dynamic_icp/method/mapping/map_alignment.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/registration/align.hpp"
-#include "dynamic_icp/method/registration/map_alignment.hpp"
 
 #include "benchmarks/kernels/counters.hpp"
 #include "benchmarks/kernels/scans.hpp"
@@ -59,7 +59,7 @@ void linearise(benchmark::State& state) {
   const registration::Correspondences found = search.find(pair().T_true);
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
-        registration::linearise({pair().source_scan}, pair().target(), found, pair().T_true, objective, 0, workers));
+        registration::linearise({{pair().source_scan}, pair().target(), found}, pair().T_true, objective, 0, workers));
   }
   // Two residuals, each with Jacobian and weight (40), normal equations and score of six unknowns (lower halves: 100).
   // The rows of the target lie anywhere.
@@ -73,7 +73,7 @@ void solve(benchmark::State& state) {
   const auto objective = registration::dynamic_icp_objective(odometry::PaperConfig{}.registration);
   registration::CorrespondenceSearch search(pair().source_scan, pair().target(), 0.3, true, workers);
   const registration::Linearisation linear = registration::linearise(
-      {pair().source_scan}, pair().target(), search.find(pair().T_true), pair().T_true, objective, 0, workers);
+      {{pair().source_scan}, pair().target(), search.find(pair().T_true)}, pair().T_true, objective, 0, workers);
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(estimation::solve(linear.equations, 20.0, 1e-12));
   }
@@ -99,12 +99,12 @@ void align_scans(benchmark::State& state) {
 BENCHMARK(align_scans)->Apply(one_and_two_threads);
 
 /// What is known of the last scan before it is compared with the map: its place to some cm, its turn to 0.2 degrees.
-registration::MotionPrior prior_of(const KnownScan& scan) {
-  registration::MotionPrior prior;
+mapping::MotionPrior prior_of(const KnownScan& scan) {
+  mapping::MotionPrior prior;
   const double turn_rad = 0.003;
   prior.R_map_sensor = Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()) * scan.T_world_sensor.linear();
   prior.sweep.velocity = scan.velocity_sensor;
-  prior.covariance = 1e-4 * registration::Matrix9d::Identity();
+  prior.covariance = 1e-4 * motion::Matrix9d::Identity();
   prior.covariance.topLeftCorner<3, 3>() = turn_rad * turn_rad * Eigen::Matrix3d::Identity();
   prior.displacement_fixed = scan.T_world_sensor.translation() + Eigen::Vector3d(0.01, -0.01, 0.0);
   prior.translation_covariance = 4e-4 * Eigen::Matrix3d::Identity();
@@ -115,10 +115,10 @@ void align_to_map(benchmark::State& state) {
   const KnownScan& scan = known_scan(Sensor::kUsual, kScans - 1);
   const Workers workers(static_cast<int>(state.range(0)));
   const auto config = odometry::MapOdometryConfig{}.map_align;
-  const registration::MotionPrior prior = prior_of(scan);
+  const mapping::MotionPrior prior = prior_of(scan);
   int rounds = 0;
   for ([[maybe_unused]] auto _ : state) {
-    rounds = registration::align_to_map(scan.still, known_map(), prior, config, workers).iterations;
+    rounds = mapping::align_to_map(scan.still, known_map(), prior, config, workers).iterations;
   }
   state.counters["rounds"] = rounds;
   // In each round every point meets its patch and adds to normal equations of twelve unknowns (lower half: 180), with

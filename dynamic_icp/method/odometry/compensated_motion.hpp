@@ -6,10 +6,8 @@
 
 #include <Eigen/Geometry>
 
-#include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
-#include "dynamic_icp/method/registration/correspondences.hpp"
 
 // Where the sensor's own motion was taken out of the Doppler before (s = u.v_object), no scan shows how the sensor
 // moves: its velocity is that of the alignment before, and as well known as a vehicle's acceleration allows.
@@ -35,21 +33,5 @@ ego_motion::EgoVelocity goes_on(const ego_motion::EgoVelocity& velocity, double 
 ego_motion::EgoVelocity velocity_of(const Eigen::Isometry3d& T_source_target, double dt_s,
                                     const Eigen::Matrix3d& R_map_target,
                                     const Eigen::Matrix3d& position_covariance_map);
-
-/// The first motion between two scans.
-struct FirstWay {
-  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
-  bool is_clear = false;  ///< no other one fits nearly as well
-};
-
-/// The best of many starts ahead, back, to both sides, up and down, as far as a vehicle drives in `dt_s`: for two scans
-/// of which nothing else is known.
-FirstWay first_way(const Scan& source, const registration::Target& target, double dt_s, const Workers& workers);
-
-/// The same between scans without trees and normals.
-FirstWay first_way(const Scan& source, const Scan& target, double dt_s, const Workers& workers);
-
-/// T_source_target of a sensor that moves and turns evenly for `dt_s`, its velocity (m/s) and turn (rad/s) in its axes.
-Eigen::Isometry3d even_motion(const Eigen::Vector3d& velocity, const Eigen::Vector3d& omega, double dt_s);
 
 }  // namespace dynamic_icp::odometry

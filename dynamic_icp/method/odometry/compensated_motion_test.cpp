@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/method/motion/twist.hpp"
 #include "dynamic_icp/method/odometry/dynamic_icp.hpp"
 #include "dynamic_icp/method/odometry/scan_to_scan_icp.hpp"
 
@@ -36,7 +37,7 @@ std::vector<Frame> run(const Drive& drive, Odometry& odometry, int scans) {
 TEST(CompensatedMotion, AVelocityIsThatOfTheMotion) {
   const Vector3d velocity(10.0, 0.5, -0.1);
   const Vector3d omega(0.01, -0.02, 0.4);
-  const Eigen::Isometry3d T = even_motion(velocity, omega, 0.1);
+  const Eigen::Isometry3d T = motion::motion_of(omega, velocity, 0.1);
   EXPECT_NEAR(T.translation().norm(), 0.1 * velocity.norm(), 1e-3);
   const ego_motion::EgoVelocity found =
       velocity_of(T, 0.1, Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity());

@@ -13,14 +13,14 @@
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/method/ego_motion/ego_filter.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/mapping/map_align_config.hpp"
 #include "dynamic_icp/method/mapping/plane_map_config.hpp"
-#include "dynamic_icp/method/odometry/turn_filter_config.hpp"
-#include "dynamic_icp/method/preprocess/declared_times.hpp"
+#include "dynamic_icp/method/motion/rotation_filter_config.hpp"
+#include "dynamic_icp/method/motion/sweep_times.hpp"
 #include "dynamic_icp/method/preprocess/normals.hpp"
 #include "dynamic_icp/method/preprocess/range_crop.hpp"
 #include "dynamic_icp/method/preprocess/voxel_grid.hpp"
 #include "dynamic_icp/method/registration/align_config.hpp"
-#include "dynamic_icp/method/registration/map_align_config.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
 // One struct for each pipeline, with all that it reads and nothing else. An empty one has the values published for its
@@ -78,10 +78,10 @@ struct EgoMotionConfig {
 struct MapOdometryConfig {
   PreprocessConfig preprocess;
   EgoMotionConfig ego_motion;
-  preprocess::SweepConfig sweep;
+  motion::SweepConfig sweep;
   mapping::PlaneMapConfig mapping;
-  registration::MapAlignConfig map_align;
-  TurnFilterConfig turn;
+  mapping::MapAlignConfig map_align;
+  motion::RotationFilterConfig turn;
   bool track_objects = true;  ///< off: moving points are left out (ablation "no-dpp")
   tracking::TrackerConfig tracking;
   bool use_displacement = true;               ///< the way between scans from the Doppler, as a term of the alignment

@@ -6,6 +6,7 @@
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
+#include "dynamic_icp/method/registration/translation_search.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
@@ -71,7 +72,7 @@ Frame DynamicIcp::process(const RawScan& raw) {
   check_order(raw, last_stamp_);
   Frame frame;
   StageClock clock(frame.times);
-  const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
+  Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
   clock.finish(Stage::kPreprocess);
   last_stamp_ = raw.stamp;
   const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_.stream);
@@ -102,8 +103,8 @@ Frame DynamicIcp::process(const RawScan& raw) {
   clock.finish(Stage::kDynamics);
 
   const std::optional<Stamp> before = has_motion(frame) ? std::optional(last_->scan.stamp()) : std::nullopt;
-  last_ = std::make_unique<Reference>(
-      Reference{scan, std::move(is_dynamic), frame.clusters, frame.ego.velocity_sensor, frame.T_world_sensor, {}});
+  last_ = std::make_unique<Reference>(Reference{
+      std::move(scan), std::move(is_dynamic), frame.clusters, frame.ego.velocity_sensor, frame.T_world_sensor, {}});
   if (before) {
     last_->twist = log_se3(frame.T_target_source) / seconds_between(*before, raw.stamp);
   }
@@ -111,13 +112,12 @@ Frame DynamicIcp::process(const RawScan& raw) {
 }
 
 void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const {
-  const spatial::KdTree tree(scan.points(), workers_);
-  const preprocess::Normals normals = preprocess::estimate_normals(scan.points(), tree, config_.normals, workers_);
+  const registration::PreparedTarget prepared(scan, config_.normals, workers_);
   clock.finish(Stage::kNormals);
 
   const double dt_s = seconds_between(last_->scan.stamp(), frame.stamp);
   const Scan source = dynamics::predict(last_->scan, last_->is_dynamic, last_->clusters, dt_s);  // Eq. (9), (11)
-  const registration::Target target{scan, tree, normals.vectors, normals.valid};
+  const registration::Target target = prepared.target();
   frame.alignment = scan.doppler_kind() == DopplerKind::kRelative
                         ? registration::align(source, target, predicted_motion(frame.stamp), config_.registration,
                                               workers_)  // Eq. (12)-(14)
@@ -135,7 +135,9 @@ registration::Alignment DynamicIcp::align_without_doppler(const Scan& source, co
   config.doppler_weight = 0.0;
   Eigen::Isometry3d T_start = predicted_motion(stamp);
   if (!last_->twist) {
-    T_start = first_way(source, target, seconds_between(last_->scan.stamp(), stamp), workers_).T_target_source;
+    T_start =
+        registration::search_translation(source, target, seconds_between(last_->scan.stamp(), stamp), {}, workers_)
+            .T_target_source;
     for (const double gate_m : kWideGates_m) {
       config.max_correspondence_distance_m = gate_m;
       T_start = registration::align(source, target, T_start, config, workers_).T_target_source;

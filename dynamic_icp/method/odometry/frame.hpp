@@ -12,7 +12,8 @@
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/dynamics/object_velocity.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
-#include "dynamic_icp/method/odometry/sweep_report.hpp"
+#include "dynamic_icp/method/motion/sweep_times.hpp"
+#include "dynamic_icp/method/motion/twist.hpp"
 #include "dynamic_icp/method/registration/alignment.hpp"
 #include "dynamic_icp/method/tracking/tracked_object.hpp"
 
@@ -55,13 +56,6 @@ struct StageTimes {
   double total_ms = 0.0;
 };
 
-/// How the sensor moves at the stamp of a scan, in its own axes.
-struct Twist {
-  Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s
-  Eigen::Vector3d linear = Eigen::Vector3d::Zero();   ///< m/s over ground
-  Matrix6d covariance = Matrix6d::Zero();             ///< of [angular; linear]
-};
-
 /// All that the odometry says of one scan.
 struct Frame {
   FrameStatus status = FrameStatus::kNotRun;
@@ -71,7 +65,7 @@ struct Frame {
   registration::Alignment alignment;                                  ///< of that pair; not run for the first scan
 
   ego_motion::EgoVelocity ego;                     ///< of this scan
-  std::optional<Twist> twist;                      ///< where the method states one
+  std::optional<motion::Twist> twist;              ///< where the method states one
   std::vector<dynamics::ObjectEstimate> clusters;  ///< of this scan, accepted and rejected
   std::vector<tracking::TrackedObject> tracked;    ///< confirmed objects, where the method tracks them
   std::size_t dynamic_candidates = 0;              ///< points that the velocity filter flags
@@ -81,7 +75,7 @@ struct Frame {
   std::size_t points = 0;       ///< as read
   std::size_t points_used = 0;  ///< after range crop and voxel grid
   Scan::Dropped dropped;
-  std::optional<SweepReport> sweep;  ///< empty for methods that never look at times
+  std::optional<motion::SweepReport> sweep;  ///< empty for methods that never look at times
   /// Points that stand still, thinned, in the sensor frame at the stamp (m): what a map is made of. Empty for methods
   /// that do not tell them from moving ones.
   std::vector<Eigen::Vector3d> static_points;

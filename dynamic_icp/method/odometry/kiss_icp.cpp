@@ -7,9 +7,9 @@
 
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/estimation/robust_kernel.hpp"
+#include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
-#include "dynamic_icp/method/preprocess/deskew.hpp"
 #include "dynamic_icp/method/registration/gauss_newton.hpp"
 #include "dynamic_icp/method/registration/point_to_point.hpp"
 
@@ -131,14 +131,14 @@ Frame KissIcp::process(const RawScan& raw) {
 Scan KissIcp::deskewed_in_range(const RawScan& raw, Frame& frame) const {
   Scan scan = Scan::from_raw(raw, &frame.dropped);
   if (config_.deskew) {
-    scan = preprocess::deskew(scan, T_last_now_);
+    scan = motion::deskew_to_middle(scan, T_last_now_);
   }
   const Scan in_range = preprocess::crop_range(scan, {config_.min_range_m, config_.max_range_m});
   frame.stamp = raw.stamp;
   frame.points = raw.points.size();
   frame.dropped.out_of_range = scan.size() - in_range.size();
   frame.labels.assign(frame.points, -1);
-  frame.sweep = sweep_in_data(raw);
+  frame.sweep = motion::sweep_in_data(raw);
   frame.sweep->undone = config_.deskew && frame.sweep->duration_s.value_or(0.0) > 0.0;
   return in_range;
 }

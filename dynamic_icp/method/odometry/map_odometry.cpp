@@ -10,9 +10,11 @@
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/mapping/rotation_search.hpp"
+#include "dynamic_icp/method/motion/deskew.hpp"
+#include "dynamic_icp/method/motion/motion_uncertainty.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
-#include "dynamic_icp/method/odometry/motion_uncertainty.hpp"
 #include "dynamic_icp/method/registration/gauss_newton.hpp"
 
 namespace dynamic_icp::odometry {
@@ -46,19 +48,19 @@ constexpr double kStraight_rad_s = 3e-4;  // moves the end of a sweep of 0.1 s b
 // A displacement that is known no better is not known.
 constexpr double kUnknown_m = 100.0;
 
-registration::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
-  registration::SweepMotion sweep;
+motion::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
+  motion::SweepMotion sweep;
   sweep.velocity = ego.velocity_sensor - middle_s * ego.acceleration_sensor;
   sweep.acceleration = ego.acceleration_sensor;
   return sweep;
 }
 
-double match(const registration::MapAlignment& found) {
+double match(const mapping::MapAlignment& found) {
   return found.points > 0 ? found.matched / static_cast<double>(found.points) : 0.0;
 }
 
 /// Whether the alignment is worth nothing, given the usual share of points that agree.
-bool is_lost(const registration::MapAlignment& found, double least_match) {
+bool is_lost(const mapping::MapAlignment& found, double least_match) {
   return found.diverged || match(found) < least_match ||
          found.matched < kLeastAgreement * static_cast<double>(found.on_planes);
 }
@@ -92,9 +94,9 @@ std::vector<std::string> MapOdometry::assumptions() const {
 Frame MapOdometry::process(const RawScan& raw) {
   check_order(raw, last_stamp_);
   Frame frame;
-  frame.sweep = sweep_as_configured(raw, config_.sweep);
+  frame.sweep = motion::sweep_as_configured(raw, config_.sweep);
   StageClock clock(frame.times);
-  const std::optional<RawScan> timed = retimed(raw, config_.sweep);
+  const std::optional<RawScan> timed = motion::retimed(raw, config_.sweep);
   Scan& whole = memory_.whole;
   std::vector<std::uint32_t>& thinned = memory_.thinned;
   ego_motion::DopplerRows& rows = memory_.rows;
@@ -148,7 +150,7 @@ Frame MapOdometry::process(const RawScan& raw) {
   if (!now.is_relative) {
     frame.ego = state_->filtered;
   }
-  frame.twist = twist_at_stamp(state_->turn, frame.ego, now.middle_s);
+  frame.twist = motion::twist_at_stamp(state_->turn, frame.ego, now.middle_s);
   clock.finish(Stage::kRegistration);
 
   workers_.both([&] { frame.static_points = add_to_map(now); }, [&] { track_objects(frame); });
@@ -186,7 +188,7 @@ void MapOdometry::begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor
   state.filtered = now.filtered;
   state.T_map_sensor = T_map_sensor;
   state.position_information = kExactPosition * Eigen::Matrix3d::Identity();
-  state.turn = first_turn_state(config_.turn);
+  state.turn = motion::first_rotation_state(config_.turn);
   state.turn.R_map_sensor = T_map_sensor.linear();
   state.sweep = straight_sweep(now.ego, now.middle_s);
   state.first = now;
@@ -195,8 +197,8 @@ void MapOdometry::begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor
   state_ = std::move(state);
 }
 
-std::vector<VelocitySample> MapOdometry::velocities_with(const Moment& now) const {
-  std::vector<VelocitySample> samples = state_->velocities;
+std::vector<motion::VelocitySample> MapOdometry::velocities_with(const Moment& now) const {
+  std::vector<motion::VelocitySample> samples = state_->velocities;
   samples.push_back({now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, {}});
   if (samples.size() > kVelocitySamples) {
     samples.erase(samples.begin());
@@ -205,10 +207,10 @@ std::vector<VelocitySample> MapOdometry::velocities_with(const Moment& now) cons
 }
 
 /// Where the scan should be: the turn as it was expected, the way by the velocities of this and the last scans.
-registration::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
+mapping::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
-  const TurnState turn = predict(state_->turn, dt_s, config_.turn);
-  registration::MotionPrior prior;
+  const motion::RotationState turn = motion::predict(state_->turn, dt_s, config_.turn);
+  mapping::MotionPrior prior;
   prior.R_map_sensor = turn.R_map_sensor;
   prior.sweep = straight_sweep(now.ego, now.middle_s);
   prior.sweep.omega = turn.omega;
@@ -218,10 +220,10 @@ registration::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
     expect_even_motion(now, prior);
     return prior;
   }
-  std::vector<VelocitySample> samples = velocities_with(now);
+  std::vector<motion::VelocitySample> samples = velocities_with(now);
   const Eigen::Matrix3d R_stamp_middle = prior.sweep.rotation(now.middle_s);
   samples.back().R_map_sensor = prior.R_map_sensor * R_stamp_middle;
-  const Displacement displacement = displacement_between(samples, state_->stamp_s, now.stamp_s);
+  const motion::Displacement displacement = motion::displacement_between(samples, state_->stamp_s, now.stamp_s);
   prior.displacement_fixed = state_->T_map_sensor.translation() + displacement.fixed_map;
   prior.displacement_turned = displacement.last_weight_s * (R_stamp_middle * now.ego.velocity_sensor);
   const double integration_m = config_.use_displacement ? config_.displacement_deviation_mps * dt_s : kUnknown_m;
@@ -231,16 +233,15 @@ registration::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
 }
 
 void MapOdometry::go_on(const Moment& now, Frame& frame) {
-  registration::MapAlignConfig config = config_.map_align;
+  mapping::MapAlignConfig config = config_.map_align;
   config.model_deviation_m = state_->model_deviation_m;
-  const registration::MotionPrior prior = motion_prior(now);
-  registration::MapAlignment found = state_->scans_in_map == 1 ? align_second(now, prior)
-                                     : !now.is_relative
-                                         ? align_with_found_velocity(now, prior, config)
-                                         : registration::align_to_map(now.still, map_, prior, config, workers_);
+  const mapping::MotionPrior prior = motion_prior(now);
+  mapping::MapAlignment found = state_->scans_in_map == 1 ? align_second(now, prior)
+                                : !now.is_relative        ? align_with_found_velocity(now, prior, config)
+                                                   : mapping::align_to_map(now.still, map_, prior, config, workers_);
   const double least_match = std::max(kLeastMatch, config_.lost_match * state_->usual_match);
   if (is_lost(found, least_match)) {
-    found = registration::search_and_align(now.still, map_, prior, config, workers_);
+    found = mapping::search_and_align(now.still, map_, prior, config, workers_);
   }
   if (is_lost(found, least_match) || !is_plausible_motion(motion_to(found), now.stamp_s - state_->stamp_s)) {
     lose(now, prior, frame);
@@ -251,8 +252,9 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
     keep_expected_where_nothing_holds(prior, held, found);
   }
   const ego_motion::EgoVelocity moved = now.is_relative ? now.filtered : found_velocity(now, found, held);
-  const TurnState expected = predict(state_->turn, now.stamp_s - state_->stamp_s, config_.turn);
-  const TurnState turn = turn_state(found, expected, now.duration_s, config_.turn);
+  const motion::RotationState expected = motion::predict(state_->turn, now.stamp_s - state_->stamp_s, config_.turn);
+  const motion::RotationState turn =
+      motion::updated(mapping::rotation_state(found), expected, now.duration_s, config_.turn);
   describe(prior, found, held, turn.covariance.topLeftCorner<3, 3>(), registration::typical_distance(now.still), frame);
 
   state_->usual_match = state_->scans_in_map == 1
@@ -272,16 +274,16 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
   const double memory = config_.mapping.memory_scans;
   state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);
   state_->position_information = held;
-  std::vector<VelocitySample> velocities = velocities_with(now);
+  std::vector<motion::VelocitySample> velocities = velocities_with(now);
   velocities.back().R_map_sensor = found.T_map_sensor.linear() * found.sweep.rotation(now.middle_s);
   state_->velocities = std::move(velocities);
 }
 
 /// What the frame says of an alignment.
-void MapOdometry::describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
+void MapOdometry::describe(const mapping::MotionPrior& prior, const mapping::MapAlignment& found,
                            const Eigen::Matrix3d& held, const Eigen::Matrix3d& rotation_covariance, double length_m,
                            Frame& frame) const {
-  MotionEvidence evidence;
+  motion::MotionEvidence evidence;
   evidence.source_rotation_covariance = state_->turn.covariance.topLeftCorner<3, 3>();
   evidence.target_rotation_covariance = rotation_covariance;
   evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
@@ -295,9 +297,9 @@ void MapOdometry::describe(const registration::MotionPrior& prior, const registr
   alignment.correspondences = found.on_planes;
   alignment.geometry = {found.on_planes, static_cast<std::size_t>(found.matched), found.rms_m};
   alignment.length_m = length_m;
-  alignment.covariance = motion_covariance(evidence, found.T_map_sensor.linear());
-  alignment.degenerate = unknown_directions(*alignment.covariance, length_m, config_.unknown_deviation_m);
-  alignment.information_ratio = information_ratio(*alignment.covariance, length_m);
+  alignment.covariance = motion::motion_covariance(evidence, found.T_map_sensor.linear());
+  alignment.degenerate = motion::unknown_directions(*alignment.covariance, length_m, config_.unknown_deviation_m);
+  alignment.information_ratio = motion::information_ratio(*alignment.covariance, length_m);
   alignment.T_target_source = found.T_map_sensor.inverse() * state_->T_map_sensor;
   alignment.status =
       found.converged ? registration::AlignStatus::kConverged : registration::AlignStatus::kIterationLimit;
@@ -310,17 +312,17 @@ void MapOdometry::describe(const registration::MotionPrior& prior, const registr
 }
 
 /// Nothing fits the map: the motion is the one expected, and the map begins anew.
-void MapOdometry::lose(const Moment& now, const registration::MotionPrior& prior, Frame& frame) {
+void MapOdometry::lose(const Moment& now, const mapping::MotionPrior& prior, Frame& frame) {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   T_map_sensor.linear() = prior.R_map_sensor;
   T_map_sensor.translation() = prior.displacement_fixed + prior.R_map_sensor * prior.displacement_turned;
   set_motion(frame, FrameStatus::kLost, state_->T_map_sensor, T_map_sensor.inverse() * state_->T_map_sensor);
-  MotionEvidence evidence;
+  motion::MotionEvidence evidence;
   evidence.target_rotation_covariance = prior.covariance.topLeftCorner<3, 3>();
   evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
   evidence.displacement_turned = prior.displacement_turned;
-  frame.alignment.covariance = motion_covariance(evidence, prior.R_map_sensor);
-  const registration::SweepMotion sweep = prior.sweep;
+  frame.alignment.covariance = motion::motion_covariance(evidence, prior.R_map_sensor);
+  const motion::SweepMotion sweep = prior.sweep;
   begin(now, T_map_sensor);
   state_->turn.omega = sweep.omega;
   state_->sweep.omega = sweep.omega;
@@ -328,10 +330,10 @@ void MapOdometry::lose(const Moment& now, const registration::MotionPrior& prior
 
 /// The first scan was laid down as if the sensor did not turn. With the turn that the second shows it is laid down
 /// again, until both agree.
-registration::MapAlignment MapOdometry::align_second(const Moment& now, const registration::MotionPrior& prior) {
-  registration::MapAlignment found =
-      config_.search_start ? registration::search_and_align(now.still, map_, prior, config_.map_align, workers_)
-                           : registration::align_to_map(now.still, map_, prior, config_.map_align, workers_);
+mapping::MapAlignment MapOdometry::align_second(const Moment& now, const mapping::MotionPrior& prior) {
+  mapping::MapAlignment found = config_.search_start
+                                    ? mapping::search_and_align(now.still, map_, prior, config_.map_align, workers_)
+                                    : mapping::align_to_map(now.still, map_, prior, config_.map_align, workers_);
   if (!state_->first.still.has_times()) {
     return found;
   }
@@ -350,22 +352,22 @@ registration::MapAlignment MapOdometry::align_second(const Moment& now, const re
       state_->sweep.velocity = log_se3(motion_to(found)).tail<3>() / dt_s;
     }
     state_->velocities.back().R_map_sensor = state_->T_map_sensor.linear() * state_->sweep.rotation(first.middle_s);
-    registration::MotionPrior straightened = motion_prior(now);
+    mapping::MotionPrior straightened = motion_prior(now);
     if (!now.is_relative) {
       straightened.sweep.velocity = state_->sweep.velocity;
     }
     map_.clear();
     state_->scans_in_map = 0;
     add_to_map(first);
-    found = registration::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), gate_m,
-                                       config_.map_align, workers_);
+    found = mapping::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), gate_m, config_.map_align,
+                                  workers_);
   }
   return found;
 }
 
 /// Returns the points that were added, in sensor axes at the stamp.
 std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
-  std::vector<Eigen::Vector3d> points = registration::points_at_stamp(now.still, state_->sweep, workers_);
+  std::vector<Eigen::Vector3d> points = motion::deskewed_points(now.still, state_->sweep, workers_);
   std::vector<Eigen::Vector3d> in_map(points.size());
   workers_.for_each(points.size(), kBlock, [&](std::size_t i) { in_map[i] = state_->T_map_sensor * points[i]; });
   map_.add(in_map, state_->T_map_sensor.translation(), workers_);
@@ -381,7 +383,7 @@ void MapOdometry::track_objects(Frame& frame) {
                     [&](std::size_t row) { frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0; });
   std::vector<std::uint8_t> in_track(scan.size(), 0);
   if (config_.track_objects) {
-    scan = registration::undo_sweep(std::move(scan), state_->sweep, workers_);
+    scan = motion::deskew(std::move(scan), state_->sweep, workers_);
     for (tracking::TrackedObject& object :
          tracker_.update(scan, memory_.radial, is_moving, frame.T_world_sensor, workers_)) {
       const bool is_confirmed = object.status == tracking::TrackStatus::kConfirmed;

@@ -9,15 +9,15 @@
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
 #include "dynamic_icp/method/ego_motion/ego_filter.hpp"
+#include "dynamic_icp/method/mapping/map_alignment.hpp"
 #include "dynamic_icp/method/mapping/plane_map.hpp"
+#include "dynamic_icp/method/motion/displacement.hpp"
+#include "dynamic_icp/method/motion/rotation_filter.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
-#include "dynamic_icp/method/odometry/displacement.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
-#include "dynamic_icp/method/odometry/turn_filter.hpp"
 #include "dynamic_icp/method/preprocess/voxel_grid.hpp"
-#include "dynamic_icp/method/registration/map_alignment.hpp"
 #include "dynamic_icp/method/tracking/object_tracker.hpp"
 
 namespace dynamic_icp::odometry {
@@ -55,9 +55,9 @@ class MapOdometry final : public Odometry {
     Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
     Eigen::Matrix3d position_covariance = Eigen::Matrix3d::Zero();   ///< m^2, against the map
     Eigen::Matrix3d position_information = Eigen::Matrix3d::Zero();  ///< 1/m^2, from the points of the scan
-    registration::SweepMotion sweep;
-    TurnState turn;
-    std::vector<VelocitySample> velocities;  ///< of the last scans, at most three
+    motion::SweepMotion sweep;
+    motion::RotationState turn;
+    std::vector<motion::VelocitySample> velocities;  ///< of the last scans, at most three
     ego_motion::EgoVelocity filtered;
     double usual_match = 0.0;        ///< share of the points that agree with the map, as it was lately
     double model_deviation_m = 0.0;  ///< of patches from planes, as the last scans show it
@@ -80,25 +80,24 @@ class MapOdometry final : public Odometry {
                                                      double stamp_s) const;
   void begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor);
   void go_on(const Moment& now, Frame& frame);
-  void lose(const Moment& now, const registration::MotionPrior& prior, Frame& frame);
+  void lose(const Moment& now, const mapping::MotionPrior& prior, Frame& frame);
   void extrapolate(double stamp_s, FrameStatus status, Frame& frame) const;
-  void describe(const registration::MotionPrior& prior, const registration::MapAlignment& found,
-                const Eigen::Matrix3d& held, const Eigen::Matrix3d& rotation_covariance, double length_m,
-                Frame& frame) const;
-  [[nodiscard]] std::vector<VelocitySample> velocities_with(const Moment& now) const;
-  [[nodiscard]] registration::MotionPrior motion_prior(const Moment& now) const;
+  void describe(const mapping::MotionPrior& prior, const mapping::MapAlignment& found, const Eigen::Matrix3d& held,
+                const Eigen::Matrix3d& rotation_covariance, double length_m, Frame& frame) const;
+  [[nodiscard]] std::vector<motion::VelocitySample> velocities_with(const Moment& now) const;
+  [[nodiscard]] mapping::MotionPrior motion_prior(const Moment& now) const;
   [[nodiscard]] ego_motion::EgoVelocity first_velocity(const Moment& now) const;
-  void expect_even_motion(const Moment& now, registration::MotionPrior& prior) const;
-  [[nodiscard]] registration::MapAlignment align_with_found_velocity(const Moment& now, registration::MotionPrior prior,
-                                                                     const registration::MapAlignConfig& config) const;
-  [[nodiscard]] Eigen::Matrix3d held_position(const Moment& now, const registration::MapAlignment& found) const;
+  void expect_even_motion(const Moment& now, mapping::MotionPrior& prior) const;
+  [[nodiscard]] mapping::MapAlignment align_with_found_velocity(const Moment& now, mapping::MotionPrior prior,
+                                                                const mapping::MapAlignConfig& config) const;
+  [[nodiscard]] Eigen::Matrix3d held_position(const Moment& now, const mapping::MapAlignment& found) const;
   [[nodiscard]] std::vector<Eigen::Vector3d> unheld_directions(const Eigen::Matrix3d& held) const;
-  void keep_expected_where_nothing_holds(const registration::MotionPrior& prior, const Eigen::Matrix3d& held,
-                                         registration::MapAlignment& found) const;
-  [[nodiscard]] ego_motion::EgoVelocity found_velocity(const Moment& now, const registration::MapAlignment& found,
+  void keep_expected_where_nothing_holds(const mapping::MotionPrior& prior, const Eigen::Matrix3d& held,
+                                         mapping::MapAlignment& found) const;
+  [[nodiscard]] ego_motion::EgoVelocity found_velocity(const Moment& now, const mapping::MapAlignment& found,
                                                        const Eigen::Matrix3d& held) const;
-  [[nodiscard]] Eigen::Isometry3d motion_to(const registration::MapAlignment& found) const;
-  [[nodiscard]] registration::MapAlignment align_second(const Moment& now, const registration::MotionPrior& prior);
+  [[nodiscard]] Eigen::Isometry3d motion_to(const mapping::MapAlignment& found) const;
+  [[nodiscard]] mapping::MapAlignment align_second(const Moment& now, const mapping::MotionPrior& prior);
   std::vector<Eigen::Vector3d> add_to_map(const Moment& now);
   void track_objects(Frame& frame);
 

@@ -5,16 +5,18 @@
 #include <Eigen/Eigenvalues>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
+#include "dynamic_icp/method/motion/motion_uncertainty.hpp"
+#include "dynamic_icp/method/motion/twist.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/odometry/map_odometry.hpp"
-#include "dynamic_icp/method/odometry/motion_uncertainty.hpp"
+#include "dynamic_icp/method/registration/translation_search.hpp"
 
 // What the map odometry does where no Doppler tells how the sensor moves: it is compensated, or the scan is unusable.
 namespace dynamic_icp::odometry {
 namespace {
 
-constexpr double kFirstWay_m = 0.2;
+constexpr double kFirstTranslation_m = 0.2;
 
 // A direction is held when no more than this share of what the points say of it is the noise of normals. Patches that
 // are curved or meet an edge err by more: in a smooth tunnel noise is a tenth to all of it, on a street a 400th.
@@ -25,18 +27,20 @@ constexpr double kMostByNoise = 0.04;
 /// Of the second scan in a map, by the points alone: well enough for the alignment to find the rest.
 ego_motion::EgoVelocity MapOdometry::first_velocity(const Moment& now) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
-  const FirstWay way = first_way(state_->first.still, now.still, dt_s, workers_);
-  if (!way.is_clear) {
+  const registration::PreparedTarget target = registration::search_target(now.still, workers_);
+  const registration::InitialTranslation found =
+      registration::search_translation(state_->first.still, target.target(), dt_s, {}, workers_);
+  if (!found.is_unambiguous) {
     return now.ego;  // as unknown as it was
   }
-  return velocity_of(way.T_target_source.inverse(), dt_s, Eigen::Matrix3d::Identity(),
-                     kFirstWay_m * kFirstWay_m * Eigen::Matrix3d::Identity());
+  return velocity_of(found.T_target_source.inverse(), dt_s, Eigen::Matrix3d::Identity(),
+                     kFirstTranslation_m * kFirstTranslation_m * Eigen::Matrix3d::Identity());
 }
 
 /// Without a Doppler that tells: the sensor goes on as it moved last, as well as that is known.
-void MapOdometry::expect_even_motion(const Moment& now, registration::MotionPrior& prior) const {
+void MapOdometry::expect_even_motion(const Moment& now, mapping::MotionPrior& prior) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
-  const Eigen::Isometry3d T_now_last = even_motion(now.ego.velocity_sensor, state_->turn.omega, -dt_s);
+  const Eigen::Isometry3d T_now_last = motion::motion_of(state_->turn.omega, now.ego.velocity_sensor, -dt_s);
   prior.displacement_fixed = state_->T_map_sensor.translation();
   prior.displacement_turned = -T_now_last.translation();
   prior.translation_covariance = state_->position_covariance +
@@ -45,24 +49,23 @@ void MapOdometry::expect_even_motion(const Moment& now, registration::MotionPrio
 
 /// Two rounds without a Doppler that tells: the motion that the first one finds makes the sweep straight for the
 /// second.
-registration::MapAlignment MapOdometry::align_with_found_velocity(const Moment& now, registration::MotionPrior prior,
-                                                                  const registration::MapAlignConfig& config) const {
-  const registration::MapAlignment found = registration::align_to_map(now.still, map_, prior, config, workers_);
+mapping::MapAlignment MapOdometry::align_with_found_velocity(const Moment& now, mapping::MotionPrior prior,
+                                                             const mapping::MapAlignConfig& config) const {
+  const mapping::MapAlignment found = mapping::align_to_map(now.still, map_, prior, config, workers_);
   if (now.duration_s <= 0.0) {
     return found;
   }
   prior.sweep.velocity =
       velocity_of(motion_to(found), now.stamp_s - state_->stamp_s, found.T_map_sensor.linear(), Eigen::Matrix3d::Zero())
           .velocity_sensor;
-  return registration::align_to_map(now.still, map_, prior, config, workers_);
+  return mapping::align_to_map(now.still, map_, prior, config, workers_);
 }
 
 /// A scan that cannot be used, or one after a long gap: the last motion goes on.
 void MapOdometry::extrapolate(double stamp_s, FrameStatus status, Frame& frame) const {
   const double dt_s = std::min(stamp_s - state_->stamp_s, kMaxPrediction_s);
-  Vector6d twist;
-  twist << state_->turn.omega, state_->filtered.velocity_sensor;
-  const Eigen::Isometry3d T_target_source = exp_se3(-dt_s * twist);
+  const Eigen::Isometry3d T_target_source =
+      motion::motion_of(state_->turn.omega, state_->filtered.velocity_sensor, -dt_s);
   set_motion(frame, status, state_->T_map_sensor, T_target_source);
   const double turned_rad = config_.turn.start_omega_rad_s * dt_s;
   const double moved_m = 0.5 * kBlindAcceleration_mps2 * dt_s * dt_s;
@@ -74,13 +77,13 @@ void MapOdometry::extrapolate(double stamp_s, FrameStatus status, Frame& frame) 
 
 /// What the points say of the position. Where no Doppler tells, it is believed only as far as it is more than the noise
 /// of normals: in a tunnel that alone seems to hold the way to some centimetres, and to hold it where the map is.
-Eigen::Matrix3d MapOdometry::held_position(const Moment& now, const registration::MapAlignment& found) const {
-  const Eigen::Matrix3d information = position_information(found.geometry_information);
+Eigen::Matrix3d MapOdometry::held_position(const Moment& now, const mapping::MapAlignment& found) const {
+  const Eigen::Matrix3d information = motion::position_information(found.geometry_information);
   if (now.is_relative) {
     return information;
   }
   const Eigen::Matrix3d noise =
-      registration::position_information_of_noise(now.still, map_, found, config_.map_align, workers_);
+      mapping::position_information_of_noise(now.still, map_, found, config_.map_align, workers_);
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(information);
   Eigen::Matrix3d held = Eigen::Matrix3d::Zero();
   for (int k = 0; k < 3; ++k) {
@@ -106,8 +109,8 @@ std::vector<Eigen::Vector3d> MapOdometry::unheld_directions(const Eigen::Matrix3
 }
 
 /// Along directions that nothing holds the even motion goes on, whatever the noise of normals says.
-void MapOdometry::keep_expected_where_nothing_holds(const registration::MotionPrior& prior, const Eigen::Matrix3d& held,
-                                                    registration::MapAlignment& found) const {
+void MapOdometry::keep_expected_where_nothing_holds(const mapping::MotionPrior& prior, const Eigen::Matrix3d& held,
+                                                    mapping::MapAlignment& found) const {
   const Eigen::Vector3d expected = prior.displacement_fixed + found.T_map_sensor.linear() * prior.displacement_turned;
   for (const Eigen::Vector3d& direction : unheld_directions(held)) {
     found.T_map_sensor.translation() -= direction.dot(found.T_map_sensor.translation() - expected) * direction;
@@ -116,7 +119,7 @@ void MapOdometry::keep_expected_where_nothing_holds(const registration::MotionPr
 
 /// Of the motion that an alignment found. Along directions that the points hardly hold (a tunnel) scan after scan would
 /// seem to add to what is known, but errs alike each time: there nothing is learned.
-ego_motion::EgoVelocity MapOdometry::found_velocity(const Moment& now, const registration::MapAlignment& found,
+ego_motion::EgoVelocity MapOdometry::found_velocity(const Moment& now, const mapping::MapAlignment& found,
                                                     const Eigen::Matrix3d& held) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
   const Eigen::Matrix3d& R_map_sensor = found.T_map_sensor.linear();
@@ -129,7 +132,7 @@ ego_motion::EgoVelocity MapOdometry::found_velocity(const Moment& now, const reg
 }
 
 /// T_last_now.
-Eigen::Isometry3d MapOdometry::motion_to(const registration::MapAlignment& found) const {
+Eigen::Isometry3d MapOdometry::motion_to(const mapping::MapAlignment& found) const {
   return state_->T_map_sensor.inverse() * found.T_map_sensor;
 }
 

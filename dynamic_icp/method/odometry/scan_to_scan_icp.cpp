@@ -41,8 +41,7 @@ void tell_in_sensor_frame(registration::Alignment& alignment, const Eigen::Isome
 
 /// What is kept of a scan: the target of this alignment and the source of the next.
 struct ScanToScanIcp::Reference {
-  Scan scan;  // in the frame of the vehicle for Doppler-ICP, else of the sensor
-  preprocess::Normals normals;
+  registration::PreparedTarget prepared;  // in the frame of the vehicle for Doppler-ICP, else of the sensor
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
   Vector6d twist = Vector6d::Zero();  // of the last alignment, log(T_target_source) / dt, sensor frame
 };
@@ -89,16 +88,15 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
     frame.labels[record] = 0;
   }
 
-  auto now = std::make_unique<Reference>();
-  now->scan = T_vehicle_sensor_ ? scan.transformed(*T_vehicle_sensor_) : scan;
-  const spatial::KdTree tree(now->scan.points(), workers_);
-  if (config_.geometry != registration::GeometryTerm::kPointToPoint) {
-    now->normals = preprocess::estimate_normals(now->scan.points(), tree, config_.normals, workers_);
-  }
+  Scan points = T_vehicle_sensor_ ? scan.transformed(*T_vehicle_sensor_) : scan;
+  auto now = std::make_unique<Reference>(
+      Reference{config_.geometry == registration::GeometryTerm::kPointToPoint
+                    ? registration::PreparedTarget(std::move(points), workers_)
+                    : registration::PreparedTarget(std::move(points), config_.normals, workers_)});
   clock.finish(Stage::kNormals);
 
   if (found == FrameStatus::kNotRun) {
-    align_to_last(*now, tree, frame);
+    align_to_last(*now, frame);
   } else {
     continue_motion(frame, found);
   }
@@ -114,16 +112,16 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
   return frame;
 }
 
-void ScanToScanIcp::align_to_last(const Reference& now, const spatial::KdTree& tree, Frame& frame) const {
-  const double dt_s = seconds_between(last_->scan.stamp(), frame.stamp);
-  const registration::Source source{last_->scan, last_->normals.vectors, last_->normals.valid};
-  const registration::Target target{now.scan, tree, now.normals.vectors, now.normals.valid};
+void ScanToScanIcp::align_to_last(const Reference& now, Frame& frame) const {
+  const double dt_s = seconds_between(last_->prepared.scan.stamp(), frame.stamp);
+  const registration::PreparedTarget& last = last_->prepared;
+  const registration::Source source{last.scan, last.normals.vectors, last.normals.valid};
+  const registration::Target target = now.prepared.target();
   Eigen::Isometry3d T_initial = predicted_motion(frame.stamp);
   if (T_vehicle_sensor_) {
     T_initial = *T_vehicle_sensor_ * T_initial * T_vehicle_sensor_->inverse();
   }
-  frame.alignment = registration::align(source, target, T_initial, objective(now.scan.doppler_kind(), dt_s),
-                                        config_.registration.max_correspondence_distance_m,
+  frame.alignment = registration::align(source, target, T_initial, objective(target.scan.doppler_kind(), dt_s),
                                         stop_rule(config_.registration), workers_);
   if (T_vehicle_sensor_) {
     tell_in_sensor_frame(frame.alignment, *T_vehicle_sensor_);
@@ -134,7 +132,7 @@ void ScanToScanIcp::align_to_last(const Reference& now, const spatial::KdTree& t
 }
 
 std::optional<double> ScanToScanIcp::interval_s(Stamp stamp) const {
-  return last_ ? std::optional(seconds_between(last_->scan.stamp(), stamp)) : std::nullopt;
+  return last_ ? std::optional(seconds_between(last_->prepared.scan.stamp(), stamp)) : std::nullopt;
 }
 
 void ScanToScanIcp::continue_motion(Frame& frame, FrameStatus status) const {
@@ -148,12 +146,13 @@ Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
   if (!config_.constant_velocity_start) {
     return Eigen::Isometry3d::Identity();
   }
-  return exp_se3(prediction_time_s(last_->scan.stamp(), stamp) * last_->twist);
+  return exp_se3(prediction_time_s(last_->prepared.scan.stamp(), stamp) * last_->twist);
 }
 
 registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {
   registration::Objective objective;
   objective.geometry = config_.geometry;
+  objective.max_correspondence_distance_m = config_.registration.max_correspondence_distance_m;
   objective.doppler = registration::DopplerTerm::kNone;
   objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
   if (!doppler_icp_) {

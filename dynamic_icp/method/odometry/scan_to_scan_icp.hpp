@@ -29,7 +29,7 @@ class ScanToScanIcp final : public Odometry {
  private:
   struct Reference;
 
-  void align_to_last(const Reference& now, const spatial::KdTree& tree, Frame& frame) const;
+  void align_to_last(const Reference& now, Frame& frame) const;
   [[nodiscard]] std::optional<double> interval_s(Stamp stamp) const;
   void continue_motion(Frame& frame, FrameStatus status) const;
   [[nodiscard]] Eigen::Isometry3d predicted_motion(Stamp stamp) const;

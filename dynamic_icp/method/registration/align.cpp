@@ -7,7 +7,7 @@
 #include <span>
 #include <stdexcept>
 
-#include "dynamic_icp/method/registration/pair_sums.hpp"
+#include "dynamic_icp/method/registration/step_equations.hpp"
 
 namespace dynamic_icp::registration {
 namespace {
@@ -17,20 +17,21 @@ constexpr std::size_t kBlock = 128;  // groups of source points
 /// Two scans and what is minimised between them.
 class ScanToScan : public Problem {
  public:
-  ScanToScan(const Source& source, const Target& target, const Objective& objective, double max_distance_m,
-             const Workers& workers)
+  ScanToScan(const Source& source, const Target& target, const Objective& objective, const Workers& workers)
       : source_(source),
         target_(target),
         objective_(objective),
         workers_(workers),
-        search_(source.scan, target, max_distance_m, objective.geometry == GeometryTerm::kPointToPlane, workers),
-        fast_(can_sum_pairs(objective)) {}
+        search_(source.scan, target, objective.max_correspondence_distance_m,
+                objective.geometry == GeometryTerm::kPointToPlane, workers),
+        fast_(has_step_equations(objective)) {}
 
   Correspondences find(const Eigen::Isometry3d& T_target_source) override { return search_.find(T_target_source); }
 
   [[nodiscard]] Linearisation linearise(const Correspondences& correspondences,
                                         const Eigen::Isometry3d& T_target_source, int iteration) const override {
-    return registration::linearise(source_, target_, correspondences, T_target_source, objective_, iteration, workers_);
+    return registration::linearise({source_, target_, correspondences}, T_target_source, objective_, iteration,
+                                   workers_);
   }
 
   Fit associate(const Eigen::Isometry3d& T_target_source) override {
@@ -39,9 +40,9 @@ class ScanToScan : public Problem {
     }
     // The sums are formed while the rows are at hand, although the last ones go unused.
     const std::span<const SourceRows> groups = search_.groups();
-    sums_ = workers_.sum_blocks(groups.size(), kBlock, PairSums{}, [&](std::size_t begin, std::size_t end) {
+    sums_ = workers_.sum_blocks(groups.size(), kBlock, StepEquations{}, [&](std::size_t begin, std::size_t end) {
       search_.locate(T_target_source, begin, end);
-      return sum_pairs(groups.subspan(begin, end - begin), T_target_source.linear(), objective_);
+      return step_equations(groups.subspan(begin, end - begin), T_target_source.linear(), objective_);
     });
     return fit_of(sums_.pairs, sums_.squared_distances, source_.scan.size());
   }
@@ -59,7 +60,7 @@ class ScanToScan : public Problem {
   const Workers& workers_;
   CorrespondenceSearch search_;
   bool fast_;
-  PairSums sums_;  // at the pose asked for last
+  StepEquations sums_;  // at the pose asked for last
 };
 
 void check_inputs(const Source& source, const Target& target, const Objective& objective) {
@@ -82,6 +83,7 @@ void check_inputs(const Source& source, const Target& target, const Objective& o
 
 Objective dynamic_icp_objective(const AlignConfig& config) {
   Objective objective;
+  objective.max_correspondence_distance_m = config.max_correspondence_distance_m;
   objective.doppler_weight = config.doppler_weight;
   objective.tukey_geometry_m = config.tukey_geometry_m;
   objective.tukey_doppler_mps = config.tukey_doppler_mps;
@@ -93,17 +95,15 @@ StopRule stop_rule(const MatchingConfig& config) {
 }
 
 Alignment align(const Source& source, const Target& target, const Eigen::Isometry3d& T_initial,
-                const Objective& objective, double max_correspondence_distance_m, const StopRule& stop,
-                const Workers& workers) {
+                const Objective& objective, const StopRule& stop, const Workers& workers) {
   check_inputs(source, target, objective);
-  ScanToScan problem(source, target, objective, max_correspondence_distance_m, workers);
+  ScanToScan problem(source, target, objective, workers);
   return minimise(problem, T_initial, typical_distance(source.scan), stop);
 }
 
 Alignment align(const Scan& source, const Target& target, const Eigen::Isometry3d& T_initial, const AlignConfig& config,
                 const Workers& workers) {
-  return align(Source{source}, target, T_initial, dynamic_icp_objective(config), config.max_correspondence_distance_m,
-               stop_rule(config), workers);
+  return align(Source{source}, target, T_initial, dynamic_icp_objective(config), stop_rule(config), workers);
 }
 
 }  // namespace dynamic_icp::registration

@@ -18,12 +18,11 @@ Objective dynamic_icp_objective(const AlignConfig& config);
 /// The stopping rule: fitness and inlier RMSE both change by less than the tolerance.
 StopRule stop_rule(const MatchingConfig& config);
 
-/// Aligns two scans: each iteration pairs every source point with its nearest target point within
-/// `max_correspondence_distance_m` and makes a Gauss-Newton step of the objective. The result is the same bits for any
-/// number of threads. Throws std::invalid_argument where normals are missing or the objective is impossible.
+/// Aligns two scans: each iteration pairs every source point with its nearest target point and makes a Gauss-Newton
+/// step of the objective. The result is the same bits for any number of threads. Throws std::invalid_argument where
+/// normals are missing or the objective is impossible.
 Alignment align(const Source& source, const Target& target, const Eigen::Isometry3d& T_initial,
-                const Objective& objective, double max_correspondence_distance_m, const StopRule& stop,
-                const Workers& workers);
+                const Objective& objective, const StopRule& stop, const Workers& workers);
 
 /// Doppler-aware ICP matching of the paper, Eq. (12)-(14): minimises
 ///   sum (1 - lambda_v) rho_g(r_g) + lambda_v rho_v(r_v)

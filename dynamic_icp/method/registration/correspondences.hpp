@@ -13,19 +13,10 @@
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/registration/source_rows.hpp"
+#include "dynamic_icp/method/registration/target.hpp"
 #include "dynamic_icp/method/spatial/few_nearest.hpp"
-#include "dynamic_icp/method/spatial/kd_tree.hpp"
 
 namespace dynamic_icp::registration {
-
-/// What the source is aligned to: a scan with the search tree over its points and the normals where there are any.
-/// It only refers to its parts; they must outlive it.
-struct Target {
-  const Scan& scan;
-  const spatial::KdTree& tree;
-  std::span<const Eigen::Vector3d> normals;
-  std::span<const std::uint8_t> has_normal;  ///< 1 where the normal may be used
-};
 
 struct Correspondence {
   std::uint32_t source;     ///< row of the source scan

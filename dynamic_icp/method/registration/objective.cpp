@@ -19,10 +19,6 @@ double kernel_weight(double residual, double tukey) {
   return std::isinf(tukey) ? 1.0 : estimation::tukey_weight(residual, tukey);
 }
 
-double kernel_loss(double residual, double tukey) {
-  return std::isinf(tukey) ? 0.5 * residual * residual : estimation::tukey_loss(residual, tukey);
-}
-
 /// The residuals of one pair at one pose.
 class PairTerms {
  public:
@@ -88,17 +84,16 @@ void add_geometry(LinearisationSum& sum, const PairTerms& terms, const Correspon
 
 }  // namespace
 
-Linearisation linearise(const Source& source, const Target& target, const Correspondences& correspondences,
-                        const Eigen::Isometry3d& T_target_source, const Objective& objective, int iteration,
-                        const Workers& workers) {
-  const PairTerms terms(source, target, T_target_source, objective);
+Linearisation linearise(const PairedScans& scans, const Eigen::Isometry3d& T_target_source, const Objective& objective,
+                        int iteration, const Workers& workers) {
+  const PairTerms terms(scans.source, scans.target, T_target_source, objective);
   const bool with_doppler = has_doppler(objective);
   const double tukey_doppler = iteration >= objective.tukey_doppler_from_iteration
                                    ? objective.tukey_doppler_mps
                                    : std::numeric_limits<double>::infinity();
   const bool rejects = objective.doppler != DopplerTerm::kNone && iteration >= objective.reject_from_iteration &&
                        std::isfinite(objective.reject_doppler_mps);
-  const std::vector<Correspondence>& pairs = correspondences.pairs;
+  const std::vector<Correspondence>& pairs = scans.correspondences.pairs;
   const LinearisationSum sum =
       workers.sum_blocks(pairs.size(), kBlock, LinearisationSum{}, [&](std::size_t begin, std::size_t end) {
         LinearisationSum part;
@@ -115,21 +110,6 @@ Linearisation linearise(const Source& source, const Target& target, const Corres
         return part;
       });
   return sum.finish();
-}
-
-double cost(const Source& source, const Target& target, const Correspondences& correspondences,
-            const Eigen::Isometry3d& T_target_source, const Objective& objective) {
-  const PairTerms terms(source, target, T_target_source, objective);
-  double geometry = 0.0;
-  double doppler = 0.0;
-  for (const Correspondence& pair : correspondences.pairs) {
-    const double residual =
-        objective.geometry == GeometryTerm::kPointToPlane ? terms.plane(pair).value : terms.point(pair).value.norm();
-    geometry += kernel_loss(residual, objective.tukey_geometry_m);
-    doppler += has_doppler(objective) ? kernel_loss(terms.doppler(pair).value, objective.tukey_doppler_mps) : 0.0;
-  }
-  const double weight = has_doppler(objective) ? objective.doppler_weight : 0.0;
-  return (1.0 - weight) * geometry + weight * doppler;
 }
 
 }  // namespace dynamic_icp::registration

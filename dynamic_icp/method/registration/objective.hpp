@@ -25,12 +25,13 @@ enum class DopplerTerm {
 struct Objective {
   GeometryTerm geometry = GeometryTerm::kPointToPlane;
   DopplerTerm doppler = DopplerTerm::kRotation;
-  double doppler_weight = 0.2;           ///< lambda; 0 leaves the Doppler term out
-  double tukey_geometry_m = 0.5;         ///< beyond this no weight; infinity: least squares
-  double tukey_doppler_mps = 0.3;        ///< likewise
-  int tukey_doppler_from_iteration = 0;  ///< before (counted from 0) the Doppler term is least squares
-  double thickness = 1e-3;               ///< of planes, see plane_to_plane.hpp
-  VehicleMotion vehicle;                 ///< for kSensorVelocity
+  double max_correspondence_distance_m = 0.3;  ///< points farther apart make no pair
+  double doppler_weight = 0.2;                 ///< lambda; 0 leaves the Doppler term out
+  double tukey_geometry_m = 0.5;               ///< beyond this no weight; infinity: least squares
+  double tukey_doppler_mps = 0.3;              ///< likewise
+  int tukey_doppler_from_iteration = 0;        ///< before (counted from 0) the Doppler term is least squares
+  double thickness = 1e-3;                     ///< of planes, see plane_to_plane.hpp
+  VehicleMotion vehicle;                       ///< for kSensorVelocity
   /// Pairs whose Doppler residual is larger have no weight in either term, from this iteration (from 0) on.
   double reject_doppler_mps = std::numeric_limits<double>::infinity();
   int reject_from_iteration = 2;
@@ -48,13 +49,16 @@ struct Source {
   std::span<const std::uint8_t> has_normal = {};  ///< 1 where the normal may be used
 };
 
-/// Sums weights, residuals and Jacobians of both terms over the correspondences at T_target_source.
-Linearisation linearise(const Source& source, const Target& target, const Correspondences& correspondences,
-                        const Eigen::Isometry3d& T_target_source, const Objective& objective, int iteration,
-                        const Workers& workers);
+/// Two scans and which of their points belong together. It only refers to its parts; they must outlive it.
+struct PairedScans {
+  const Source& source;
+  const Target& target;
+  const Correspondences& correspondences;
+};
 
-/// The value of the objective for fixed correspondences, without rejections. Not for kPlaneToPlane.
-double cost(const Source& source, const Target& target, const Correspondences& correspondences,
-            const Eigen::Isometry3d& T_target_source, const Objective& objective);
+/// Sums weights, residuals and Jacobians of both terms over the correspondences at T_target_source, for any objective;
+/// `iteration` counts from 0.
+Linearisation linearise(const PairedScans& scans, const Eigen::Isometry3d& T_target_source, const Objective& objective,
+                        int iteration, const Workers& workers);
 
 }  // namespace dynamic_icp::registration

@@ -42,7 +42,7 @@ class ScanReader {
     }
     now_ = prepared(frame);
     if (frame > 0) {
-      const Surface surface = surface_of(before_.scan.points, workers_);
+      const registration::PreparedTarget surface = surface_of(before_.scan.points, workers_);
       const Eigen::Isometry3d T_before_now =
           run_.trajectory[frame - 1].T_world_sensor.inverse() * run_.trajectory[frame].T_world_sensor;
       now_.scan.residual = surface_residual(surface, now_.scan.points, T_before_now, workers_);

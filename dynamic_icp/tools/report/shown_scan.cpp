@@ -8,10 +8,9 @@
 #include <optional>
 #include <unordered_map>
 
+#include "dynamic_icp/method/motion/deskew.hpp"
+#include "dynamic_icp/method/motion/sweep_times.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
-#include "dynamic_icp/method/odometry/sweep_report.hpp"
-#include "dynamic_icp/method/preprocess/deskew.hpp"
-#include "dynamic_icp/method/registration/sweep_motion.hpp"
 #include "dynamic_icp/tools/figures/scan_view.hpp"
 
 namespace dynamic_icp::report {
@@ -23,10 +22,10 @@ using figures::RunFiles;
 constexpr double kMoving_mps = 0.5;  // compensated Doppler beyond which a point counts as moving
 
 /// What the run was told about sweeps.
-preprocess::SweepConfig sweep_config(const RunFiles& run) {
-  preprocess::SweepConfig config;
+motion::SweepConfig sweep_config(const RunFiles& run) {
+  motion::SweepConfig config;
   ConfigFields known;
-  append_fields(known, "sweep", preprocess::fields(config));
+  append_fields(known, "sweep", motion::fields(config));
   for (const ConfigField& field : known) {
     if (const std::string text = figures::text_of(run.configuration, field.key); !text.empty()) {
       set_field(known, field.key, text);
@@ -36,15 +35,14 @@ preprocess::SweepConfig sweep_config(const RunFiles& run) {
 }
 
 /// The motion during a scan: by the twists at its stamp and at the next one or, at the end, the one before.
-std::optional<registration::SweepMotion> sweep_motion(const RunFiles& run, std::size_t frame) {
+std::optional<motion::SweepMotion> sweep_motion(const RunFiles& run, std::size_t frame) {
   const std::optional<figures::TwistRow>& twist = run.frames[frame].twist;
   if (!twist || !twist->angular.allFinite() || !twist->linear.allFinite()) {
     return std::nullopt;
   }
-  registration::SweepMotion motion;
+  motion::SweepMotion motion;
   motion.omega = twist->angular;
   motion.velocity = twist->linear;
-  motion.acceleration = -twist->angular.cross(twist->linear);  // even motion, in axes that turn
   const std::size_t other = frame + 1 < run.frames.size() ? frame + 1 : frame - 1;
   constexpr double kLongest_s = 0.5;
   if (run.frames.size() > 1 && run.frames[other].twist) {
@@ -62,18 +60,18 @@ bool undid_sweep(const RunFiles& run) { return figures::text_of(run.run, "sweep.
 
 /// The scan with its points where the run had them.
 Scan at_stamp(const RunFiles& run, std::size_t frame, const Scan& scan,
-              const std::optional<registration::SweepMotion>& motion, const Workers& workers) {
+              const std::optional<motion::SweepMotion>& motion, const Workers& workers) {
   if (motion) {
-    return registration::undo_sweep(scan, *motion, workers);
+    return motion::deskew(scan, *motion, workers);
   }
   // Methods without a twist take the motion between scans for the one during them.
   return frame == 0 ? scan
-                    : preprocess::deskew(scan, run.trajectory[frame - 1].T_world_sensor.inverse() *
-                                                   run.trajectory[frame].T_world_sensor);
+                    : motion::deskew_to_middle(scan, run.trajectory[frame - 1].T_world_sensor.inverse() *
+                                                         run.trajectory[frame].T_world_sensor);
 }
 
 std::vector<double> compensated_doppler(const FrameRow& row, const Scan& scan,
-                                        const std::optional<registration::SweepMotion>& motion) {
+                                        const std::optional<motion::SweepMotion>& motion) {
   std::vector<double> compensated = scan.doppler();
   if (scan.doppler_kind() == DopplerKind::kRelative) {
     compensated = figures::compensated_doppler(scan, row.ego_velocity);
@@ -185,11 +183,11 @@ ShownScan select(const ShownScan& scan, std::span<const std::uint32_t> rows) {
 
 ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, const Workers& workers) {
   const bool undo = undid_sweep(run);
-  preprocess::SweepConfig sweep = sweep_config(run);
+  motion::SweepConfig sweep = sweep_config(run);
   sweep.undo = undo;
-  const std::optional<RawScan> retimed = odometry::retimed(raw, sweep);
+  const std::optional<RawScan> retimed = motion::retimed(raw, sweep);
   const Scan measured = Scan::from_raw(retimed ? *retimed : raw, {.max_m = kFarthestShown_m}, workers);
-  const std::optional<registration::SweepMotion> motion = sweep_motion(run, frame);
+  const std::optional<motion::SweepMotion> motion = sweep_motion(run, frame);
   const Scan scan = undo ? at_stamp(run, frame, measured, motion, workers) : measured;
 
   ShownScan shown;

@@ -8,23 +8,17 @@
 #include <Eigen/Geometry>
 
 #include "dynamic_icp/method/base/parallel.hpp"
-#include "dynamic_icp/method/preprocess/normals.hpp"
-#include "dynamic_icp/method/spatial/kd_tree.hpp"
+#include "dynamic_icp/method/registration/target.hpp"
 
 namespace dynamic_icp::report {
 
-/// The surface that the points of a scan lie on: a plane through each of them, fitted to its neighbours.
-struct Surface {
-  std::vector<Eigen::Vector3d> points;  ///< m, thinned
-  spatial::KdTree tree;
-  preprocess::Normals normals;
-};
-
-Surface surface_of(std::span<const Eigen::Vector3d> points, const Workers& workers);
+/// The surface that the points of a scan (m) lie on: a plane through each of them, thinned, fitted to its neighbours.
+registration::PreparedTarget surface_of(std::span<const Eigen::Vector3d> points, const Workers& workers);
 
 /// Distance (m) of each point, moved by `T_surface_point`, to the plane through the nearest point of the surface,
 /// |n . (p - q)|; NaN where there is none within 1 m or where its neighbours are no plane.
-std::vector<double> surface_residual(const Surface& surface, std::span<const Eigen::Vector3d> points,
-                                     const Eigen::Isometry3d& T_surface_point, const Workers& workers);
+std::vector<double> surface_residual(const registration::PreparedTarget& surface,
+                                     std::span<const Eigen::Vector3d> points, const Eigen::Isometry3d& T_surface_point,
+                                     const Workers& workers);
 
 }  // namespace dynamic_icp::report

@@ -28,7 +28,7 @@ TEST(SurfaceResidual, IsTheDistanceToThePlane) {
   const Workers workers(2);
   const Eigen::Vector3d n = Eigen::Vector3d(1.0, 2.0, -0.5).normalized();
   const double d = 12.0;
-  const Surface surface = surface_of(plane_points(n, d, 4000), workers);
+  const registration::PreparedTarget surface = surface_of(plane_points(n, d, 4000), workers);
   Vector6d xi;
   xi << 0.1, -0.3, 0.5, 2.0, -1.0, 0.4;
   const Eigen::Isometry3d T_surface_point = exp_se3(xi);
@@ -52,10 +52,11 @@ TEST(SurfaceResidual, IsTheDistanceToThePlane) {
 
 TEST(SurfaceResidual, PointsThatAreNoPlaneHaveNoSurface) {
   const Workers workers(1);
-  const Surface two = surface_of(std::vector<Eigen::Vector3d>{{1.0, 0.0, 0.0}, {1.5, 0.0, 0.0}}, workers);
+  const registration::PreparedTarget two =
+      surface_of(std::vector<Eigen::Vector3d>{{1.0, 0.0, 0.0}, {1.5, 0.0, 0.0}}, workers);
   const std::vector<Eigen::Vector3d> query = {{1.1, 0.0, 0.0}};
   EXPECT_TRUE(std::isnan(surface_residual(two, query, Eigen::Isometry3d::Identity(), workers)[0]));
-  const Surface none = surface_of({}, workers);
+  const registration::PreparedTarget none = surface_of({}, workers);
   EXPECT_TRUE(std::isnan(surface_residual(none, query, Eigen::Isometry3d::Identity(), workers)[0]));
 }
 

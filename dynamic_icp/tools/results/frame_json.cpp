@@ -66,7 +66,7 @@ Json covariance_json(const registration::Alignment& alignment) {
   return alignment.covariance ? matrix_json(*alignment.covariance) : Json(nullptr);
 }
 
-Json twist_json(const std::optional<odometry::Twist>& twist) {
+Json twist_json(const std::optional<motion::Twist>& twist) {
   if (!twist) {
     return nullptr;
   }

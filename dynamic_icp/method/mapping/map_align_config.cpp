@@ -1,0 +1,20 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/mapping/map_align_config.hpp"
+
+namespace dynamic_icp::mapping {
+
+ConfigFields fields(MapAlignConfig& config) {
+  return {
+      {"max_iterations", &config.max_iterations, 1, 1000, "", "most steps of the alignment to the local map"},
+      {"min_deviation_m", &config.min_deviation_m, 1e-4, 1.0, "m", "least deviation of a point from its plane"},
+      {"model_deviation_m", &config.model_deviation_m, 0.0, 1.0, "m",
+       "deviation of patches of surface from planes, common to all points on a patch"},
+      {"kernel", &config.kernel, 1.0, 100.0, "", "points beyond so many deviations have no weight (Tukey)"},
+      {"max_gate_m", &config.max_gate_m, 0.0, 100.0, "m", "widest reach of the kernel while the start is uncertain"},
+      {"rotation_step_rad", &config.rotation_step_rad, 1e-12, 1.0, "rad", "converged when a step turns by less"},
+      {"translation_step_m", &config.translation_step_m, 1e-12, 1.0, "m", "and moves by less"},
+  };
+}
+
+}  // namespace dynamic_icp::mapping

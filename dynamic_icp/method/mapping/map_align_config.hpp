@@ -1,0 +1,21 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include "dynamic_icp/method/base/config_field.hpp"
+
+namespace dynamic_icp::mapping {
+
+struct MapAlignConfig {
+  int max_iterations = 20;
+  double min_deviation_m = 0.005;    ///< least deviation of a point from its plane
+  double model_deviation_m = 0.003;  ///< of a patch from a plane: common to all points on it
+  double kernel = 3.0;               ///< Tukey: points beyond so many deviations have no weight
+  double max_gate_m = 4.0;           ///< widest reach of the kernel while the start is uncertain
+  double rotation_step_rad = 1e-6;   ///< converged when a step is shorter than this
+  double translation_step_m = 1e-5;  ///< and this
+};
+
+ConfigFields fields(MapAlignConfig& config);
+
+}  // namespace dynamic_icp::mapping

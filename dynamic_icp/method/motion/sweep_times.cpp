@@ -1,0 +1,93 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/motion/sweep_times.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "dynamic_icp/method/base/scan_limits.hpp"
+
+namespace dynamic_icp::motion {
+namespace {
+
+bool uses_declared_times(const RawScan& raw, const SweepConfig& config) {
+  return raw.times.empty() && config.declared_duration_s > 0.0;
+}
+
+}  // namespace
+
+ConfigFields fields(SweepConfig& config) {
+  return {
+      {"undo", &config.undo, 0, 0, "", "undo the motion during a scan where the times of its points are known"},
+      {"declared_duration_s", &config.declared_duration_s, 0.0, 10.0, "s",
+       "where points have no times: the scan takes so long, column by column at an even rate; 0: taken at its stamp"},
+      {"declared_left_to_right", &config.declared_left_to_right, 0, 0, "",
+       "these columns run from left to right; off: from right to left"},
+  };
+}
+
+std::vector<double> declared_times(std::span<const Eigen::Vector3d> points, const SweepConfig& config) {
+  double low = std::numeric_limits<double>::infinity();
+  double high = -low;
+  std::vector<double> times;
+  times.reserve(points.size());
+  for (const Eigen::Vector3d& point : points) {
+    const double azimuth = std::atan2(point.y(), point.x());
+    times.push_back(azimuth);
+    if (std::isfinite(azimuth)) {
+      low = std::min(low, azimuth);
+      high = std::max(high, azimuth);
+    }
+  }
+  const double width = high > low ? high - low : 1.0;
+  for (double& time : times) {
+    const double share = std::isfinite(time) ? (time - low) / width : 0.0;  // such points are dropped later
+    time = config.declared_duration_s * (config.declared_left_to_right ? 1.0 - share : share);
+  }
+  return times;
+}
+
+SweepReport sweep_in_data(const RawScan& raw) {
+  SweepReport report;
+  report.times = raw.times.empty() ? SweepTimes::kNone : SweepTimes::kInData;
+  const TimeWindow window = plausible_times(raw.times);
+  std::optional<double> low;
+  std::optional<double> high;
+  for (const double time_s : raw.times) {
+    if (window.contains(time_s)) {
+      low = std::min(low.value_or(time_s), time_s);
+      high = std::max(high.value_or(time_s), time_s);
+    }
+  }
+  if (low) {
+    report.duration_s = *high - *low;
+  }
+  return report;
+}
+
+SweepReport sweep_as_configured(const RawScan& raw, const SweepConfig& config) {
+  SweepReport report = sweep_in_data(raw);
+  if (uses_declared_times(raw, config)) {
+    report.times = SweepTimes::kDeclared;
+    report.duration_s = config.declared_duration_s;
+  }
+  report.undone = config.undo && report.duration_s.value_or(0.0) > 0.0;
+  return report;
+}
+
+std::optional<RawScan> retimed(const RawScan& raw, const SweepConfig& config) {
+  if (!config.undo && !raw.times.empty()) {
+    RawScan timeless = raw;
+    timeless.times.clear();
+    return timeless;
+  }
+  if (config.undo && uses_declared_times(raw, config)) {
+    RawScan timed = raw;
+    timed.times = declared_times(raw.points, config);
+    return timed;
+  }
+  return std::nullopt;
+}
+
+}  // namespace dynamic_icp::motion

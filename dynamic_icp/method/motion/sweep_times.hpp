@@ -1,0 +1,50 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <span>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/base/config_field.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+
+namespace dynamic_icp::motion {
+
+/// What is done about the time a scan takes.
+struct SweepConfig {
+  bool undo = true;                     ///< off: every scan counts as taken at its stamp (ablation "no-deskew")
+  double declared_duration_s = 0.0;     ///< where points have no times: the scan takes so long, column by column; 0: no
+  bool declared_left_to_right = false;  ///< order of these columns; off: from right to left, azimuth growing
+};
+
+ConfigFields fields(SweepConfig& config);
+
+/// Times (s after the stamp) of points of a scan whose columns were measured one after the other at an even rate: the
+/// azimuth atan2(y, x) from one end of the scan to the other is the time. The x axis must look into the scan, so that
+/// it does not reach across the back.
+std::vector<double> declared_times(std::span<const Eigen::Vector3d> points, const SweepConfig& config);
+
+/// Where the times of the points of a scan come from.
+enum class SweepTimes { kNone, kInData, kDeclared };
+
+/// What was found and done about the time a scan takes.
+struct SweepReport {
+  SweepTimes times = SweepTimes::kNone;
+  std::optional<double> duration_s;  ///< from the earliest point to the latest; empty without times
+  bool undone = false;               ///< whether the method takes the motion during the scan out of it
+};
+
+/// What the scan itself says; nothing is done about it yet. Times that cannot be those of the scan do not count.
+SweepReport sweep_in_data(const RawScan& raw);
+
+/// What a method finds and does that undoes sweeps as configured.
+SweepReport sweep_as_configured(const RawScan& raw, const SweepConfig& config);
+
+/// The scan with the times that count, where these are not its own: declared ones, or none when no sweep is undone.
+/// Nothing where the scan can be used as it is.
+std::optional<RawScan> retimed(const RawScan& raw, const SweepConfig& config);
+
+}  // namespace dynamic_icp::motion
