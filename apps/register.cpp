@@ -26,7 +26,7 @@ struct RegisterOptions {
   std::string target;
   std::string calibration;
   double dt_s = 0.1;
-  datasets::InputSettings settings;  ///< how the scans are to be mended
+  datasets::InputSettings settings;  ///< how the scans are corrected
   MethodOptions method;
 };
 

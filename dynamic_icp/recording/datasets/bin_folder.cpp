@@ -63,7 +63,7 @@ fs::path find_bin_folder(const fs::path& input) {
 std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptions& options) {
   if (is_velodyne(named_path(folder))) {
     throw DataError(fmt::format(
-        "{}: looks like KITTI, whose fourth number is the reflectance and not Doppler (--format dicp reads it "
+        "{}: looks like KITTI, whose fourth number is the reflectance and not Doppler (format dicp reads it "
         "as Doppler all the same)",
         folder.string()));
   }

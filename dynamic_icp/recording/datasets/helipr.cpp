@@ -50,8 +50,8 @@ std::unique_ptr<Dataset> open_helipr(const fs::path& folder, const OpenOptions& 
   recording.assumptions = std::move(scans.assumptions);
   recording.assumptions.emplace_back(
       "the Doppler is taken as relative, the sensor's own motion in it; this is uncertain: the data set's author says "
-      "it was taken out, published work uses it as if not. 'dynamic-icp info' checks it against the motion, "
-      "--doppler-kind decides");
+      "it was taken out, published work uses it as if not; the diagnosis checks it against the motion; a stated "
+      "Doppler kind decides");
   recording.truth = named_truth(
       std::array{find_part(folder, "LiDAR_GT/Aeva_gt.txt"), find_part(folder, "LiDAR_GT/global_Aeva_gt.txt")},
       recording.stamps, recording.assumptions);

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
 
+#include <string>
+
 #include <fmt/format.h>
 
 namespace dynamic_icp::diagnosis {
@@ -17,6 +19,8 @@ std::vector<std::pair<std::string, double>> comparison_numbers(const Comparison&
           {"ratio", comparison.ratio},
           {"ratio_error", comparison.ratio_error}};
 }
+
+double rounded(double value, int digits) { return std::stod(fmt::format("{:.{}g}", value, digits)); }
 
 std::string why_unknown(const Evidence& evidence) {
   for (const Comparison* comparison : {&evidence.matching, &evidence.truth}) {

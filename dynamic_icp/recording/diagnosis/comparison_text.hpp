@@ -16,6 +16,9 @@ std::string reference_name(const Evidence& evidence, const Comparison& compariso
 /// The numbers of a comparison as evidence.
 std::vector<std::pair<std::string, double>> comparison_numbers(const Comparison& comparison);
 
+/// To so many significant digits: a factor that was measured, or is typed in again, has no more.
+double rounded(double value, int digits);
+
 /// Where nothing tells: why.
 std::string why_unknown(const Evidence& evidence);
 

@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/recording/datasets/correction.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
 
 #include "testing/synthetic_street.hpp"
 
@@ -15,6 +15,8 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 namespace synthetic = odometry::synthetic;
+using datasets::Correction;
+using datasets::DopplerSign;
 using Eigen::Vector3d;
 
 constexpr double kPeriod_s = 0.1;
@@ -120,24 +122,57 @@ TEST(Diagnosis, ATurnedSignIsFoundWithAndWithoutGroundTruth) {
     recording.spoil = flip;
     const Finding sign = diagnosis_of(recording).of(Question::kDopplerSign);
     EXPECT_EQ(sign.verdict, Verdict::kWrong) << has_truth << sign.sentence;
-    EXPECT_EQ(sign.fix, "--doppler-sign towards");
+    EXPECT_EQ(sign.fix, (Correction{.doppler_sign = DopplerSign::kTowards}));
   }
 }
 
-TEST(Diagnosis, WhatIsMendedIsHealthy) {
-  auto recording = std::make_unique<Recording>();
-  recording->spoil = flip;
-  recording->ready();
-  datasets::Correction correction;
-  correction.doppler_is_towards = true;
+TEST(Diagnosis, ApplyingTheFixesMakesTheDiagnosisClean) {
+  const std::function<void(RawScan&, const Vector3d&)> faults[] = {
+      flip, compensate,
+      [](RawScan& raw, const Vector3d&) {  // km/h, and the wrong way round
+        for (double& doppler : raw.doppler) {
+          doppler *= -3.6;
+        }
+      },
+      [](RawScan& raw, const Vector3d&) {  // millimetres
+        for (Vector3d& point : raw.points) {
+          point *= 1000.0;
+        }
+      },
+      [](RawScan& raw, const Vector3d&) {  // stored Doppler, x, y, z
+        for (std::size_t i = 0; i < raw.points.size(); ++i) {
+          const Vector3d p = raw.points[i];
+          raw.points[i] = {raw.doppler[i], p.x(), p.y()};
+          raw.doppler[i] = p.z();
+        }
+      }};
   DoctorConfig config;
   config.probes = 4;
-  const Diagnosis diagnosis = diagnose(*datasets::corrected(std::move(recording), correction), config, Workers(1));
-  EXPECT_EQ(diagnosis.of(Question::kDopplerSign).verdict, Verdict::kOk);
+  for (const auto& fault : faults) {
+    const auto spoiled = [&] {
+      auto recording = std::make_unique<Recording>();
+      recording->spoil = fault;
+      recording->ready();
+      return recording;
+    };
+    datasets::InputSettings settings;
+    for (const Finding& finding : diagnose(*spoiled(), config, Workers(1)).findings) {
+      apply(finding.fix, settings);
+    }
+    EXPECT_NE(settings.correction, Correction{});
+    config.applied = settings.correction;
+    const Diagnosis after = diagnose(*datasets::corrected(spoiled(), settings.correction), config, Workers(1));
+    config.applied = {};
+    for (const Finding& finding : after.findings) {
+      EXPECT_NE(finding.verdict, Verdict::kWrong) << finding.sentence;
+      EXPECT_NE(finding.verdict, Verdict::kSuspicious) << finding.sentence;
+      EXPECT_EQ(finding.fix, Correction{}) << finding.sentence;
+    }
+  }
 }
 
 TEST(Diagnosis, AFixTakesInWhatWasMendedWrong) {
-  const auto fix = [](Question question, const datasets::Correction& correction) {
+  const auto fix = [](Question question, const Correction& correction) {
     auto recording = std::make_unique<Recording>();
     recording->ready();
     DoctorConfig config;
@@ -145,18 +180,18 @@ TEST(Diagnosis, AFixTakesInWhatWasMendedWrong) {
     config.applied = correction;
     return diagnose(*datasets::corrected(std::move(recording), correction), config, Workers(1)).of(question).fix;
   };
-  datasets::Correction correction;
-  correction.doppler_is_towards = true;
-  EXPECT_EQ(fix(Question::kDopplerSign, correction), "--doppler-sign away");
+  Correction correction;
+  correction.doppler_sign = DopplerSign::kTowards;
+  EXPECT_EQ(fix(Question::kDopplerSign, correction), Correction{.doppler_sign = DopplerSign::kAway});
   correction = {};
   correction.doppler_scale = 3.6;
-  EXPECT_EQ(fix(Question::kDopplerUnits, correction), "--doppler-scale 1");
+  EXPECT_EQ(fix(Question::kDopplerUnits, correction), Correction{.doppler_scale = 1.0});
   correction = {};
   correction.point_scale = 1000.0;
-  EXPECT_EQ(fix(Question::kPointUnits, correction), "--point-scale 1");
+  EXPECT_EQ(fix(Question::kPointUnits, correction), Correction{.point_scale = 1.0});
   correction = {};
-  correction.columns = {3, 0, 1, 2};
-  EXPECT_EQ(fix(Question::kColumns, correction), "--columns x,y,z,doppler");
+  correction.columns = std::array{3, 0, 1, 2};
+  EXPECT_EQ(fix(Question::kColumns, correction), Correction{.columns = Correction::kInOrder});
 }
 
 TEST(Diagnosis, CompensatedDopplerIsFoundWithAndWithoutGroundTruth) {
@@ -166,7 +201,7 @@ TEST(Diagnosis, CompensatedDopplerIsFoundWithAndWithoutGroundTruth) {
     recording.spoil = compensate;
     const Diagnosis diagnosis = diagnosis_of(recording);
     EXPECT_EQ(diagnosis.of(Question::kDopplerKind).verdict, Verdict::kWrong) << has_truth;
-    EXPECT_EQ(diagnosis.of(Question::kDopplerKind).fix, "--doppler-kind compensated");
+    EXPECT_EQ(diagnosis.of(Question::kDopplerKind).fix, Correction{.doppler_kind = DopplerKind::kCompensated});
     EXPECT_EQ(diagnosis.of(Question::kDopplerSign).verdict, Verdict::kCannotTell);
   }
 }
@@ -178,7 +213,7 @@ TEST(Diagnosis, TheKindIsJudgedAgainstWhatTheLayoutSays) {
   EXPECT_EQ(diagnosis_of(compensated).of(Question::kDopplerKind).verdict, Verdict::kOk);
   Recording relative;
   relative.kind = DopplerKind::kCompensated;
-  EXPECT_EQ(diagnosis_of(relative).of(Question::kDopplerKind).fix, "--doppler-kind relative");
+  EXPECT_EQ(diagnosis_of(relative).of(Question::kDopplerKind).fix, Correction{.doppler_kind = DopplerKind::kRelative});
 }
 
 TEST(Diagnosis, NothingIsClaimedOfAVehicleThatStands) {
@@ -247,7 +282,7 @@ TEST(Diagnosis, AColumnOfZerosIsNoDoppler) {
   };
   for (const bool has_truth : {true, false}) {
     EXPECT_EQ(kind_of(9.0, has_truth).verdict, Verdict::kWrong);
-    EXPECT_EQ(kind_of(9.0, has_truth).fix, "--doppler-kind compensated");
+    EXPECT_EQ(kind_of(9.0, has_truth).fix, Correction{.doppler_kind = DopplerKind::kCompensated});
     EXPECT_EQ(kind_of(0.0, has_truth).verdict, Verdict::kCannotTell) << "without noise it stands still like that";
   }
 }
@@ -302,7 +337,7 @@ TEST(Diagnosis, KilometresPerHourAndMillimetresAreFound) {
       doppler *= 3.6;
     }
   };
-  EXPECT_EQ(diagnosis_of(speed).of(Question::kDopplerUnits).fix, "--doppler-scale 0.277778");
+  EXPECT_EQ(diagnosis_of(speed).of(Question::kDopplerUnits).fix, Correction{.doppler_scale = 0.277778});
   Recording points;
   points.spoil = [](RawScan& raw, const Vector3d&) {
     for (Vector3d& point : raw.points) {
@@ -310,7 +345,7 @@ TEST(Diagnosis, KilometresPerHourAndMillimetresAreFound) {
     }
   };
   const Diagnosis diagnosis = diagnosis_of(points);
-  EXPECT_EQ(diagnosis.of(Question::kPointUnits).fix, "--point-scale 0.001");
+  EXPECT_EQ(diagnosis.of(Question::kPointUnits).fix, Correction{.point_scale = 0.001});
   EXPECT_EQ(diagnosis.of(Question::kDopplerSign).verdict, Verdict::kOk) << "the rest is looked at in metres";
 }
 
@@ -324,8 +359,7 @@ TEST(Diagnosis, CentimetresAndFeetAreToldByTheWay) {
     };
     const Finding units = diagnosis_of(points).of(Question::kPointUnits);
     EXPECT_EQ(units.verdict, Verdict::kWrong) << per_metre;
-    ASSERT_TRUE(units.fix.starts_with("--point-scale ")) << units.fix;
-    EXPECT_NEAR(std::stod(units.fix.substr(14)), scale, 0.05 * scale) << per_metre;
+    EXPECT_NEAR(units.fix.point_scale.value_or(1.0), scale, 0.05 * scale) << per_metre;
   }
 }
 
@@ -334,7 +368,7 @@ TEST(Diagnosis, AWrongGroundTruthIsNotBlamedOnTheClock) {
   recording.truth_scale = 2.0;
   const Finding clock = diagnosis_of(recording).of(Question::kTimeScale);
   EXPECT_EQ(clock.verdict, Verdict::kSuspicious) << clock.sentence;
-  EXPECT_EQ(clock.fix, "");
+  EXPECT_EQ(clock.fix, Correction{});
   EXPECT_NE(clock.sentence.find("ground truth"), std::string::npos) << clock.sentence;
 }
 
@@ -349,7 +383,7 @@ TEST(Diagnosis, ColumnsInAnotherOrderAreFound) {
   };
   const Finding order = diagnosis_of(first).of(Question::kColumns);
   EXPECT_EQ(order.verdict, Verdict::kWrong);
-  EXPECT_EQ(order.fix, "--columns doppler,x,y,z");
+  EXPECT_EQ(order.fix, (Correction{.columns = std::array{1, 2, 3, 0}}));
   Recording upright;
   upright.has_truth = false;
   upright.spoil = [](RawScan& raw, const Vector3d&) {  // stored x, z, y, Doppler
@@ -357,7 +391,7 @@ TEST(Diagnosis, ColumnsInAnotherOrderAreFound) {
       std::swap(point.y(), point.z());
     }
   };
-  EXPECT_EQ(diagnosis_of(upright).of(Question::kColumns).fix, "--columns x,z,y,doppler");
+  EXPECT_EQ(diagnosis_of(upright).of(Question::kColumns).fix, (Correction{.columns = std::array{0, 2, 1, 3}}));
 }
 
 TEST(Diagnosis, StampsThatRunFastAreFound) {
@@ -365,7 +399,7 @@ TEST(Diagnosis, StampsThatRunFastAreFound) {
   recording.stamp_factor = 1.2;
   const Finding scale = diagnosis_of(recording).of(Question::kTimeScale);
   EXPECT_EQ(scale.verdict, Verdict::kWrong);
-  EXPECT_NEAR(std::stod(scale.fix.substr(scale.fix.find(' '))), 1.0 / 1.2, 0.03);
+  EXPECT_NEAR(scale.fix.time_scale.value_or(1.0), 1.0 / 1.2, 0.03);
 }
 
 TEST(Diagnosis, ATurnedSensorIsTold) {

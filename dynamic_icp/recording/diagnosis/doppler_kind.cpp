@@ -25,7 +25,7 @@ Finding relative(const Evidence& evidence, double speed) {
   if (expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
     finding.sentence += ", but the Doppler is said to be compensated";
-    finding.fix = "--doppler-kind relative";
+    finding.fix.doppler_kind = DopplerKind::kRelative;
   }
   return finding;
 }
@@ -37,7 +37,7 @@ Finding compensated(const Evidence& evidence, const Comparison& reference) {
   if (!expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
     finding.sentence += "; its own motion was taken out of the Doppler already";
-    finding.fix = "--doppler-kind compensated";
+    finding.fix.doppler_kind = DopplerKind::kCompensated;
   }
   return finding;
 }
@@ -51,7 +51,7 @@ Finding without_doppler(const Evidence& evidence, const NoDoppler& none) {
   } else if (expects_compensated(evidence) && none.is_zero) {
     finding.verdict = Verdict::kSuspicious;
   } else if (none.is_zero) {
-    finding.fix = "--doppler-kind compensated";
+    finding.fix.doppler_kind = DopplerKind::kCompensated;
   }
   finding.evidence = none.evidence;
   return finding;

@@ -49,11 +49,14 @@ Finding doppler_sign(const Evidence& evidence) {
   }
   if (reference->doppler_speed_mps < kMoving_mps) {
     return {
-        Question::kDopplerSign, Verdict::kCannotTell,
+        Question::kDopplerSign,
+        Verdict::kCannotTell,
         fmt::format("positive away from the sensor is assumed: the Doppler shows {:.1f} m/s where the sensor moves at "
                     "{:.1f} m/s {}",
                     reference->doppler_speed_mps, reference->reference_speed_mps, reference_name(evidence, *reference)),
-        "", comparison_numbers(*reference)};
+        {},
+        false,
+        comparison_numbers(*reference)};
   }
   Finding finding{Question::kDopplerSign, Verdict::kOk, ""};
   finding.evidence = comparison_numbers(*reference);
@@ -70,7 +73,9 @@ Finding doppler_sign(const Evidence& evidence) {
           "; or points and Doppler are right and the sensor is turned by 180 degrees against that of the ground truth: "
           "no scans could be matched to tell";
     }
-    finding.fix = evidence.applied.doppler_is_towards ? "--doppler-sign away" : "--doppler-sign towards";
+    finding.fix.doppler_sign = evidence.applied.doppler_sign == datasets::DopplerSign::kTowards
+                                   ? datasets::DopplerSign::kAway
+                                   : datasets::DopplerSign::kTowards;
   } else {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = fmt::format(

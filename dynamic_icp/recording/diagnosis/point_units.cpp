@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -61,11 +62,11 @@ Finding point_units(const Evidence& evidence) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format(
         "the points move {:.2f} times as far as ground truth and Doppler both say: these are not metres", *farther);
-    finding.fix = fmt::format("--point-scale {:.4g}", evidence.applied.point_scale / *farther);
+    finding.fix.point_scale = rounded(evidence.applied.point_scale.value_or(1.0) / *farther, 4);
   } else if (factor != 1.0) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format("95 % of the points are nearer than {:.4g}: these are not metres", as_stored);
-    finding.fix = fmt::format("--point-scale {:g}", evidence.applied.point_scale * factor);
+    finding.fix.point_scale = rounded(evidence.applied.point_scale.value_or(1.0) * factor, 6);
   } else {
     finding.sentence = fmt::format("m: 95 % of the points are nearer than {:.1f} m", as_stored);
   }
