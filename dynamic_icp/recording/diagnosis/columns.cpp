@@ -5,7 +5,7 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -15,7 +15,6 @@ constexpr double kClearlyFlat = 0.5;  // spread of the flat axis over that of th
 constexpr double kFlat = 0.35;
 constexpr double kLooksAhead = 0.4;  // length of the mean line of sight
 constexpr double kAlongAxis = 0.9;   // cosine
-constexpr double kMoving_mps = 1.0;
 constexpr double kUnexplained_mps = 0.25;
 
 struct View {
@@ -48,7 +47,7 @@ int up_axis(const View& view) {
 
 /// The axis along which the sensor both looks and moves; nothing where there is none.
 std::optional<int> forward_axis(const View& view, int up) {
-  if (view.looks.norm() < kLooksAhead || view.moves.norm() < kMoving_mps) {
+  if (view.looks.norm() < kLooksAhead || view.moves.norm() < kMoves_mps) {
     return std::nullopt;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -111,8 +110,7 @@ Finding columns(const Evidence& evidence) {
     finding.verdict = Verdict::kSuspicious;
     finding.sentence = fmt::format(
         "column {} may be the Doppler: a velocity explains it to {:.2f} m/s and the last column to {:.2f}, neither "
-        "well; "
-        "if so, state the order of the columns",
+        "well; if so, state the order of the columns",
         scores.likely_doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.likely_doppler)),
         scores.residual[3]);
   } else if (up != 2) {
@@ -129,8 +127,7 @@ Finding columns(const Evidence& evidence) {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = fmt::format(
         "a velocity explains no column well, the last one to {:.2f} m/s: most of what is seen moves, or the columns "
-        "are "
-        "in another order",
+        "are in another order",
         scores.residual[3]);
   } else {
     finding.sentence = "x, y, z, Doppler";

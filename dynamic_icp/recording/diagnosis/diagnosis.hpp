@@ -48,8 +48,8 @@ std::string_view to_string(Verdict verdict);
 struct Finding {
   Question question = Question::kDopplerSign;
   Verdict verdict = Verdict::kCannotTell;
-  std::string sentence;           ///< for the user
-  datasets::Correction fix = {};  ///< what corrects it, with what was applied already; states nothing where none does
+  std::string sentence = {};          ///< for the user
+  datasets::Correction fix = {};      ///< what corrects it, with what was applied already; empty where nothing does
   bool needs_doppler_column = false;  ///< another column must be named to be the Doppler (OpenOptions::fields)
   std::vector<std::pair<std::string, double>> evidence = {};  ///< numbers by name; the unit ends the name
 };

@@ -4,15 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
-#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kStill_mps = 0.5;
-constexpr double kMoves_mps = 1.0;
 constexpr double kShareLeft = 0.25;
 
 bool expects_compensated(const Evidence& evidence) {
@@ -68,7 +65,7 @@ Finding doppler_kind(const Evidence& evidence) {
   }
   if (speed > kMoves_mps) {
     finding = relative(evidence, speed);
-  } else if (reference != nullptr && speed < kStill_mps && speed < kShareLeft * reference->reference_speed_mps) {
+  } else if (reference != nullptr && speed < kStandsStill_mps && speed < kShareLeft * reference->reference_speed_mps) {
     finding = compensated(evidence, *reference);
   } else {
     finding.sentence = fmt::format(

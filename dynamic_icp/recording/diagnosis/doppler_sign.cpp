@@ -4,13 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kMoving_mps = 1.0;
 constexpr double kAlong_deg = 60.0;
 
 /// The mean velocity of all looks, in the axes of the sensor.
@@ -26,7 +25,7 @@ Finding without_reference(const Evidence& evidence) {
   Finding finding{Question::kDopplerSign, Verdict::kCannotTell, ""};
   const double speed = evidence.doppler_speed_mps().value_or(0.0);
   finding.evidence = {{"doppler_speed_mps", speed}};
-  if (speed < kMoving_mps) {
+  if (speed < kMoves_mps) {
     finding.sentence = fmt::format("positive away from the sensor is assumed: {}", why_unknown(evidence));
   } else if (mean_velocity(evidence).x() > 0.0) {
     finding.sentence =
@@ -47,7 +46,7 @@ Finding doppler_sign(const Evidence& evidence) {
   if (reference == nullptr) {
     return without_reference(evidence);
   }
-  if (reference->doppler_speed_mps < kMoving_mps) {
+  if (reference->doppler_speed_mps < kMoves_mps) {
     return {
         Question::kDopplerSign,
         Verdict::kCannotTell,

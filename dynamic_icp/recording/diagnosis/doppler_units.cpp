@@ -2,20 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
-#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
-#include "dynamic_icp/recording/diagnosis/speed_ratio.hpp"
 
 namespace dynamic_icp::diagnosis {
 
 Finding doppler_units(const Evidence& evidence) {
   Finding finding{Question::kDopplerUnits, Verdict::kOk, ""};
-  std::vector<double> fast;
-  for (const ScanLook& look : evidence.looks) {
-    fast.push_back(look.fast_mps / evidence.units.doppler);
-  }
-  const double as_stored = quantile(std::move(fast), 0.5);
+  const double as_stored = evidence.median_of(&ScanLook::fast_mps) / evidence.units.doppler;
   finding.evidence = {{"doppler_95_percent", as_stored}};
   const std::optional<SpeedRatio> speed = speed_ratio(evidence);
   if (speed) {

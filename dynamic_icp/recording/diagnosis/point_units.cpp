@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -21,7 +21,7 @@ std::optional<double> scale_by_motion(const Evidence& evidence) {
   if (evidence.truth.tells() && evidence.truth.reference_speed_mps > 0.0) {
     return matching.reference_speed_mps / evidence.truth.reference_speed_mps;
   }
-  return matching.doppler_speed_mps > 1.0 ? std::optional(1.0 / std::abs(matching.ratio)) : std::nullopt;
+  return matching.doppler_speed_mps > kMoves_mps ? std::optional(1.0 / std::abs(matching.ratio)) : std::nullopt;
 }
 
 /// How much farther the sensor moves by the points than by ground truth and Doppler, which agree; nothing where they do
@@ -39,11 +39,7 @@ std::optional<double> farther_than_both(const Evidence& evidence) {
 
 Finding point_units(const Evidence& evidence) {
   Finding finding{Question::kPointUnits, Verdict::kOk, ""};
-  std::vector<double> far;
-  for (const ScanLook& look : evidence.looks) {
-    far.push_back(look.far_m / evidence.units.points);
-  }
-  const double as_stored = quantile(std::move(far), 0.5);
+  const double as_stored = evidence.median_of(&ScanLook::far_m) / evidence.units.points;
   finding.evidence = {{"distance_95_percent", as_stored}};
   if (!(as_stored > 0.0)) {
     finding.verdict = Verdict::kCannotTell;

@@ -4,7 +4,7 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {

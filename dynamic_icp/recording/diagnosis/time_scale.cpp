@@ -4,9 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
-#include "dynamic_icp/recording/diagnosis/speed_ratio.hpp"
 
 namespace dynamic_icp::diagnosis {
 

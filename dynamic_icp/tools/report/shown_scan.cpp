@@ -20,7 +20,6 @@ namespace {
 using figures::FrameRow;
 using figures::RunFiles;
 
-constexpr double kMoving_mps = 0.5;  // compensated Doppler beyond which a point counts as moving
 
 /// What the run was told about sweeps.
 preprocess::SweepConfig sweep_config(const RunFiles& run) {

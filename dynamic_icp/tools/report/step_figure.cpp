@@ -206,7 +206,6 @@ void draw_objects(Sheet& sheet, const GroundView& view, const RunFiles& run, con
   sheet.points(points_where(pair.source_scan, [&](std::size_t i) { return pair.source_scan.labels[i] < kDynamic; }),
                theme.doppler[theme.doppler.size() / 2]);
   for (const evaluation::TrueObject& object : pair.true_objects) {
-    constexpr double kMoving_mps = 0.5;
     if (object.points > 0 && object.velocity.norm() > kMoving_mps) {
       sheet.arrow(object.center, object.velocity, theme.series[3], 5.0);
     }
