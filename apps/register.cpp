@@ -8,8 +8,8 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
-#include "dynamic_icp/recording/datasets/dicp.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/formats/xyzd_bin.hpp"
 #include "dynamic_icp/tools/results/frame_json.hpp"
 
