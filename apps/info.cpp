@@ -173,8 +173,8 @@ void print_diagnosis(const diagnosis::Diagnosis& diagnosis) {
   for (const diagnosis::Finding& finding : diagnosis.findings) {
     fmt::print("  {:<15} {:<11} {}\n", diagnosis::to_string(finding.question), diagnosis::to_string(finding.verdict),
                finding.sentence);
-    if (!finding.fix.empty()) {
-      fmt::print("  {:<15} {:<11} mend it with {}\n", "", "", finding.fix);
+    if (const std::string fix = fixing_options(finding); !fix.empty()) {
+      fmt::print("  {:<15} {:<11} fix with {}\n", "", "", fix);
     }
   }
 }
@@ -186,10 +186,11 @@ Json diagnosis_json(const diagnosis::Diagnosis& diagnosis) {
     for (const auto& [name, value] : finding.evidence) {
       evidence[name] = value;  // what is not finite becomes null
     }
+    const std::string fix = fixing_options(finding);
     list.push_back({{"question", diagnosis::to_string(finding.question)},
                     {"verdict", diagnosis::to_string(finding.verdict)},
                     {"sentence", finding.sentence},
-                    {"fix", finding.fix.empty() ? Json(nullptr) : Json(finding.fix)},
+                    {"fix", fix.empty() ? Json(nullptr) : Json(fix)},
                     {"evidence", evidence}});
   }
   return list;

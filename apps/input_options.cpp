@@ -12,11 +12,19 @@
 namespace dynamic_icp::apps {
 namespace {
 
+void set_option(datasets::InputSettings& settings, const std::string& name, const std::string& text) {
+  try {
+    datasets::set(settings, name, text);
+  } catch (const UsageError& error) {
+    throw UsageError(fmt::format("--{}", error.what()));  // the message begins with the name of the setting
+  }
+}
+
 void add(CLI::App& command, datasets::InputSettings& settings, const std::string& name, const char* type,
          const std::string& description) {
   command
       .add_option_function<std::string>(
-          "--" + name, [&settings, name](const std::string& text) { datasets::set(settings, name, text); }, description)
+          "--" + name, [&settings, name](const std::string& text) { set_option(settings, name, text); }, description)
       ->type_name(type);
 }
 
@@ -71,6 +79,18 @@ void add_correction_options(CLI::App& command, datasets::InputSettings& settings
   add(command, settings, "point-scale", "F", "Factor that makes coordinates m, e.g. 0.001 for mm (default 1)");
   add(command, settings, "columns", "LIST",
       "What the stored columns are: a permutation of x,y,z,doppler (default x,y,z,doppler)");
+}
+
+std::string as_options(const datasets::Correction& correction) {
+  std::string options;
+  for (const auto& [name, text] : datasets::texts({.open = {}, .correction = correction})) {
+    options += fmt::format("{}--{} {}", options.empty() ? "" : " ", name, text);
+  }
+  return options;
+}
+
+std::string fixing_options(const diagnosis::Finding& finding) {
+  return finding.needs_doppler_column ? "--field doppler=COLUMN" : as_options(finding.fix);
 }
 
 }  // namespace dynamic_icp::apps

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
 namespace CLI {
 class App;
@@ -17,7 +18,13 @@ namespace dynamic_icp::apps {
 /// about a recording.
 void add_input_options(CLI::App& command, datasets::InputSettings& settings);
 
-/// --doppler-sign, --doppler-kind, --doppler-scale, --point-scale, --columns: how numbers of a scan are to be mended.
+/// --doppler-sign, --doppler-kind, --doppler-scale, --point-scale, --columns: how numbers of a scan are corrected.
 void add_correction_options(CLI::App& command, datasets::InputSettings& settings);
+
+/// The options that state a correction; "" where it states nothing.
+std::string as_options(const datasets::Correction& correction);
+
+/// The options that fix what is found; "" where none do.
+std::string fixing_options(const diagnosis::Finding& finding);
 
 }  // namespace dynamic_icp::apps

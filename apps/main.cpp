@@ -10,6 +10,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/version.hpp"
+#include "dynamic_icp/recording/formats/output_folder.hpp"
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
@@ -98,6 +99,8 @@ int main(int argc, char** argv) {
                   kWrongUsage);
   } catch (const UsageError& error) {
     return report(error.what(), kWrongUsage);
+  } catch (const dynamic_icp::formats::EarlierResult& error) {
+    return report(fmt::format("{}; use --force to replace it", error.what()), kDataOrMachineFailed);
   } catch (const std::bad_alloc&) {
     return report("the machine has no memory left", kDataOrMachineFailed);
   } catch (const std::system_error& error) {

@@ -9,6 +9,8 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
+#include "apps/input_options.hpp"
+
 namespace dynamic_icp::apps {
 namespace {
 
@@ -40,19 +42,19 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   for (const diagnosis::Finding& finding : diagnosis.findings) {
     const bool is_sign = finding.question == diagnosis::Question::kDopplerSign;
     const bool is_kind = finding.question == diagnosis::Question::kDopplerKind;
-    const bool is_said = (is_sign && settings.doppler_sign_is_said) ||
-                         (is_kind && (settings.correction.doppler_kind || !diagnosis.has_doppler));
-    if (finding.verdict == diagnosis::Verdict::kWrong && (is_sign || is_kind) && !is_said) {
-      throw DataError(fmt::format(
-          "{}: the Doppler is {}. Run with {}; or say that it is not so with {}", dataset.scan_file(begin).string(),
-          finding.sentence, finding.fix,
-          is_sign ? (settings.correction.doppler_is_towards ? "--doppler-sign towards" : "--doppler-sign away")
-          : dataset.doppler_kind() == DopplerKind::kRelative ? "--doppler-kind relative"
-                                                             : "--doppler-kind compensated"));
+    const bool is_stated = (is_sign && settings.correction.doppler_sign) ||
+                           (is_kind && (settings.correction.doppler_kind || !diagnosis.has_doppler));
+    if (finding.verdict == diagnosis::Verdict::kWrong && (is_sign || is_kind) && !is_stated) {
+      const datasets::Correction as_it_is = is_sign ? datasets::Correction{.doppler_sign = datasets::DopplerSign::kAway}
+                                                    : datasets::Correction{.doppler_kind = dataset.doppler_kind()};
+      throw DataError(fmt::format("{}: the Doppler is {}. Run with {}; or say that it is not so with {}",
+                                  dataset.scan_file(begin).string(), finding.sentence, fixing_options(finding),
+                                  as_options(as_it_is)));
     }
     if (finding.verdict == diagnosis::Verdict::kWrong || finding.verdict == diagnosis::Verdict::kSuspicious) {
+      const std::string fix = fixing_options(finding);
       check.warnings.push_back(fmt::format("{}: {}{}", diagnosis::to_string(finding.question), finding.sentence,
-                                           finding.fix.empty() ? "" : "; mend it with " + finding.fix));
+                                           fix.empty() ? "" : "; fix with " + fix));
     }
   }
   return check;

@@ -8,8 +8,8 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
-#include "dynamic_icp/recording/datasets/dicp.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/formats/xyzd_bin.hpp"
 #include "dynamic_icp/tools/results/frame_json.hpp"
 
@@ -26,7 +26,7 @@ struct RegisterOptions {
   std::string target;
   std::string calibration;
   double dt_s = 0.1;
-  datasets::InputSettings settings;  ///< how the scans are to be mended
+  datasets::InputSettings settings;  ///< how the scans are corrected
   MethodOptions method;
 };
 

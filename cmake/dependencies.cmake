@@ -22,6 +22,14 @@ if(DYNAMIC_ICP_BUILD_IO OR DYNAMIC_ICP_NEEDS_TOOLS)
     set_target_properties(libzip::zip PROPERTIES IMPORTED_LOCATION ${DYNAMIC_ICP_LIBZIP_LIBRARY}
       INTERFACE_INCLUDE_DIRECTORIES ${DYNAMIC_ICP_LIBZIP_INCLUDE_DIR})
   endif()
+  # Without CMake files in older distributions; the header lies in a folder of its own or not.
+  if(NOT TARGET liblzf::lzf)
+    find_path(DYNAMIC_ICP_LIBLZF_INCLUDE_DIR lzf.h PATH_SUFFIXES liblzf REQUIRED)
+    find_library(DYNAMIC_ICP_LIBLZF_LIBRARY lzf REQUIRED)
+    add_library(liblzf::lzf UNKNOWN IMPORTED GLOBAL)
+    set_target_properties(liblzf::lzf PROPERTIES IMPORTED_LOCATION ${DYNAMIC_ICP_LIBLZF_LIBRARY}
+      INTERFACE_INCLUDE_DIRECTORIES ${DYNAMIC_ICP_LIBLZF_INCLUDE_DIR})
+  endif()
 endif()
 
 if(DYNAMIC_ICP_NEEDS_TOOLS)

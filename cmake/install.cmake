@@ -37,7 +37,7 @@ dynamic_icp_library(core method Eigen3::Eigen)
 target_link_libraries(dynamic_icp_core PRIVATE fmt::fmt pthread)
 if(DYNAMIC_ICP_BUILD_IO)
   dynamic_icp_library(io recording dynamic_icp_core)
-  target_link_libraries(dynamic_icp_io PRIVATE fmt::fmt yaml-cpp::yaml-cpp libzip::zip)
+  target_link_libraries(dynamic_icp_io PRIVATE fmt::fmt yaml-cpp::yaml-cpp libzip::zip liblzf::lzf)
 endif()
 
 if(DYNAMIC_ICP_INSTALL)

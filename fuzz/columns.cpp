@@ -3,7 +3,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
-#include "dynamic_icp/recording/datasets/column_folder.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 
 #include "fuzz/memory_file.hpp"
 

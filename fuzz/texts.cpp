@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: MIT
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/datasets/boreas.hpp"
-#include "dynamic_icp/recording/datasets/dicp.hpp"
-#include "dynamic_icp/recording/datasets/hercules.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 
 #include "fuzz/memory_file.hpp"
 

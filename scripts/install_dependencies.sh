@@ -7,7 +7,7 @@ set -euo pipefail
 
 optional=()
 packages=(g++ cmake ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
-  libpng-dev libembree-dev libzip-dev zlib1g-dev)
+  libpng-dev libembree-dev libzip-dev liblzf-dev zlib1g-dev)
 for purpose in "$@"; do
   case $purpose in
     tests)

@@ -125,5 +125,41 @@ TEST(Documents, EverySceneHasAPicture) {
   EXPECT_GE(scenes, 11);
 }
 
+/// The string literals of a line of C++, where it is no comment.
+std::vector<std::string> literals(const std::string& line) {
+  static const std::regex kPiece(R"re(//.*|'(?:\\.|[^'])'|"((?:\\.|[^"\\])*)")re");
+  std::vector<std::string> found;
+  for (std::sregex_iterator piece(line.begin(), line.end(), kPiece), end; piece != end; ++piece) {
+    if ((*piece)[1].matched) {
+      found.push_back((*piece)[1]);
+    }
+  }
+  return found;
+}
+
+// A message of the library is also read by those who call it from C++ or Python: the program names the options.
+TEST(Documents, NoMessageOfTheLibrarySpeaksOfOptions) {
+  const std::regex option(R"((^|[^\w(-])--(\{|[a-z]))");
+  EXPECT_EQ(literals(R"(f("a \"b\" --c", '"', "d");  // "--e")"), (std::vector<std::string>{R"(a \"b\" --c)", "d"}));
+  EXPECT_TRUE(std::regex_search("use --force", option));
+  int sources = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(source_folder() / "dynamic_icp")) {
+    const std::string name = entry.path().filename().string();
+    const bool is_source = entry.path().extension() == ".cpp" || entry.path().extension() == ".hpp";
+    // The benchmark starts the program with options.
+    if (!is_source || name.ends_with("_test.cpp") || name == "cell_plan.cpp" || name == "cell_run.cpp") {
+      continue;
+    }
+    std::istringstream lines(read_file(entry.path()));
+    for (std::string line; std::getline(lines, line);) {
+      for (const std::string& literal : literals(line)) {
+        EXPECT_FALSE(std::regex_search(literal, option)) << entry.path() << ": " << line;
+      }
+    }
+    ++sources;
+  }
+  EXPECT_GT(sources, 100);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tests

@@ -427,7 +427,7 @@ TEST_F(EndToEnd, ReportRefusesWhatItCannotShow) {
       {out + " --frames 1-", 2, "--frames is '1-'"},
       {out + " --frames 3-1", 2, "--frames is '3-1'"},
       {out + " --frames 1,,2", 2, "--frames is '1,,2'"},
-      {out + " --frames 100000", 2, "--frames names 100000"},
+      {out + " --frames 100000", 2, "scan 100000 is asked for"},
       {out + " --budget-mb 0", 2, "--budget-mb"},
       {out + " --budget-mb nan", 2, "--budget-mb is nan"},
       {out + " --threads 100000", 2, "--threads"},

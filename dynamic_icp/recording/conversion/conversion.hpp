@@ -26,7 +26,7 @@ struct ScanRange {
 };
 
 /// Writes scans of a recording into a folder, which exists and is empty, in another layout:
-///   dicp  as datasets/dicp.hpp has it, with one pose for each scan, interpolated where the truth has other stamps
+///   dicp  as datasets/layouts.hpp has it, with one pose for each scan, interpolated where the truth has other stamps
 ///   npz   <stamp>.npz with points (N, 3), doppler, time_offset_ns or time_offset_s, los (N, 3) and the other columns
 ///   pcd   <stamp>.pcd, binary, with x, y, z, doppler and so on; los_x, los_y, los_z
 ///   ply   <stamp>.ply, the same

@@ -1,7 +1,5 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/aevascenes.hpp"
-
 #include <algorithm>
 #include <array>
 
@@ -12,6 +10,7 @@
 #include "dynamic_icp/recording/datasets/aevascenes_sequence.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/foreign_numbers.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 
 namespace dynamic_icp::datasets {

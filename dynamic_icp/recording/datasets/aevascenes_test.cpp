@@ -1,12 +1,11 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/aevascenes.hpp"
-
 #include <cmath>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 

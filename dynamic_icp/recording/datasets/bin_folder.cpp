@@ -1,7 +1,5 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/bin_folder.hpp"
-
 #include <algorithm>
 #include <array>
 #include <string>
@@ -12,6 +10,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/record_dataset.hpp"
 #include "dynamic_icp/recording/datasets/record_guess.hpp"
 #include "dynamic_icp/recording/formats/record_file.hpp"
@@ -63,7 +62,7 @@ fs::path find_bin_folder(const fs::path& input) {
 std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptions& options) {
   if (is_velodyne(named_path(folder))) {
     throw DataError(fmt::format(
-        "{}: looks like KITTI, whose fourth number is the reflectance and not Doppler (--format dicp reads it "
+        "{}: looks like KITTI, whose fourth number is the reflectance and not Doppler (format dicp reads it "
         "as Doppler all the same)",
         folder.string()));
   }
@@ -75,12 +74,11 @@ std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptio
   }
   RecordRecording recording;
   recording.format = "bin";
-  recording.files = std::move(scans.files);
-  recording.stamps = std::move(scans.stamps);
-  recording.assumptions = std::move(scans.assumptions);
+  recording.scans = std::move(scans);
   recording.layout_of = [layout](const fs::path&, Stamp) -> const RecordLayout& { return *layout; };
-  recording.assumptions.push_back(fmt::format("only *.bin files: read as records of {} bytes ({}), as {} looks like",
-                                              layout->bytes, layout->name, first.filename().string()));
+  recording.scans.assumptions.push_back(
+      fmt::format("only *.bin files: read as records of {} bytes ({}), as {} looks like", layout->bytes, layout->name,
+                  first.filename().string()));
   return make_record_dataset(std::move(recording));
 }
 

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/bin_folder.hpp"
-
 #include <functional>
+
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 
 #include "testing/recording_by_hand.hpp"
 

@@ -1,7 +1,5 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/boreas.hpp"
-
 #include <algorithm>
 #include <array>
 #include <string>
@@ -12,6 +10,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
 #include "dynamic_icp/recording/datasets/record_dataset.hpp"
 #include "dynamic_icp/recording/datasets/record_guess.hpp"
@@ -88,15 +87,12 @@ const RecordLayout& layout_of(const std::vector<fs::path>& files) {
 }
 
 RecordRecording aeva_recording(const fs::path& folder, const OpenOptions& options) {
-  StampedFiles scans = stamped_files(child(folder, "aeva"), ".bin", options.period_s);
   RecordRecording recording;
-  recording.files = std::move(scans.files);
-  recording.stamps = std::move(scans.stamps);
-  recording.assumptions = std::move(scans.assumptions);
-  const RecordLayout& layout = layout_of(recording.files);
+  recording.scans = stamped_files(child(folder, "aeva"), ".bin", options.period_s);
+  const RecordLayout& layout = layout_of(recording.scans.files);
   recording.layout_of = [&layout](const fs::path&, Stamp) -> const RecordLayout& { return layout; };
   if (&layout != &formats::kBoreas40) {
-    recording.assumptions.push_back(fmt::format(
+    recording.scans.assumptions.push_back(fmt::format(
         "the scans are read as records of {} bytes (Boreas-Aeva); the tables of Doppler bias of that data set are not "
         "applied",
         layout.bytes));
@@ -114,20 +110,20 @@ RecordRecording aeva_recording(const fs::path& folder, const OpenOptions& option
 
 RecordRecording frames_recording(const fs::path& folder) {
   RecordRecording recording;
-  recording.files = numbered_files(child(folder, "frames"), ".bin");
+  recording.scans.files = numbered_files(child(folder, "frames"), ".bin");
   recording.layout_of = [](const fs::path&, Stamp) -> const RecordLayout& { return formats::kXyzdTime; };
   const fs::path times = child(folder, "timestamps.txt");
-  recording.stamps = read_boreas_times(times);
-  check_rows(times, recording.stamps.size(), recording.files.size());
+  recording.scans.stamps = read_boreas_times(times);
+  check_rows(times, recording.scans.stamps.size(), recording.scans.files.size());
   const fs::path poses = child(folder, "aeva_poses.txt");
   if (poses.empty()) {
     return recording;
   }
   const auto pose_lines = lines_of(poses);
-  check_rows(poses, pose_lines.size(), recording.files.size());
+  check_rows(poses, pose_lines.size(), recording.scans.files.size());
   for (std::size_t i = 0; i < pose_lines.size(); ++i) {
     const auto& [place, line] = pose_lines[i];
-    recording.truth.poses.push_back({recording.stamps[i], rigid_transform(numbers_in(line, place), place)});
+    recording.truth.poses.push_back({recording.scans.stamps[i], rigid_transform(numbers_in(line, place), place)});
   }
   recording.truth = {near_origin(std::move(recording.truth.poses)), poses};
   return recording;

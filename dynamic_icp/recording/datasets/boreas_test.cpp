@@ -1,9 +1,9 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/boreas.hpp"
-
 #include <cmath>
 #include <limits>
+
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 
 #include "testing/recording_by_hand.hpp"
 

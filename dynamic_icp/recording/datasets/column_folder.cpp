@@ -1,7 +1,5 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/column_folder.hpp"
-
 #include <algorithm>
 #include <map>
 
@@ -13,6 +11,7 @@
 #include "dynamic_icp/recording/datasets/field_names.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/foreign_numbers.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
 #include "dynamic_icp/recording/datasets/point_times.hpp"
 #include "dynamic_icp/recording/datasets/scan_stamps.hpp"

@@ -1,13 +1,12 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/column_folder.hpp"
-
 #include <cmath>
 #include <limits>
 
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 

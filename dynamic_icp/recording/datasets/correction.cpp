@@ -18,12 +18,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<int, 4> kInOrder = {0, 1, 2, 3};
 constexpr long double kStampEnd = 9223372036854775808.0L;  // ns, the first that 64 bits do not hold
 
-void check_scale(const char* what, double scale) {
-  if (!(std::isfinite(scale) && scale > 0.0)) {
-    throw UsageError(fmt::format("{} is {}, expected a finite number above 0", what, scale));
+void check_scale(const char* what, std::optional<double> scale) {
+  if (scale && !(std::isfinite(*scale) && *scale > 0.0)) {
+    throw UsageError(fmt::format("{} is {}, expected a finite number above 0", what, *scale));
   }
 }
 
@@ -46,7 +45,10 @@ void reorder_columns(RawScan& scan, const std::array<int, 4>& columns) {
 class CorrectedDataset final : public Dataset {
  public:
   CorrectedDataset(std::unique_ptr<Dataset> dataset, const Correction& correction)
-      : dataset_(std::move(dataset)), correction_(correction), ground_truth_(dataset_->ground_truth()) {
+      : dataset_(std::move(dataset)),
+        correction_(correction),
+        time_scale_(correction.time_scale.value_or(1.0)),
+        ground_truth_(dataset_->ground_truth()) {
     for (std::size_t i = 0; i < dataset_->size(); ++i) {
       const Stamp stamp = dataset_->stamp(i);
       stamps_.emplace(stamp, scaled(stamp, i));
@@ -91,19 +93,19 @@ class CorrectedDataset final : public Dataset {
  private:
   /// The stamp of a scan with its time since the first scan scaled. Throws DataError where no stamp can say it.
   [[nodiscard]] Stamp scaled(Stamp stamp, std::size_t index) const {
-    if (correction_.time_scale == 1.0) {
+    if (time_scale_ == 1.0) {
       return stamp;  // exact, however long the recording is
     }
     const Stamp first = dataset_->stamp(0);
     // Not by way of a double: the nanoseconds of a long recording fit into a long double.
     const long double since_first = static_cast<long double>(stamp.ns) - static_cast<long double>(first.ns);
-    const long double ns = std::round(since_first * static_cast<long double>(correction_.time_scale));
+    const long double ns = std::round(since_first * static_cast<long double>(time_scale_));
     Stamp result;
     if (std::abs(ns) >= kStampEnd || __builtin_add_overflow(first.ns, static_cast<std::int64_t>(ns), &result.ns)) {
       throw DataError(fmt::format(
           "{}: scan {} is {:.9g} s after the first one; {:.9g} times that is beyond what a time stamp holds (292 "
           "years)",
-          dataset_->scan_file(index).string(), index, static_cast<double>(since_first) * 1e-9, correction_.time_scale));
+          dataset_->scan_file(index).string(), index, static_cast<double>(since_first) * 1e-9, time_scale_));
     }
     return result;
   }
@@ -115,42 +117,52 @@ class CorrectedDataset final : public Dataset {
 
   std::unique_ptr<Dataset> dataset_;
   Correction correction_;
+  double time_scale_;
   std::map<Stamp, Stamp> stamps_;  ///< of the scans, by those of the recording
   formats::Trajectory ground_truth_;
 };
 
 }  // namespace
 
+void Correction::apply(const Correction& other) {
+  const auto take_over = [](auto& value, const auto& from) { value = from ? from : value; };
+  take_over(doppler_kind, other.doppler_kind);
+  take_over(doppler_sign, other.doppler_sign);
+  take_over(doppler_scale, other.doppler_scale);
+  take_over(point_scale, other.point_scale);
+  take_over(time_scale, other.time_scale);
+  take_over(columns, other.columns);
+}
+
 void check(const Correction& correction) {
   check_scale("the scale of the Doppler", correction.doppler_scale);
   check_scale("the scale of the points", correction.point_scale);
   check_scale("the scale of the time", correction.time_scale);
-  std::array<int, 4> sorted = correction.columns;
-  std::sort(sorted.begin(), sorted.end());
-  if (sorted != kInOrder) {
-    throw UsageError(
-        fmt::format("the columns are {}, expected each of 0, 1, 2, 3 once", fmt::join(correction.columns, ", ")));
+  const std::array<int, 4> columns = correction.columns.value_or(Correction::kInOrder);
+  if (!std::is_permutation(columns.begin(), columns.end(), Correction::kInOrder.begin())) {
+    throw UsageError(fmt::format("the columns are {}, expected each of 0, 1, 2, 3 once", fmt::join(columns, ", ")));
   }
 }
 
 RawScan corrected(RawScan scan, const Correction& correction) {
-  if (correction.columns != kInOrder) {
-    reorder_columns(scan, correction.columns);
+  if (correction.columns && *correction.columns != Correction::kInOrder) {
+    reorder_columns(scan, *correction.columns);
   }
-  if (correction.point_scale != 1.0) {
+  if (correction.point_scale) {
     for (Eigen::Vector3d& point : scan.points) {
-      point *= correction.point_scale;
+      point *= *correction.point_scale;
     }
   }
-  const double doppler_factor = (correction.doppler_is_towards ? -1.0 : 1.0) * correction.doppler_scale;
+  const double sign = correction.doppler_sign == DopplerSign::kTowards ? -1.0 : 1.0;
+  const double doppler_factor = sign * correction.doppler_scale.value_or(1.0);
   if (doppler_factor != 1.0) {
     for (double& doppler : scan.doppler) {
       doppler *= doppler_factor;
     }
   }
-  if (correction.time_scale != 1.0) {
+  if (correction.time_scale) {
     for (double& time : scan.times) {
-      time *= correction.time_scale;
+      time *= *correction.time_scale;
     }
   }
   scan.doppler_kind = correction.doppler_kind.value_or(scan.doppler_kind);

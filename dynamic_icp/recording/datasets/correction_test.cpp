@@ -56,7 +56,7 @@ std::unique_ptr<Dataset> with(const Correction& correction, std::vector<std::int
   return corrected(std::make_unique<TwoScans>(std::move(truth_ns)), correction);
 }
 
-TEST(Correction, NothingToMendChangesNothing) {
+TEST(Correction, NothingToCorrectChangesNothing) {
   auto dataset = std::make_unique<TwoScans>();
   const Dataset* before = dataset.get();
   EXPECT_EQ(corrected(std::move(dataset), {}).get(), before);
@@ -64,7 +64,7 @@ TEST(Correction, NothingToMendChangesNothing) {
 
 TEST(Correction, DopplerIsTurnedRoundAndScaled) {
   Correction correction;
-  correction.doppler_is_towards = true;
+  correction.doppler_sign = DopplerSign::kTowards;
   correction.doppler_scale = 0.5;
   const RawScan scan = with(correction)->scan(0);
   EXPECT_EQ(scan.doppler, (std::vector<double>{-2.0, 3.5}));
@@ -80,6 +80,19 @@ TEST(Correction, TheKindIsWhatWasSaid) {
   EXPECT_EQ(dataset->scan(1).doppler_kind, DopplerKind::kCompensated);
 }
 
+TEST(Correction, ApplyingTakesOverWhatTheOtherStates) {
+  Correction correction{.doppler_kind = DopplerKind::kCompensated, .doppler_scale = 0.5};
+  const Correction other{.doppler_sign = DopplerSign::kTowards,
+                         .doppler_scale = 2.0,
+                         .point_scale = 3.0,
+                         .time_scale = 4.0,
+                         .columns = std::array{3, 2, 1, 0}};
+  correction.apply(other);
+  EXPECT_EQ(correction.doppler_kind, DopplerKind::kCompensated) << "the other one states none";
+  correction.doppler_kind.reset();
+  EXPECT_EQ(correction, other);
+}
+
 TEST(Correction, PointsAreScaledAndWhatIsNotFiniteStays) {
   Correction correction;
   correction.point_scale = 0.25;
@@ -92,12 +105,12 @@ TEST(Correction, PointsAreScaledAndWhatIsNotFiniteStays) {
 
 TEST(Correction, ColumnsArePutInOrder) {
   Correction correction;
-  correction.columns = {1, 0, 2, 3};  // read y, x, z, Doppler
+  correction.columns = std::array{1, 0, 2, 3};  // read y, x, z, Doppler
   RawScan scan = with(correction)->scan(0);
   EXPECT_EQ(scan.points[0], Vector3d(2.0, 1.0, 3.0));
   EXPECT_EQ(scan.doppler[0], 4.0);
   EXPECT_EQ(scan.directions[0], Vector3d(0.6, 0.0, 0.8));
-  correction.columns = {1, 2, 3, 0};  // read Doppler, x, y, z
+  correction.columns = std::array{1, 2, 3, 0};  // read Doppler, x, y, z
   scan = with(correction)->scan(0);
   EXPECT_EQ(scan.points[0], Vector3d(2.0, 3.0, 4.0));
   EXPECT_EQ(scan.doppler[0], 1.0);

@@ -5,14 +5,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/datasets/aeva_folder.hpp"
-#include "dynamic_icp/recording/datasets/aevascenes.hpp"
-#include "dynamic_icp/recording/datasets/bin_folder.hpp"
-#include "dynamic_icp/recording/datasets/boreas.hpp"
-#include "dynamic_icp/recording/datasets/column_folder.hpp"
-#include "dynamic_icp/recording/datasets/dicp.hpp"
-#include "dynamic_icp/recording/datasets/helipr.hpp"
-#include "dynamic_icp/recording/datasets/hercules.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/not_a_recording.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
 

@@ -1,7 +1,5 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/dicp.hpp"
-
 #include <cmath>
 #include <utility>
 
@@ -11,6 +9,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/foreign_numbers.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
 #include "dynamic_icp/recording/datasets/scan_stamps.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"

@@ -1,7 +1,5 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/dicp.hpp"
-
 #include <bit>
 #include <string>
 
@@ -9,6 +7,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/not_a_recording.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 

@@ -1,8 +1,8 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/datasets/helipr.hpp"
-
 #include <limits>
+
+#include "dynamic_icp/recording/datasets/layouts.hpp"
 
 #include "testing/recording_by_hand.hpp"
 
@@ -84,7 +84,7 @@ TEST_F(Helipr, TheKindOfItsDopplerIsSaidToBeUncertain) {
   EXPECT_EQ(dataset->doppler_kind(), DopplerKind::kRelative);
   ASSERT_EQ(dataset->assumptions().size(), 1U);
   expect_within(dataset->assumptions()[0], "uncertain");
-  expect_within(dataset->assumptions()[0], "info");
+  expect_within(dataset->assumptions()[0], "diagnosis");
 }
 
 TEST_F(Helipr, TruthIsOfTheSensorElseOfItsGlobalFile) {

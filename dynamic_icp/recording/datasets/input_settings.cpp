@@ -20,7 +20,7 @@ constexpr double kMostPeriod_s = 3600.0;
 constexpr double kMostScale = 1e9;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& text, std::string_view expected) {
-  throw UsageError(fmt::format("--{} is '{}', expected {}", name, text, expected));
+  throw UsageError(fmt::format("{} is '{}', expected {}", name, text, expected));
 }
 
 double number(const std::string& name, const std::string& text, double least, double most, std::string_view unit) {
@@ -79,8 +79,7 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
   } else if (name == "period") {
     settings.open.period_s = number(name, text, kLeastPeriod_s, kMostPeriod_s, " s");
   } else if (name == "doppler-sign") {
-    correction.doppler_is_towards = is_second(name, text, "away", "towards");
-    settings.doppler_sign_is_said = true;
+    correction.doppler_sign = is_second(name, text, "away", "towards") ? DopplerSign::kTowards : DopplerSign::kAway;
   } else if (name == "doppler-kind") {
     correction.doppler_kind =
         is_second(name, text, "relative", "compensated") ? DopplerKind::kCompensated : DopplerKind::kRelative;
@@ -99,9 +98,9 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
 
 std::vector<std::pair<std::string, std::string>> texts(const InputSettings& settings) {
   std::vector<std::pair<std::string, std::string>> all;
-  const auto add_number = [&](const char* name, double value, double usual) {
-    if (value != usual) {
-      all.emplace_back(name, fmt::format("{}", value));
+  const auto add_number = [&](const char* name, std::optional<double> value) {
+    if (value) {
+      all.emplace_back(name, fmt::format("{}", *value));
     }
   };
   for (const auto& [name, column] : settings.open.fields) {
@@ -110,19 +109,21 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
   for (std::size_t k = 0; k < settings.open.sensors.size(); ++k) {
     all.emplace_back(fmt::format("lidar.{}", k + 1), settings.open.sensors[k]);
   }
-  add_number("period", settings.open.period_s, OpenOptions{}.period_s);
+  if (settings.open.period_s != OpenOptions{}.period_s) {
+    add_number("period", settings.open.period_s);
+  }
   const Correction& correction = settings.correction;
-  if (settings.doppler_sign_is_said || correction.doppler_is_towards) {
-    all.emplace_back("doppler-sign", correction.doppler_is_towards ? "towards" : "away");
+  if (correction.doppler_sign) {
+    all.emplace_back("doppler-sign", correction.doppler_sign == DopplerSign::kAway ? "away" : "towards");
   }
   if (correction.doppler_kind) {
     all.emplace_back("doppler-kind", correction.doppler_kind == DopplerKind::kRelative ? "relative" : "compensated");
   }
-  add_number("doppler-scale", correction.doppler_scale, 1.0);
-  add_number("point-scale", correction.point_scale, 1.0);
-  add_number("time-scale", correction.time_scale, 1.0);
-  if (correction.columns != Correction{}.columns) {
-    all.emplace_back("columns", stored_columns(correction.columns));
+  add_number("doppler-scale", correction.doppler_scale);
+  add_number("point-scale", correction.point_scale);
+  add_number("time-scale", correction.time_scale);
+  if (correction.columns) {
+    all.emplace_back("columns", stored_columns(*correction.columns));
   }
   return all;
 }

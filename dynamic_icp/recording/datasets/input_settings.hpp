@@ -19,8 +19,10 @@ namespace dynamic_icp::datasets {
 struct InputSettings {
   OpenOptions open;
   Correction correction;
-  bool doppler_sign_is_said = false;  ///< which it is stands in the correction; what was said is not refused
 };
+
+/// Takes over what the correction states, such as the one that fixes a finding of the diagnosis.
+inline void apply(const Correction& correction, InputSettings& settings) { settings.correction.apply(correction); }
 
 /// Takes over one of them:
 ///   format NAME, field.NAME COLUMN, lidar.NUMBER NAME, period S, doppler-sign away|towards,
@@ -29,7 +31,7 @@ struct InputSettings {
 /// Throws UsageError naming the setting, its value and what was expected.
 void set(InputSettings& settings, const std::string& name, const std::string& text);
 
-/// Those that were said and are not the default, so that `set` makes the same settings of them; but not the format.
+/// Those that were stated, so that `set` makes the same settings of them; but not the format.
 std::vector<std::pair<std::string, std::string>> texts(const InputSettings& settings);
 
 /// `open_dataset`, then `corrected`; throws as they do.

@@ -32,7 +32,7 @@ TEST(InputSettings, WhatWasSaidComesBackFromItsTexts) {
   EXPECT_EQ(settings.open.fields.at("x"), "px");
   EXPECT_EQ(settings.open.sensors, (std::vector<std::string>{"front", "rear"}));
   EXPECT_EQ(settings.open.period_s, 0.05);
-  EXPECT_TRUE(settings.correction.doppler_is_towards);
+  EXPECT_EQ(settings.correction.doppler_sign, DopplerSign::kTowards);
   EXPECT_EQ(settings.correction.doppler_kind, DopplerKind::kCompensated);
   EXPECT_EQ(settings.correction.time_scale, 0.8333333333333334);
   EXPECT_EQ(settings.correction.columns, (std::array{1, 2, 3, 0})) << "x is the second of the stored columns";
@@ -42,8 +42,7 @@ TEST(InputSettings, WhatWasSaidComesBackFromItsTexts) {
 TEST(InputSettings, TheUsualSignCountsAsSaid) {
   InputSettings settings;
   set(settings, "doppler-sign", "away");
-  EXPECT_TRUE(settings.doppler_sign_is_said);
-  EXPECT_EQ(settings.correction, Correction{});
+  EXPECT_EQ(settings.correction.doppler_sign, DopplerSign::kAway);
   EXPECT_EQ(texts(settings), (Texts{{"doppler-sign", "away"}}));
 }
 

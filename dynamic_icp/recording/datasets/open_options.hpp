@@ -8,7 +8,7 @@
 
 namespace dynamic_icp::datasets {
 
-/// What a user may say about a recording that it does not say itself. How its numbers are to be mended is
+/// What a user may say about a recording that it does not say itself. How its numbers are corrected is
 /// Correction's (correction.hpp).
 struct OpenOptions {
   std::string format = "auto";  ///< or one of known_formats()

@@ -16,29 +16,29 @@ class RecordDataset final : public Dataset {
   explicit RecordDataset(RecordRecording recording) : recording_(std::move(recording)) {}
 
   [[nodiscard]] std::string_view format() const override { return recording_.format; }
-  [[nodiscard]] std::size_t size() const override { return recording_.files.size(); }
-  [[nodiscard]] Stamp stamp(std::size_t index) const override { return recording_.stamps.at(index); }
-  [[nodiscard]] fs::path scan_file(std::size_t index) const override { return recording_.files.at(index); }
+  [[nodiscard]] std::size_t size() const override { return recording_.scans.files.size(); }
+  [[nodiscard]] Stamp stamp(std::size_t index) const override { return recording_.scans.stamps.at(index); }
+  [[nodiscard]] fs::path scan_file(std::size_t index) const override { return recording_.scans.files.at(index); }
   [[nodiscard]] const formats::Trajectory& ground_truth() const override { return recording_.truth.poses; }
   [[nodiscard]] fs::path ground_truth_file() const override { return recording_.truth.file; }
-  [[nodiscard]] const std::vector<std::string>& assumptions() const override { return recording_.assumptions; }
+  [[nodiscard]] const std::vector<std::string>& assumptions() const override { return recording_.scans.assumptions; }
 
   [[nodiscard]] std::optional<Eigen::Isometry3d> T_vehicle_sensor() const override {
     return recording_.T_vehicle_sensor;
   }
 
   [[nodiscard]] RawScan scan(std::size_t index) const override {
-    const fs::path& file = recording_.files.at(index);
-    const formats::RecordLayout& layout = recording_.layout_of(file, recording_.stamps[index]);
+    const fs::path& file = recording_.scans.files.at(index);
+    const formats::RecordLayout& layout = recording_.layout_of(file, recording_.scans.stamps[index]);
     RawScan raw = formats::read_points(file, layout);
     refuse_foreign_numbers(raw, file, layout);
-    raw.stamp = recording_.stamps[index];
+    raw.stamp = recording_.scans.stamps[index];
     return raw;
   }
 
   [[nodiscard]] std::vector<PointColumn> columns(std::size_t index) const override {
-    const fs::path& file = recording_.files.at(index);
-    const formats::RecordLayout& layout = recording_.layout_of(file, recording_.stamps[index]);
+    const fs::path& file = recording_.scans.files.at(index);
+    const formats::RecordLayout& layout = recording_.layout_of(file, recording_.scans.stamps[index]);
     std::vector<PointColumn> columns;
     for (const formats::RecordField& field : layout.fields) {
       columns.push_back({std::string(field.name), formats::read_field(file, layout, field), field.is_integer});

@@ -6,9 +6,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "dynamic_icp/recording/datasets/dataset.hpp"
 #include "dynamic_icp/recording/datasets/scan_stamps.hpp"
@@ -20,12 +18,10 @@ namespace dynamic_icp::datasets {
 /// A recording of one file of records per scan, found and looked through by the reader of its layout.
 struct RecordRecording {
   std::string_view format;
-  std::vector<std::filesystem::path> files;  ///< at least one
-  std::vector<Stamp> stamps;                 ///< of each
+  StampedFiles scans;  ///< at least one
   std::function<const formats::RecordLayout&(const std::filesystem::path& file, Stamp stamp)> layout_of;
   Truth truth;
   std::optional<Eigen::Isometry3d> T_vehicle_sensor;
-  std::vector<std::string> assumptions;
 };
 
 /// The recording as a dataset. Its scans throw DataError for numbers that were never measured (record_guess.hpp).

@@ -157,7 +157,7 @@ std::string without_doppler(std::string_view content) {
     const std::vector<std::string_view> samples = samples_of(content, plain.bytes);
     if (most(samples, [&](std::string_view record) { return is_point(record, plain); }) && !is_doppler(samples)) {
       return "holds records of four numbers whose last lies between 0 and 1: the reflectance of KITTI, not Doppler "
-             "(--format dicp reads it as Doppler all the same)";
+             "(format dicp reads it as Doppler all the same)";
     }
   }
   return "";

@@ -20,7 +20,6 @@ constexpr double kFarthestInCentimetres = 3e4;  // beyond, they are millimetres
 constexpr double kNearest_m = 0.5;
 constexpr double kFastest_mps = 150.0;
 constexpr double kFastestInCentimetres = 3000.0;
-constexpr double kMostShare = 0.95;
 
 // A column is called the Doppler only where it is explained this well, and the one in its place this much worse.
 constexpr double kStaticShare = 0.3;  // more than half of the points may be traffic
@@ -70,8 +69,8 @@ UnitGuess guess_units(std::span<const RawScan> scans) {
       speeds.push_back(std::abs(scan.doppler()[i]));
     }
     if (!ranges.empty()) {
-      far.push_back(quantile(std::move(ranges), kMostShare));
-      fast.push_back(quantile(std::move(speeds), kMostShare));
+      far.push_back(quantile(std::move(ranges), kNearlyAll));
+      fast.push_back(quantile(std::move(speeds), kNearlyAll));
     }
   }
   UnitGuess units;

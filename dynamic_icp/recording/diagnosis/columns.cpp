@@ -2,12 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
-#include <string_view>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
-#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -17,7 +15,6 @@ constexpr double kClearlyFlat = 0.5;  // spread of the flat axis over that of th
 constexpr double kFlat = 0.35;
 constexpr double kLooksAhead = 0.4;  // length of the mean line of sight
 constexpr double kAlongAxis = 0.9;   // cosine
-constexpr double kMoving_mps = 1.0;
 constexpr double kUnexplained_mps = 0.25;
 
 struct View {
@@ -50,7 +47,7 @@ int up_axis(const View& view) {
 
 /// The axis along which the sensor both looks and moves; nothing where there is none.
 std::optional<int> forward_axis(const View& view, int up) {
-  if (view.looks.norm() < kLooksAhead || view.moves.norm() < kMoving_mps) {
+  if (view.looks.norm() < kLooksAhead || view.moves.norm() < kMoves_mps) {
     return std::nullopt;
   }
   for (int axis = 0; axis < 3; ++axis) {
@@ -67,28 +64,16 @@ bool has_named_columns(const datasets::Dataset& dataset) {
   return dataset.format() == "npz" || dataset.format() == "pcd" || dataset.format() == "ply";
 }
 
-std::string stored_order(const Evidence& evidence, int up, std::optional<int> forward) {
-  std::array<std::string_view, 3> names = {"", "", ""};
-  names.at(static_cast<std::size_t>(up)) = "z";
-  if (forward) {
-    names.at(static_cast<std::size_t>(*forward)) = "x";
+/// Which of the columns as read are x, y, z and Doppler. Without an axis ahead x and y keep their order.
+std::array<int, 4> order_as_read(const Evidence& evidence, int up, std::optional<int> forward) {
+  const int ahead = forward.value_or(up == 0 ? 1 : 0);
+  const std::array<int, 4> looked_at = with_doppler_last(evidence.columns.doppler);
+  const std::array<int, 4> applied = evidence.applied.columns.value_or(datasets::Correction::kInOrder);
+  std::array<int, 4> read = {ahead, 3 - ahead - up, up, 3};
+  for (int& column : read) {
+    column = applied.at(static_cast<std::size_t>(looked_at.at(static_cast<std::size_t>(column))));
   }
-  for (std::string_view& name : names) {
-    if (name.empty()) {
-      const bool has_x = std::find(names.begin(), names.end(), "x") != names.end();
-      name = has_x ? "y" : "x";
-    }
-  }
-  const std::array<int, 4> order = with_doppler_last(evidence.columns.doppler);
-  std::array<std::string_view, 4> stored;
-  const auto stored_column = [&](std::size_t k) {
-    return static_cast<std::size_t>(evidence.applied.columns.at(static_cast<std::size_t>(order[k])));
-  };
-  for (std::size_t k = 0; k < 3; ++k) {
-    stored.at(stored_column(k)) = names[k];
-  }
-  stored.at(stored_column(3)) = "doppler";
-  return fmt::format("{}", fmt::join(stored, ","));
+  return read;
 }
 
 }  // namespace
@@ -106,7 +91,7 @@ Finding columns(const Evidence& evidence) {
                       {"spread_x", view.spread.x()},
                       {"spread_y", view.spread.y()},
                       {"spread_z", view.spread.z()}};
-  const std::string order = stored_order(evidence, up, forward);
+  const std::array<int, 4> order = order_as_read(evidence, up, forward);
   if (evidence.looks.empty()) {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = "there are no scans";
@@ -115,36 +100,34 @@ Finding columns(const Evidence& evidence) {
     finding.sentence = fmt::format(
         "column {} is the Doppler: a velocity explains it to {:.2f} m/s, the last column only to {:.2f}",
         scores.doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.doppler)), scores.residual[3]);
-    finding.fix = "--columns " + order;
+    finding.fix.columns = order;
   } else if (const std::optional<NoDoppler> none = no_doppler(evidence); none && !none->is_zero) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = "the column taken for the Doppler is none: " + none->sentence;
-    finding.fix = has_named_columns(*evidence.dataset) ? "--field doppler=COLUMN" : "";
+    finding.needs_doppler_column = has_named_columns(*evidence.dataset);
     finding.evidence.insert(finding.evidence.end(), none->evidence.begin(), none->evidence.end());
   } else if (scores.likely_doppler != 3) {
     finding.verdict = Verdict::kSuspicious;
     finding.sentence = fmt::format(
         "column {} may be the Doppler: a velocity explains it to {:.2f} m/s and the last column to {:.2f}, neither "
-        "well; "
-        "if so, --columns says what is where",
+        "well; if so, state the order of the columns",
         scores.likely_doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.likely_doppler)),
         scores.residual[3]);
   } else if (up != 2) {
     finding.verdict = Verdict::kWrong;
     finding.sentence =
         fmt::format("column {} is up and down: the sensor sees least along it; or the sensor lies on its side", up + 1);
-    finding.fix = "--columns " + order;
+    finding.fix.columns = order;
   } else if (forward && *forward == 1) {
     finding.verdict = Verdict::kSuspicious;
     finding.sentence =
         "the sensor looks and moves along y: x and y may have changed places, or the axes are not x ahead, y left";
-    finding.fix = "--columns " + order;
+    finding.fix.columns = order;
   } else if (scores.residual[3] > kUnexplained_mps) {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = fmt::format(
         "a velocity explains no column well, the last one to {:.2f} m/s: most of what is seen moves, or the columns "
-        "are "
-        "in another order",
+        "are in another order",
         scores.residual[3]);
   } else {
     finding.sentence = "x, y, z, Doppler";

@@ -2,64 +2,43 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
-#include <stdexcept>
-
 #include "dynamic_icp/recording/diagnosis/evidence.hpp"
-#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
 
-std::string_view to_string(Question question) {
-  switch (question) {
-    case Question::kDopplerSign:
-      return "doppler_sign";
-    case Question::kDopplerKind:
-      return "doppler_kind";
-    case Question::kDopplerBias:
-      return "doppler_bias";
-    case Question::kDopplerUnits:
-      return "doppler_units";
-    case Question::kPointUnits:
-      return "point_units";
-    case Question::kColumns:
-      return "columns";
-    case Question::kMounting:
-      return "mounting";
-    case Question::kPointTimes:
-      return "point_times";
-    case Question::kTimeScale:
-      return "time_scale";
-    case Question::kStamps:
-      return "stamps";
-    case Question::kUnusablePoints:
-      return "unusable_points";
-  }
-  return "unknown";
-}
+namespace {
 
-std::string_view to_string(Verdict verdict) {
-  switch (verdict) {
-    case Verdict::kOk:
-      return "ok";
-    case Verdict::kWrong:
-      return "wrong";
-    case Verdict::kSuspicious:
-      return "suspicious";
-    case Verdict::kCannotTell:
-      return "cannot_tell";
-  }
-  return "unknown";
-}
+struct Asked {
+  std::string_view name;
+  Finding (*ask)(const Evidence&);
+};
 
-const Finding& Diagnosis::of(Question question) const {
-  for (const Finding& finding : findings) {
-    if (finding.question == question) {
-      return finding;
-    }
-  }
-  throw std::out_of_range("the diagnosis does not answer this question");
-}
+// In the order of their numbers, which is that of the findings.
+constexpr Asked kAsked[] = {
+    {"doppler_sign", doppler_sign},
+    {"doppler_kind", doppler_kind},
+    {"doppler_bias", doppler_bias},
+    {"doppler_units", doppler_units},
+    {"point_units", point_units},
+    {"columns", columns},
+    {"mounting", mounting},
+    {"point_times", point_times},
+    {"time_scale", time_scale},
+    {"stamps", stamps},
+    {"unusable_points", unusable_points},
+};
+
+constexpr std::string_view kVerdicts[] = {"ok", "wrong", "suspicious", "cannot_tell"};
+
+}  // namespace
+
+std::string_view to_string(Question question) { return kAsked[static_cast<std::size_t>(question)].name; }
+
+std::string_view to_string(Verdict verdict) { return kVerdicts[static_cast<std::size_t>(verdict)]; }
+
+const Finding& Diagnosis::of(Question question) const { return findings.at(static_cast<std::size_t>(question)); }
 
 Diagnosis diagnose(const datasets::Dataset& dataset, const DoctorConfig& config, const Workers& workers) {
   const Evidence evidence = gather(dataset, config, workers);
@@ -68,9 +47,8 @@ Diagnosis diagnose(const datasets::Dataset& dataset, const DoctorConfig& config,
   diagnosis.period_s = evidence.period_s;
   const std::optional<NoDoppler> none = no_doppler(evidence);
   diagnosis.has_doppler = !none || none->may_stand;
-  for (const auto ask : {doppler_sign, doppler_kind, doppler_bias, doppler_units, point_units, columns, mounting,
-                         point_times, time_scale, stamps, unusable_points}) {
-    diagnosis.findings.push_back(ask(evidence));
+  for (const Asked& asked : kAsked) {
+    diagnosis.findings.push_back(asked.ask(evidence));
   }
   return diagnosis;
 }

@@ -48,8 +48,9 @@ std::string_view to_string(Verdict verdict);
 struct Finding {
   Question question = Question::kDopplerSign;
   Verdict verdict = Verdict::kCannotTell;
-  std::string sentence;                                       ///< for the user
-  std::string fix = {};                                       ///< options that mend it, "" where none does
+  std::string sentence = {};          ///< for the user
+  datasets::Correction fix = {};      ///< what corrects it, with what was applied already; empty where nothing does
+  bool needs_doppler_column = false;  ///< another column must be named to be the Doppler (OpenOptions::fields)
   std::vector<std::pair<std::string, double>> evidence = {};  ///< numbers by name; the unit ends the name
 };
 
@@ -68,7 +69,7 @@ struct DoctorConfig {
   std::size_t begin = 0;  ///< of the scans [begin, end) that count; end is cut to the length
   std::size_t end = static_cast<std::size_t>(-1);
   std::size_t probes = 10;            ///< stretches of the recording looked at, evenly spread
-  datasets::Correction applied = {};  ///< what was done to the numbers already: options that mend add to it
+  datasets::Correction applied = {};  ///< what was done to the numbers already: a fix takes it in
   bool always_match_scans = true;     ///< off: only where there is no ground truth, or it disagrees with the Doppler
 };
 

@@ -8,15 +8,13 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
-#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr double kWorthTelling_mps = 0.08;
-constexpr double kDeviations = 4.0;
 constexpr double kWellKnown_mps = 0.04;
 constexpr double kHalfLeft = 0.5;
 
@@ -77,7 +75,7 @@ std::optional<double> bias_by_reference(const Evidence& evidence, double bias_mp
   }
   std::vector<double> along;
   for (const ScanLook& look : evidence.looks) {
-    if (look.has_velocity() && look.ego.velocity_sensor.norm() > 1.0) {
+    if (look.has_velocity() && look.ego.velocity_sensor.norm() > kMoves_mps) {
       along.push_back(look.look_direction.dot(look.ego.velocity_sensor.normalized()));
     }
   }
@@ -99,7 +97,7 @@ Finding doppler_bias(const Evidence& evidence) {
   if (by_reference) {
     finding.evidence.emplace_back("bias_by_reference_mps", *by_reference);
   }
-  const bool is_told = std::abs(bias) > kWorthTelling_mps && std::abs(bias) > kDeviations * error;
+  const bool is_told = std::abs(bias) > kWorthTelling_mps && std::abs(bias) > kCertain * error;
   if (is_told && by_reference && std::abs(*by_reference) < kHalfLeft * std::abs(bias)) {
     finding.sentence = fmt::format(
         "a constant error of {:+.2f} m/s (+- {:.2f}) would explain the Doppler, but so would a speed that is {:.1f} % "

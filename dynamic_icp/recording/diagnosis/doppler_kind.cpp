@@ -4,15 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
-#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kStill_mps = 0.5;
-constexpr double kMoves_mps = 1.0;
 constexpr double kShareLeft = 0.25;
 
 bool expects_compensated(const Evidence& evidence) {
@@ -25,7 +22,7 @@ Finding relative(const Evidence& evidence, double speed) {
   if (expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
     finding.sentence += ", but the Doppler is said to be compensated";
-    finding.fix = "--doppler-kind relative";
+    finding.fix.doppler_kind = DopplerKind::kRelative;
   }
   return finding;
 }
@@ -37,7 +34,7 @@ Finding compensated(const Evidence& evidence, const Comparison& reference) {
   if (!expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
     finding.sentence += "; its own motion was taken out of the Doppler already";
-    finding.fix = "--doppler-kind compensated";
+    finding.fix.doppler_kind = DopplerKind::kCompensated;
   }
   return finding;
 }
@@ -51,7 +48,7 @@ Finding without_doppler(const Evidence& evidence, const NoDoppler& none) {
   } else if (expects_compensated(evidence) && none.is_zero) {
     finding.verdict = Verdict::kSuspicious;
   } else if (none.is_zero) {
-    finding.fix = "--doppler-kind compensated";
+    finding.fix.doppler_kind = DopplerKind::kCompensated;
   }
   finding.evidence = none.evidence;
   return finding;
@@ -68,7 +65,7 @@ Finding doppler_kind(const Evidence& evidence) {
   }
   if (speed > kMoves_mps) {
     finding = relative(evidence, speed);
-  } else if (reference != nullptr && speed < kStill_mps && speed < kShareLeft * reference->reference_speed_mps) {
+  } else if (reference != nullptr && speed < kStandsStill_mps && speed < kShareLeft * reference->reference_speed_mps) {
     finding = compensated(evidence, *reference);
   } else {
     finding.sentence = fmt::format(

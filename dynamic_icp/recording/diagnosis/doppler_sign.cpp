@@ -4,13 +4,12 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kMoving_mps = 1.0;
 constexpr double kAlong_deg = 60.0;
 
 /// The mean velocity of all looks, in the axes of the sensor.
@@ -26,7 +25,7 @@ Finding without_reference(const Evidence& evidence) {
   Finding finding{Question::kDopplerSign, Verdict::kCannotTell, ""};
   const double speed = evidence.doppler_speed_mps().value_or(0.0);
   finding.evidence = {{"doppler_speed_mps", speed}};
-  if (speed < kMoving_mps) {
+  if (speed < kMoves_mps) {
     finding.sentence = fmt::format("positive away from the sensor is assumed: {}", why_unknown(evidence));
   } else if (mean_velocity(evidence).x() > 0.0) {
     finding.sentence =
@@ -47,13 +46,16 @@ Finding doppler_sign(const Evidence& evidence) {
   if (reference == nullptr) {
     return without_reference(evidence);
   }
-  if (reference->doppler_speed_mps < kMoving_mps) {
+  if (reference->doppler_speed_mps < kMoves_mps) {
     return {
-        Question::kDopplerSign, Verdict::kCannotTell,
+        Question::kDopplerSign,
+        Verdict::kCannotTell,
         fmt::format("positive away from the sensor is assumed: the Doppler shows {:.1f} m/s where the sensor moves at "
                     "{:.1f} m/s {}",
                     reference->doppler_speed_mps, reference->reference_speed_mps, reference_name(evidence, *reference)),
-        "", comparison_numbers(*reference)};
+        {},
+        false,
+        comparison_numbers(*reference)};
   }
   Finding finding{Question::kDopplerSign, Verdict::kOk, ""};
   finding.evidence = comparison_numbers(*reference);
@@ -70,7 +72,9 @@ Finding doppler_sign(const Evidence& evidence) {
           "; or points and Doppler are right and the sensor is turned by 180 degrees against that of the ground truth: "
           "no scans could be matched to tell";
     }
-    finding.fix = evidence.applied.doppler_is_towards ? "--doppler-sign away" : "--doppler-sign towards";
+    finding.fix.doppler_sign = evidence.applied.doppler_sign == datasets::DopplerSign::kTowards
+                                   ? datasets::DopplerSign::kAway
+                                   : datasets::DopplerSign::kTowards;
   } else {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = fmt::format(

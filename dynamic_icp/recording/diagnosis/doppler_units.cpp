@@ -2,20 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
-#include "dynamic_icp/recording/diagnosis/no_doppler.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
-#include "dynamic_icp/recording/diagnosis/speed_ratio.hpp"
 
 namespace dynamic_icp::diagnosis {
 
 Finding doppler_units(const Evidence& evidence) {
   Finding finding{Question::kDopplerUnits, Verdict::kOk, ""};
-  std::vector<double> fast;
-  for (const ScanLook& look : evidence.looks) {
-    fast.push_back(look.fast_mps / evidence.units.doppler);
-  }
-  const double as_stored = quantile(std::move(fast), 0.5);
+  const double as_stored = evidence.median_of(&ScanLook::fast_mps) / evidence.units.doppler;
   finding.evidence = {{"doppler_95_percent", as_stored}};
   const std::optional<SpeedRatio> speed = speed_ratio(evidence);
   if (speed) {
@@ -31,11 +25,11 @@ Finding doppler_units(const Evidence& evidence) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format("the Doppler is {:.4g} times the speed {}: it is in {}", speed->ratio,
                                    reference_name(evidence, *speed->reference), speed->unit);
-    finding.fix = fmt::format("--doppler-scale {:.6g}", evidence.applied.doppler_scale / speed->unit_factor);
+    finding.fix.doppler_scale = rounded(evidence.applied.doppler_scale.value_or(1.0) / speed->unit_factor, 6);
   } else if (evidence.units.doppler != 1.0) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format("Doppler of {:.0f} cannot be m/s", as_stored);
-    finding.fix = fmt::format("--doppler-scale {:g}", evidence.applied.doppler_scale * evidence.units.doppler);
+    finding.fix.doppler_scale = rounded(evidence.applied.doppler_scale.value_or(1.0) * evidence.units.doppler, 6);
   } else if (!speed) {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = fmt::format("m/s are assumed: 95 % of the points are slower than {:.1f}", as_stored);

@@ -8,7 +8,7 @@
 
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/recording/diagnosis/scan_matching.hpp"
-#include "dynamic_icp/recording/diagnosis/true_motion.hpp"
+#include "dynamic_icp/recording/formats/pose_interpolation.hpp"
 
 namespace dynamic_icp::diagnosis {
 namespace {
@@ -20,7 +20,7 @@ constexpr double kLeastPeriod_s = 0.005;
 constexpr double kMostPeriod_s = 2.0;
 constexpr std::size_t kColumnScans = 3;
 
-constexpr double kFastEnough_mps = 0.5;
+constexpr double kLongestTruthGap_s = 0.5;
 constexpr double kShortWay_m = 0.8;  // errors of some centimetres count too much
 constexpr double kLongWay_m = 2.5;   // beyond, what is seen changes
 constexpr double kAgreed = 0.15;
@@ -71,6 +71,24 @@ void add_doppler_way(Motion& motion, std::span<const Seen* const> on_the_way, st
   }
 }
 
+/// The pose at a time. Nothing where the trajectory has none within half a second before and after; at its very end the
+/// last pose goes on as the last two moved.
+std::optional<Eigen::Isometry3d> pose_at(const formats::Trajectory& truth, Stamp stamp) {
+  if (truth.size() < 2) {
+    return std::nullopt;
+  }
+  auto after = std::lower_bound(truth.begin(), truth.end(), stamp,
+                                [](const formats::StampedPose& pose, Stamp s) { return pose.stamp < s; });
+  after = std::clamp(after, truth.begin() + 1, truth.end() - 1);
+  const auto before = after - 1;
+  const double span_s = seconds_between(before->stamp, after->stamp);
+  const double since_s = seconds_between(before->stamp, stamp);
+  if (!(span_s > 0.0) || span_s > kLongestTruthGap_s || since_s < 0.0 || since_s > 2.0 * span_s) {
+    return std::nullopt;
+  }
+  return formats::interpolate(*before, *after, stamp);
+}
+
 std::optional<Motion> motion_by_truth(const Stretch& stretch, const formats::Trajectory& truth) {
   // The velocities are those in the middle of the sweeps.
   const auto pose = [&](const Seen& seen) {
@@ -96,7 +114,7 @@ std::optional<Motion> motion_by_truth(const Stretch& stretch, const formats::Tra
 
 std::vector<Eigen::Vector3d> search_axes(const Stretch& stretch) {
   const Eigen::Vector3d velocity = stretch.first.look.ego.velocity_sensor;
-  if (stretch.first.look.has_velocity() && velocity.norm() > kFastEnough_mps) {
+  if (stretch.first.look.has_velocity() && velocity.norm() > kStandsStill_mps) {
     return {velocity.normalized()};
   }
   return {Eigen::Vector3d::UnitX(), Eigen::Vector3d::UnitY()};
@@ -152,7 +170,7 @@ Comparison compare(const std::vector<Probe>& probes, std::optional<Motion> Probe
     reference_speeds.push_back(way.norm() / motion->dt_s);
     doppler_speeds.push_back(motion->doppler_way.norm() / motion->dt_s);
     turn_rates.push_back(rotation_angle(motion->T_from_to.linear()) / motion->dt_s);
-    if (reference_speeds.back() > Comparison::kMoving_mps) {
+    if (reference_speeds.back() > kDirectionKnown_mps) {
       ratios.push_back(motion->doppler_way.dot(way) / way.squaredNorm());
       reference_direction += way.normalized();
       doppler_direction += motion->doppler_way.stableNormalized();
@@ -188,8 +206,8 @@ std::vector<std::size_t> stretch_begins(const Evidence& evidence, std::size_t st
 
 Seen see(const Evidence& evidence, std::size_t index, const Workers& workers) {
   Seen seen;
-  seen.look = look_at(index, prepared(evidence.dataset->scan(index), evidence.columns.doppler, evidence.units), workers,
-                      &seen.still);
+  seen.look =
+      look_at(prepared(evidence.dataset->scan(index), evidence.columns.doppler, evidence.units), workers, &seen.still);
   seen.look.stamp = evidence.dataset->stamp(index);
   return seen;
 }
@@ -216,6 +234,14 @@ void learn_columns(Evidence& evidence, const Workers& workers) {
 
 const Comparison* Evidence::reference() const {
   return matching.tells() ? &matching : truth.tells() ? &truth : nullptr;
+}
+
+double Evidence::median_of(double ScanLook::*value) const {
+  std::vector<double> values;
+  for (const ScanLook& look : looks) {
+    values.push_back(look.*value);
+  }
+  return quantile(std::move(values), 0.5);
 }
 
 std::optional<double> Evidence::doppler_speed_mps() const {

@@ -16,6 +16,11 @@
 
 namespace dynamic_icp::diagnosis {
 
+// What counts as motion, by the Doppler or by a reference.
+inline constexpr double kStandsStill_mps = 0.5;     ///< slower, the sensor may stand
+inline constexpr double kMoves_mps = 1.0;           ///< faster, a Doppler shows its motion
+inline constexpr double kDirectionKnown_mps = 1.5;  ///< faster, direction and speed can be compared
+
 /// How the sensor moved from one scan to a later one by a reference.
 struct Motion {
   Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();  ///< pose of the later sensor in the axes of the earlier
@@ -36,10 +41,8 @@ struct Probe {
 
 /// What the motions of all probes by one reference say of the Doppler.
 struct Comparison {
-  static constexpr double kMoving_mps = 1.5;
-
   std::size_t motions = 0;           ///< that have a velocity from the Doppler
-  std::size_t moving = 0;            ///< of those, faster than kMoving_mps by the reference
+  std::size_t moving = 0;            ///< of those, faster than kDirectionKnown_mps by the reference
   double reference_speed_mps = 0.0;  ///< medians over all motions
   double doppler_speed_mps = 0.0;
   double ratio = 0.0;             ///< Doppler over reference along the reference, median of the moving
@@ -73,6 +76,8 @@ struct Evidence {
 
   /// The reference that tells, matching first: it has the axes of the points. Nothing without any.
   [[nodiscard]] const Comparison* reference() const;
+  /// Median over the looks.
+  [[nodiscard]] double median_of(double ScanLook::*value) const;
   /// Median over the looks of the speed that the Doppler gives, m/s; nothing where no fit holds.
   [[nodiscard]] std::optional<double> doppler_speed_mps() const;
 };

@@ -11,7 +11,6 @@
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kMoving_mps = 1.5;
 constexpr double kOffTruth_deg = 8.0;  // at walking pace in a jam a few degrees are noise
 constexpr double kOffAhead_deg = 8.0;
 constexpr double kOffAheadInTurns_deg = 15.0;  // the sensor swings out: it is not where the wheels are
@@ -30,7 +29,7 @@ double direction_error_deg(const Evidence& evidence, const Eigen::Vector3d& mean
       const ScanLook& look = evidence.looks[i];
       sum += look.has_velocity() ? look.ego.velocity_sensor : Eigen::Vector3d(Eigen::Vector3d::Zero());
     }
-    if (sum.norm() > kMoving_mps) {
+    if (sum.norm() > kDirectionKnown_mps) {
       off.push_back(std::acos(std::clamp(std::abs(sum.normalized().dot(mean.normalized())), 0.0, 1.0)) / kDegree);
     }
   }
@@ -42,7 +41,7 @@ double direction_error_deg(const Evidence& evidence, const Eigen::Vector3d& mean
 Eigen::Vector3d mean_direction(const Evidence& evidence) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   for (const ScanLook& look : evidence.looks) {
-    if (look.has_velocity() && look.ego.velocity_sensor.norm() > kMoving_mps) {
+    if (look.has_velocity() && look.ego.velocity_sensor.norm() > kDirectionKnown_mps) {
       sum += look.ego.velocity_sensor.normalized();
     }
   }
@@ -53,7 +52,7 @@ Eigen::Vector3d mean_direction(const Evidence& evidence) {
 
 /// Between ground truth and points; nothing where only one of them tells.
 std::optional<double> off_truth_deg(const Evidence& evidence) {
-  if (!evidence.truth.tells() || evidence.truth.doppler_speed_mps < kMoving_mps) {
+  if (!evidence.truth.tells() || evidence.truth.doppler_speed_mps < kDirectionKnown_mps) {
     return std::nullopt;
   }
   const double off = evidence.truth.turned_deg;

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -20,7 +21,7 @@ std::optional<double> scale_by_motion(const Evidence& evidence) {
   if (evidence.truth.tells() && evidence.truth.reference_speed_mps > 0.0) {
     return matching.reference_speed_mps / evidence.truth.reference_speed_mps;
   }
-  return matching.doppler_speed_mps > 1.0 ? std::optional(1.0 / std::abs(matching.ratio)) : std::nullopt;
+  return matching.doppler_speed_mps > kMoves_mps ? std::optional(1.0 / std::abs(matching.ratio)) : std::nullopt;
 }
 
 /// How much farther the sensor moves by the points than by ground truth and Doppler, which agree; nothing where they do
@@ -38,11 +39,7 @@ std::optional<double> farther_than_both(const Evidence& evidence) {
 
 Finding point_units(const Evidence& evidence) {
   Finding finding{Question::kPointUnits, Verdict::kOk, ""};
-  std::vector<double> far;
-  for (const ScanLook& look : evidence.looks) {
-    far.push_back(look.far_m / evidence.units.points);
-  }
-  const double as_stored = quantile(std::move(far), 0.5);
+  const double as_stored = evidence.median_of(&ScanLook::far_m) / evidence.units.points;
   finding.evidence = {{"distance_95_percent", as_stored}};
   if (!(as_stored > 0.0)) {
     finding.verdict = Verdict::kCannotTell;
@@ -61,11 +58,11 @@ Finding point_units(const Evidence& evidence) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format(
         "the points move {:.2f} times as far as ground truth and Doppler both say: these are not metres", *farther);
-    finding.fix = fmt::format("--point-scale {:.4g}", evidence.applied.point_scale / *farther);
+    finding.fix.point_scale = rounded(evidence.applied.point_scale.value_or(1.0) / *farther, 4);
   } else if (factor != 1.0) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format("95 % of the points are nearer than {:.4g}: these are not metres", as_stored);
-    finding.fix = fmt::format("--point-scale {:g}", evidence.applied.point_scale * factor);
+    finding.fix.point_scale = rounded(evidence.applied.point_scale.value_or(1.0) * factor, 6);
   } else {
     finding.sentence = fmt::format("m: 95 % of the points are nearer than {:.1f} m", as_stored);
   }

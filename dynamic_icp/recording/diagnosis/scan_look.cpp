@@ -16,7 +16,6 @@ constexpr double kStillDeviations = 4.0;
 constexpr double kLeastStill_mps = 0.3;
 constexpr double kLeastStaticShare = 0.2;
 constexpr double kMostDeviation_mps = 1.0;
-constexpr double kMostShare = 0.95;
 
 void look_at_times(const RawScan& raw, ScanLook& look) {
   bool any = false;
@@ -43,8 +42,8 @@ void look_at_columns(const Scan& scan, ScanLook& look) {
   const double count = std::max(1.0, static_cast<double>(scan.size()));
   look.look_direction /= count;
   look.look_spread = (squares / count).cwiseSqrt();
-  look.far_m = quantile(std::move(ranges), kMostShare);
-  look.fast_mps = quantile(std::move(speeds), kMostShare);
+  look.far_m = quantile(std::move(ranges), kNearlyAll);
+  look.fast_mps = quantile(std::move(speeds), kNearlyAll);
 }
 
 DopplerValues doppler_values(const std::vector<double>& doppler, const std::vector<double>& residuals) {
@@ -91,9 +90,8 @@ bool ScanLook::has_velocity() const {
   return found && static_share >= kLeastStaticShare && ego.covariance.trace() < kMostDeviation_mps * kMostDeviation_mps;
 }
 
-ScanLook look_at(std::size_t index, const RawScan& raw, const Workers& workers, Scan* still) {
+ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still) {
   ScanLook look;
-  look.index = index;
   look.stamp = raw.stamp;
   look.points = raw.points.size();
   look_at_times(raw, look);
@@ -107,14 +105,13 @@ ScanLook look_at(std::size_t index, const RawScan& raw, const Workers& workers, 
   std::size_t near = 0;
   const double width = std::max(kLeastStill_mps, kStillDeviations * look.ego.inlier_rms_mps);
   for (std::uint32_t row = 0; row < residuals.size(); ++row) {
-    residuals[row] = std::abs(residuals[row]);
-    near += residuals[row] < kFitting_mps ? 1 : 0;
-    if (residuals[row] < width) {
+    const double residual = std::abs(residuals[row]);
+    near += residual < kFitting_mps ? 1 : 0;
+    if (residual < width) {
       fitting.push_back(row);
     }
   }
   look.static_share = residuals.empty() ? 0.0 : static_cast<double>(near) / static_cast<double>(residuals.size());
-  look.median_residual_mps = quantile(std::move(residuals), 0.5);
   if (still != nullptr) {
     *still = look.has_velocity() ? scan.select(fitting) : std::move(scan);
   }

@@ -14,6 +14,9 @@
 
 namespace dynamic_icp::diagnosis {
 
+/// Share of the values that are called nearly all: a few strays say nothing of a unit.
+inline constexpr double kNearlyAll = 0.95;
+
 /// The Doppler of the usable points of a scan.
 struct DopplerValues {
   std::size_t count = 0;
@@ -26,7 +29,6 @@ struct DopplerValues {
 
 /// What one scan shows by itself.
 struct ScanLook {
-  std::size_t index = 0;
   Stamp stamp;
   std::size_t points = 0;
   Scan::Dropped dropped;
@@ -40,14 +42,13 @@ struct ScanLook {
   Eigen::Vector3d look_spread = Eigen::Vector3d::Zero();     ///< root mean square of each axis of the lines of sight
   ego_motion::EgoVelocity ego;                               ///< by the Doppler, with its bias
   double static_share = 0.0;                                 ///< of the points that fit to this velocity within 0.5 m/s
-  double median_residual_mps = 0.0;
 
   /// Whether the velocity is one: enough points agree and all directions are known.
   [[nodiscard]] bool has_velocity() const;
 };
 
 /// Looks at a scan; `still` takes its points that fit to the velocity, or all of them where no velocity fits.
-ScanLook look_at(std::size_t index, const RawScan& raw, const Workers& workers, Scan* still = nullptr);
+ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still = nullptr);
 
 /// The value below which a share of the values lies; 0 of none.
 double quantile(std::vector<double> values, double share);

@@ -4,6 +4,7 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -60,7 +61,7 @@ Finding stamps(const Evidence& evidence) {
     finding.sentence =
         fmt::format("a scan every {:g} s: no sensor is so slow; the stamps may count milli-, micro- or nanoseconds",
                     evidence.period_s);
-    finding.fix = fmt::format("--time-scale {:g}", evidence.applied.time_scale * likely_unit(evidence.period_s));
+    finding.fix.time_scale = rounded(evidence.applied.time_scale.value_or(1.0) * likely_unit(evidence.period_s), 6);
   } else {
     finding.sentence = fmt::format("increasing, every {:.4f} s, without gaps", evidence.period_s);
   }

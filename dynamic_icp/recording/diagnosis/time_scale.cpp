@@ -4,9 +4,8 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/recording/diagnosis/comparison_text.hpp"
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
-#include "dynamic_icp/recording/diagnosis/speed_ratio.hpp"
 
 namespace dynamic_icp::diagnosis {
 
@@ -52,7 +51,7 @@ Finding time_scale(const Evidence& evidence) {
         "the Doppler gives {:.2f} times the speed {} (+- {:.2f}): the stamps run {:.2f} times as fast as time, or a "
         "unit is not what it seems",
         ratio, source, speed->reference->ratio_error, ratio);
-    finding.fix = fmt::format("--time-scale {:.4g}", evidence.applied.time_scale / ratio);
+    finding.fix.time_scale = rounded(evidence.applied.time_scale.value_or(1.0) / ratio, 4);
   }
   return finding;
 }

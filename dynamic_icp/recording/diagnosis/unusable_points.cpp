@@ -8,7 +8,7 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr double kMany = 0.5;  // sensors that write a point for every ray lose a third of them in the sky
-constexpr double kNearlyAll = 0.99;
+constexpr double kHardlyAnyLeft = 0.99;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ Finding unusable_points(const Evidence& evidence) {
   if (implausible > 0.0) {
     finding.sentence += fmt::format(", {:.1f} % beyond what a sensor measures", 100.0 * implausible / points);
   }
-  finding.verdict = share > kNearlyAll ? Verdict::kWrong : share > kMany ? Verdict::kSuspicious : Verdict::kOk;
+  finding.verdict = share > kHardlyAnyLeft ? Verdict::kWrong : share > kMany ? Verdict::kSuspicious : Verdict::kOk;
   return finding;
 }
 

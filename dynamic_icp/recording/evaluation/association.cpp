@@ -11,7 +11,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/recording/formats/pose_interpolation.hpp"
 
 namespace dynamic_icp::evaluation {
 namespace {
@@ -39,17 +39,6 @@ void check_trajectory(const Trajectory& trajectory, const char* name) {
   }
 }
 
-/// The pose between two others at a time between theirs.
-Eigen::Isometry3d interpolate(const StampedPose& before, const StampedPose& after, Stamp stamp) {
-  const double alpha = seconds_between(before.stamp, stamp) / seconds_between(before.stamp, after.stamp);
-  const Eigen::Isometry3d& a = before.T_world_sensor;
-  const Eigen::Isometry3d& b = after.T_world_sensor;
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = a.linear() * exp_so3(alpha * log_so3(a.linear().transpose() * b.linear()));
-  T.translation() = a.translation() + alpha * (b.translation() - a.translation());
-  return T;
-}
-
 /// The reference pose at `stamp`; `after` is the index of the first reference pose not earlier than that.
 std::optional<Eigen::Isometry3d> pose_at(const Trajectory& reference, std::size_t after, Stamp stamp,
                                          std::int64_t max_gap_ns) {
@@ -59,7 +48,7 @@ std::optional<Eigen::Isometry3d> pose_at(const Trajectory& reference, std::size_
     return reference[after].T_world_sensor;
   }
   if (has_before && has_after && reference[after].stamp.ns - reference[after - 1].stamp.ns <= max_gap_ns) {
-    return interpolate(reference[after - 1], reference[after], stamp);
+    return formats::interpolate(reference[after - 1], reference[after], stamp);
   }
   if (has_before && stamp.ns - reference[after - 1].stamp.ns <= kStampRoundingNs) {
     return reference[after - 1].T_world_sensor;

@@ -148,7 +148,7 @@ std::string warnings_text(const Evaluation& evaluation, const EvaluationSource& 
   if (evaluation.repeated_reference_poses > 0) {
     text += fmt::format(
         "warning: the reference repeats its position {} times while the estimate moves; errors over "
-        "single frames mean little, use --gap-seconds 1\n",
+        "single frames mean little, take a gap of 1 s\n",
         evaluation.repeated_reference_poses);
   }
   const auto repeated_lines = [](const std::string& name, std::size_t count) {

@@ -119,8 +119,7 @@ void OutputFolder::check_replaceable(const fs::path& folder) const {
         fmt::format("{}: folder is not empty and holds no {}; choose another one", named_.string(), kind_.marker));
   }
   if (!replace_) {
-    throw DataError(fmt::format("{}: folder holds an earlier result ({}); use --force to replace it", named_.string(),
-                                kind_.marker));
+    throw EarlierResult(fmt::format("{}: folder holds an earlier result ({})", named_.string(), kind_.marker));
   }
   if (const auto foreign = foreign_entry(folder, kind_)) {
     throw DataError(

@@ -18,6 +18,12 @@ namespace dynamic_icp::formats {
 /// Whether a path is a folder or something in it, by the names alone.
 bool lies_in(const std::filesystem::path& path, const std::filesystem::path& folder);
 
+/// The folder holds an earlier result of the same kind, which the caller may allow to replace.
+class EarlierResult : public DataError {
+ public:
+  using DataError::DataError;
+};
+
 /// A result folder that appears whole or not at all.
 ///
 /// Files are written into a hidden staging folder beside the final one; commit() renames it into place. When the
@@ -27,9 +33,9 @@ bool lies_in(const std::filesystem::path& path, const std::filesystem::path& fol
 /// place, or brought to its end when it was about to come into place.
 class OutputFolder {
  public:
-  /// A link is followed. An existing folder that is not empty is refused with a DataError; with `replace` a result of
-  /// the same kind in it is replaced at commit. Nothing else is ever removed: a folder with any other file in it is
-  /// refused, and one that holds one of the `inputs` or the working directory.
+  /// A link is followed. An existing folder that is not empty is refused with a DataError, EarlierResult where
+  /// `replace` would help: with it a result of the same kind in it is replaced at commit. Nothing else is ever removed:
+  /// a folder with any other file in it is refused, and one that holds one of the `inputs` or the working directory.
   OutputFolder(const std::filesystem::path& path, const ResultKind& kind, bool replace,
                const std::vector<std::filesystem::path>& inputs = {});
   ~OutputFolder();

@@ -9,18 +9,20 @@
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
+#include <lzf.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/parse_number.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
-#include "dynamic_icp/recording/formats/lzf.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
 #include "dynamic_icp/recording/formats/text_lines.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
+
+constexpr std::size_t kLzfRepeat = 264;  // bytes that LZF makes of one byte at most
 
 /// Appends a number of that type from its text; false for text that is no such number.
 template <class Number>
@@ -190,7 +192,17 @@ void PcdFile::unpack() {
   if (const std::size_t rest = data.size() - kSizes - packed; rest > 0) {
     warning_ = fmt::format("{}: {} bytes after the compressed data are left out", origin_, rest);
   }
-  bytes_ = unpack_lzf(data.substr(kSizes, packed), unpacked, origin_);
+  if (unpacked / kLzfRepeat > packed) {  // before memory is taken
+    fail(fmt::format("{} bytes of compressed data cannot hold {}", packed, unpacked));
+  }
+  std::string bytes(unpacked, '\0');
+  const unsigned written = packed == 0 ? 0
+                                       : lzf_decompress(data.data() + kSizes, static_cast<unsigned>(packed),
+                                                        bytes.data(), static_cast<unsigned>(unpacked));
+  if (written != unpacked) {
+    fail(fmt::format("damaged compressed data: they do not unpack to {} bytes", unpacked));
+  }
+  bytes_ = std::move(bytes);
   header_.data_offset = 0;
 }
 

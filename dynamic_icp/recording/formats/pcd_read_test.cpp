@@ -97,7 +97,35 @@ TEST(PcdRead, CompressedFieldByField) {
   const std::string swapped = {0, 0, 0, static_cast<char>(packed.size())};  // as a big-endian machine writes it
   expect_message(header + swapped + swapped + packed, "of compressed data, expected at most");
   packed[0] = 0;
-  expect_message(header + sizes(0) + packed, "of the compressed data");
+  expect_message(header + sizes(0) + packed, "damaged compressed data");
+}
+
+/// The content of a compressed file of one field of bytes.
+std::string compressed(const std::string& packed, std::uint32_t points) {
+  return fmt::format("FIELDS a\nSIZE 1\nTYPE U\nPOINTS {}\nDATA binary_compressed\n", points) +
+         bytes_of(static_cast<std::uint32_t>(packed.size())) + bytes_of(points) + packed;
+}
+
+TEST(PcdRead, CompressedDataRepeatWhatWasBefore) {
+  const auto unpacked = [](const std::string& packed, std::uint32_t points) {
+    const std::vector<double> numbers = column_as_doubles(parse(compressed(packed, points)).read("a"));
+    return std::string(numbers.begin(), numbers.end());
+  };
+  EXPECT_EQ(unpacked("", 0), "");
+  // "abc", then 3 bytes (length field 1) from 3 bytes back (offset field 2).
+  EXPECT_EQ(unpacked("\x02"s + "abc" + "\x20\x02", 6), "abcabc");
+  // 8 bytes (length field 6) from 1 byte back, reaching into what is being written.
+  EXPECT_EQ(unpacked("\x00"s + "a" + "\xc0\x00"s, 9), "aaaaaaaaa");
+  // The long form: 7 + 250 + 2 bytes from 1 byte back.
+  EXPECT_EQ(unpacked("\x00"s + "a" + "\xe0\xfa\x00"s, 260), std::string(260, 'a'));
+}
+
+TEST(PcdRead, DamagedCompressedDataAreErrors) {
+  for (const std::string& packed : {"\x05"s + "ab", "\x20"s, "\xe0\x01"s, "\x20\x00"s, "\x00"s + "a" + "\x20\x01",
+                                    "\x06"s + "abcdefg", "\x02"s + "abc"}) {
+    expect_message(compressed(packed, 6), "damaged compressed data: they do not unpack to 6 bytes");
+  }
+  expect_message(compressed("\x00"s + "a", 1U << 30U), "cannot hold");
 }
 
 TEST(PcdRead, OldHeadersLackEntries) {

@@ -57,15 +57,13 @@ PlyFile read_ply(const std::filesystem::path& path);
 /// The same for the content of a file; `origin` is the file that messages name.
 PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin);
 
-/// The bytes of a PLY 1.0 file, binary_little_endian: the element "vertex" with x, y, z (m) as float32. Points keep the
-/// precision of a float32: 1 mm at 10 km from the origin. No points make a valid file with no records.
-///
-/// Throws std::invalid_argument when a number is not finite as a float32: such files never leave the program.
+/// The bytes of a PLY 1.0 file, binary_little_endian: the element "vertex" with x, y, z (m) as float32. No points make
+/// a valid file with no records. Throws as `point_table` does.
 std::string ply_bytes(std::span<const Eigen::Vector3d> points);
 
 /// The same with the element "vertex" of any columns, each with the type it has, bit by bit: arrays of shape (N,), at
-/// least one. Numbers that are not finite stay. Throws std::invalid_argument when they differ in length, names are
-/// missing, taken or have blanks, and for integers of 64 bits, which PLY does not know.
+/// least one. Numbers that are not finite stay. Throws as `checked_rows` does, and std::invalid_argument for integers
+/// of 64 bits, which PLY does not know.
 std::string ply_table_bytes(std::span<const NamedArray> columns);
 
 /// Writes a file of points whole or not at all (see write_whole_file). Throws as `ply_bytes` does, and DataError naming

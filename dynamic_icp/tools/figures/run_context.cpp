@@ -148,7 +148,7 @@ std::size_t frame_with_most_object_points(const RunFiles& run) {
 RunContext read_context(const RunFiles& run, std::optional<std::size_t> frame) {
   if (frame && *frame >= run.frames.size()) {
     throw UsageError(
-        fmt::format("--frame is {}, expected 0 to {}", *frame, std::max<std::size_t>(run.frames.size(), 1) - 1));
+        fmt::format("scan {} is asked for, expected 0 to {}", *frame, std::max<std::size_t>(run.frames.size(), 1) - 1));
   }
   RunContext context;
   if (run.frames.empty()) {

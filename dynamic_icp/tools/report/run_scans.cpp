@@ -146,8 +146,8 @@ double bytes_per_point_at(std::size_t count, const RunFiles& run, ScanReader& re
 void check_frames(const RunFiles& run, const std::vector<std::size_t>& frames) {
   for (const std::size_t frame : frames) {
     if (frame >= run.frames.size()) {
-      throw UsageError(
-          fmt::format("--frames names {}, expected 0 to {}", frame, std::max<std::size_t>(run.frames.size(), 1) - 1));
+      throw UsageError(fmt::format("scan {} is asked for, expected 0 to {}", frame,
+                                   std::max<std::size_t>(run.frames.size(), 1) - 1));
     }
   }
 }

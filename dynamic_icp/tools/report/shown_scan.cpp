@@ -19,7 +19,6 @@ namespace {
 using figures::FrameRow;
 using figures::RunFiles;
 
-constexpr double kMoving_mps = 0.5;  // compensated Doppler beyond which a point counts as moving
 
 /// What the run was told about sweeps.
 motion::SweepConfig sweep_config(const RunFiles& run) {

@@ -23,6 +23,9 @@ inline constexpr std::uint8_t kFirstObject = 3;  ///< and on: the objects of the
 /// Points farther from the sensor are not shown: one stray return must not take the resolution from all others.
 inline constexpr double kFarthestShown_m = 1000.0;
 
+/// Faster over ground, a point (by its compensated Doppler) or an object is shown as moving.
+inline constexpr double kMoving_mps = 0.5;
+
 /// A scan as the page shows it: columns of equal length.
 struct ShownScan {
   std::vector<Eigen::Vector3d> points;  ///< m, sensor frame at the stamp; the sweep undone where the run undid it,

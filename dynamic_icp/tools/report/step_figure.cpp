@@ -206,7 +206,6 @@ void draw_objects(Sheet& sheet, const GroundView& view, const RunFiles& run, con
   sheet.points(points_where(pair.source_scan, [&](std::size_t i) { return pair.source_scan.labels[i] < kDynamic; }),
                theme.doppler[theme.doppler.size() / 2]);
   for (const evaluation::TrueObject& object : pair.true_objects) {
-    constexpr double kMoving_mps = 0.5;
     if (object.points > 0 && object.velocity.norm() > kMoving_mps) {
       sheet.arrow(object.center, object.velocity, theme.series[3], 5.0);
     }
@@ -227,7 +226,7 @@ void draw_objects(Sheet& sheet, const GroundView& view, const RunFiles& run, con
 ScanPair read_pair(const RunFiles& run, const datasets::Dataset& recording, std::size_t source,
                    const Workers& workers) {
   if (source + 1 >= run.frames.size()) {
-    throw UsageError(fmt::format("--pair is {}: the run has no scan after it, expected 0 to {}", source,
+    throw UsageError(fmt::format("the pair begins with scan {}: the run has no scan after it, expected 0 to {}", source,
                                  std::max<std::size_t>(run.frames.size(), 2) - 2));
   }
   ScanPair pair{.source = source, .source_scan = {}, .target_scan = {}, .true_objects = {}};

@@ -1,0 +1,64 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "testing/spoiled_recording.hpp"
+
+namespace dynamic_icp::diagnosis {
+namespace {
+
+TEST(DopplerSignAnswer, ATurnedSignIsFoundWithAndWithoutGroundTruth) {
+  for (const bool has_truth : {true, false}) {
+    Recording recording;
+    recording.has_truth = has_truth;
+    recording.spoil = flip;
+    const Finding sign = diagnosis_of(recording).of(Question::kDopplerSign);
+    EXPECT_EQ(sign.verdict, Verdict::kWrong) << has_truth << sign.sentence;
+    EXPECT_EQ(sign.fix, (Correction{.doppler_sign = DopplerSign::kTowards}));
+  }
+}
+
+TEST(DopplerSignAnswer, ASmoothTunnelWithoutGroundTruthTellsNoSign) {
+  for (const bool is_flipped : {false, true}) {
+    Recording recording;
+    recording.world = synthetic::tunnel();
+    recording.path = synthetic::circle(15.0, 0.0);
+    recording.has_truth = false;
+    if (is_flipped) {
+      recording.spoil = flip;
+    }
+    const Finding sign = diagnosis_of(recording).of(Question::kDopplerSign);
+    EXPECT_EQ(sign.verdict, Verdict::kCannotTell) << sign.sentence;
+    EXPECT_NE(sign.sentence.find("assumed"), std::string::npos);
+  }
+}
+
+TEST(DopplerSignAnswer, WhereNoScansMatchASignMayBeATurnOfTheSensor) {
+  Recording recording;
+  recording.world = synthetic::tunnel();
+  recording.path = synthetic::circle(15.0, 0.0);
+  recording.spoil = [](RawScan& raw, const Vector3d&) {  // back to front, against the ground truth
+    for (Vector3d& point : raw.points) {
+      point = {-point.x(), -point.y(), point.z()};
+    }
+  };
+  const Finding sign = diagnosis_of(recording).of(Question::kDopplerSign);
+  EXPECT_EQ(sign.verdict, Verdict::kWrong) << sign.sentence;
+  EXPECT_NE(sign.sentence.find("or points and Doppler are right and the sensor is turned by 180 degrees"),
+            std::string::npos)
+      << sign.sentence;
+}
+
+TEST(DopplerSignAnswer, WhatCannotBeToldIsSaidWithoutContradiction) {
+  Recording standing;
+  standing.path = synthetic::circle(0.0, 0.0);
+  EXPECT_NE(diagnosis_of(standing).of(Question::kDopplerSign).sentence.find("too slow to tell"), std::string::npos);
+  Recording compensated;
+  compensated.spoil = compensate;
+  const std::string sentence = diagnosis_of(compensated).of(Question::kDopplerSign).sentence;
+  EXPECT_EQ(sentence.find("too slow"), std::string::npos) << sentence;
+  EXPECT_NE(sentence.find("m/s where the sensor moves at"), std::string::npos) << sentence;
+}
+
+}  // namespace
+}  // namespace dynamic_icp::diagnosis
