@@ -147,27 +147,17 @@ TEST(Align, CostDoesNotChangeWhenBothScansAreTurned) {
   const Scan source = room.moved(T);
   const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, true, workers).find(T);
   const double expected = cost(source, room.target(), pairs, T);
-  const Eigen::Matrix3d Q = exp_so3({0.4, -1.1, 0.7});
-  const auto turned = [&](const Scan& scan) {
-    RawScan raw;
-    for (const Vector3d& p : scan.points()) {
-      raw.points.push_back(Q * p);
-    }
-    raw.doppler = scan.doppler();
-    return Scan::from_raw(raw);
-  };
-  const Scan turned_source = turned(source);
-  const Scan turned_scan = turned(room.scan);
+  Vector6d turn;
+  turn << 0.4, -1.1, 0.7, 0.0, 0.0, 0.0;
+  const Eigen::Isometry3d Q = exp_se3(turn);
+  const Scan turned_scan = room.scan.transformed(Q);
   const spatial::KdTree tree(turned_scan.points());
   std::vector<Vector3d> normals = room.normals;
   for (Vector3d& n : normals) {
-    n = Q * n;
+    n = Q.linear() * n;
   }
-  Eigen::Isometry3d T_turned = Eigen::Isometry3d::Identity();
-  T_turned.linear() = Q * T.linear() * Q.transpose();
-  T_turned.translation() = Q * T.translation();
   const Target target{turned_scan, tree, normals, room.has_normal};
-  EXPECT_NEAR(cost(turned_source, target, pairs, T_turned), expected, 1e-10 * expected);
+  EXPECT_NEAR(cost(source.transformed(Q), target, pairs, Q * T * Q.inverse()), expected, 1e-10 * expected);
 }
 
 TEST(Align, NormalEquationsAreTheGradientOfTheCost) {
