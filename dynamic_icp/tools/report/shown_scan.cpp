@@ -20,7 +20,6 @@ namespace {
 using figures::FrameRow;
 using figures::RunFiles;
 
-
 /// What the run was told about sweeps.
 preprocess::SweepConfig sweep_config(const RunFiles& run) {
   preprocess::SweepConfig config;
