@@ -34,7 +34,7 @@ export function keyBindings(report, store, player, view, showHelp) {
         { keys: ['f'], shown: 'F', meaning: 'follow the sensor', act: camera('follow') },
         { keys: ['v'], shown: 'V', meaning: 'free', act: camera('free') },
         { keys: ['c'], shown: 'C', meaning: 'from above', act: camera('top') },
-        { keys: ['r'], shown: 'R', meaning: 'put the camera back', act: () => view.resetCamera() },
+        { keys: ['r'], shown: 'R', meaning: 'reset camera', act: () => view.resetCamera() },
       ],
     },
     {
@@ -55,7 +55,7 @@ export function keyBindings(report, store, player, view, showHelp) {
     {
       title: 'Page',
       bindings: [
-        { keys: ['t'], shown: 'T', meaning: 'light or dark', act: () => store.set({ theme: otherTheme(state) }) },
+        { keys: ['t'], shown: 'T', meaning: 'toggle theme', act: () => store.set({ theme: otherTheme(state) }) },
         { keys: ['?', 'h'], shown: '?', meaning: 'this list', act: showHelp },
       ],
     },

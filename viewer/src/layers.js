@@ -4,14 +4,14 @@ export const layers = [
   { id: 'moving', name: 'Moving points', key: 'd', on: true },
   { id: 'unused', name: 'Points not used', key: 'u', on: true },
   { id: 'boxes', name: 'Object boxes', key: 'b', on: true },
-  { id: 'arrows', name: 'Velocity arrows (way in 1 s)', key: 'a', on: true },
+  { id: 'arrows', name: 'Velocity (1 s displacement)', key: 'a', on: true },
   { id: 'ids', name: 'Object ids and speeds', key: 'i', on: true },
   { id: 'predicted', name: 'Predicted points', key: 'p', on: false },
   { id: 'path', name: 'Trajectory', key: 'j', on: true },
   { id: 'truth', name: 'Ground truth', key: 'g', on: true },
   { id: 'map', name: 'Static map', key: 'm', on: false },
   { id: 'rings', name: 'Range rings', key: 'o', on: true },
-  { id: 'sensor', name: 'Sensor and own velocity', key: 'e', on: true },
+  { id: 'sensor', name: 'Sensor and ego velocity', key: 'e', on: true },
 ];
 
 export const usualLayers = () => new Set(layers.filter(({ on }) => on).map(({ id }) => id));

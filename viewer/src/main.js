@@ -39,10 +39,10 @@ function usualState(report) {
 
 function sheetsOf(report, store, player) {
   const plots = { id: 'plots', name: 'Plots', element: createPlotSheet(report, store, player) };
-  const distributions = { id: 'distributions', name: 'Distribution', element: createDistributionSheet(report, store) };
+  const distributions = { id: 'distributions', name: 'CDF', element: createDistributionSheet(report, store) };
   const summary = { id: 'summary', name: report.kind === 'run' ? 'Summary' : 'Run', element: createSummarySheet(report, store) };
   const configuration = { id: 'configuration', name: 'Settings', element: createConfigurationSheet(report, store) };
-  const several = report.kind === 'run' ? [] : [{ id: 'numbers', name: 'Numbers', element: createComparisonSheet(report, store) }];
+  const several = report.kind === 'run' ? [] : [{ id: 'numbers', name: 'Metrics', element: createComparisonSheet(report, store) }];
   const tables = report.tables?.length ? [{ id: 'tables', name: 'Tables', element: createTableSheet(report) }] : [];
   return [...tables, plots, distributions, ...several, summary, configuration];
 }

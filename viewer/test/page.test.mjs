@@ -214,7 +214,7 @@ test('cameras: follow goes along, free stays, top looks down; reset puts them ba
     await page.mouse.move(box.x + 420, box.y + 330, { steps: 4 });
     await page.mouse.up();
     assert.ok(!(await isSame(page, await picture(page), pictures[0])));
-    await page.click('[aria-label^="Put the camera back"]');
+    await page.click('[aria-label^="Reset camera"]');
     assert.ok(await isSame(page, await picture(page), pictures[0]));
   });
 });
@@ -283,7 +283,7 @@ for (const [width, height] of [[1280, 800], [820, 1180], [390, 844], [360, 640]]
   for (const colorScheme of ['light', 'dark']) {
     test(`${width} x ${height}, ${colorScheme}: nothing sticks out, the view is there`, async () => {
       await onPage(run(), async (page) => {
-        for (const tab of ['Plots', 'Distribution', 'Summary', 'Settings']) {
+        for (const tab of ['Plots', 'CDF', 'Summary', 'Settings']) {
           await page.click(`.tabs >> text=${tab}`);
           assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width, tab);
         }
@@ -322,7 +322,7 @@ test('hostile texts are shown as texts', async () => {
     for (const tab of await page.$$('.tabs button')) {
       await tab.click();
       const visible = await page.$eval('.sheet:not([hidden])', (sheet) => sheet.textContent);
-      if ((await tab.textContent()) !== 'Distribution') assert.ok(visible.includes(HOSTILE), await tab.textContent());
+      if ((await tab.textContent()) !== 'CDF') assert.ok(visible.includes(HOSTILE), await tab.textContent());
     }
     assert.equal(await page.title(), HOSTILE.replace(/[ \n]+/g, ' ').trim());
     assert.ok((await page.textContent('h1')) === HOSTILE);
@@ -336,10 +336,10 @@ test('a comparison lays runs over each other, marks the best, and brings one to 
   await onPage(write('comparison', samples.comparison()), async (page) => {
     assert.equal((await page.$$('.chip')).length, 3);
     assert.match(await page.textContent('[data-plot="translation_error"]'), /dynamic-icp.*kiss-icp.*gicp/s);
-    await page.click('.tabs >> text=Numbers');
+    await page.click('.tabs >> text=Metrics');
     const best = await page.$$eval('.numbers .best', (cells) => cells.map((cell) => cell.textContent));
     assert.deepEqual(best, ['★0.00667 m', '★0.00200°', '★102 1/s']);
-    await page.click('.tabs >> text=Distribution');
+    await page.click('.tabs >> text=CDF');
     assert.match(await page.getAttribute('[data-plot="translation_error-distribution"] canvas', 'aria-label'), /kiss-icp from 0 to 100/);
     const all = await picture(page);
     await page.click('[aria-label="Show gicp"]');
@@ -358,7 +358,7 @@ test('a benchmark shows its tables and each of its sequences', async () => {
     const street = await picture(page);
     await page.selectOption('[aria-label="Sequence"]', '1');
     assert.ok(!street.equals(await picture(page)));
-    await page.click('.tabs >> text=Numbers');
+    await page.click('.tabs >> text=Metrics');
     assert.match(await page.textContent('#sheet-numbers'), /tunnel.*24/s);
     assert.equal((await page.$$('.chip')).length, 2);
   });

@@ -100,7 +100,7 @@ test('the browser draws it, every frame, without an error and without the networ
     assert.doesNotMatch(await page.textContent('.status-note'), /cannot/);
     assert.ok((await page.locator('canvas.scene').screenshot()).length > 20000, 'a picture with something in it');
     for (const plot of run.plots) assert.ok(await page.$(`[data-plot="${plot.id}"]`), plot.id);
-    for (const tab of ['Distribution', 'Summary', 'Settings']) {
+    for (const tab of ['CDF', 'Summary', 'Settings']) {
       await page.click(`.tabs >> text=${tab}`);
       assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280);
     }

@@ -40,7 +40,7 @@ RunSeries make_series(const Heading& heading, std::vector<Series> series) {
 }
 
 RunSeries error_series(const Heading& heading, const std::vector<double>& errors) {
-  RunSeries series = make_series(heading, {{"from the scan before", errors}});
+  RunSeries series = make_series(heading, {{"scan to scan", errors}});
   series.panel.logarithmic = spans_decades(errors);
   return series;
 }
@@ -112,17 +112,16 @@ bool has_values(const RunSeries& series) {
 std::vector<RunSeries> run_series(const RunFiles& run, const std::optional<RunTruth>& truth) {
   std::vector<RunSeries> all = {ego_speed(run, truth)};
   if (truth) {
-    all.push_back(
-        error_series({"translation_error", "Translation error per scan", "RTE", "m"}, truth->translation_error));
-    all.push_back(error_series({"rotation_error", "Rotation error per scan", "RRE", "degrees"}, truth->rotation_error));
+    all.push_back(error_series({"translation_error", "RTE per scan", "RTE", "m"}, truth->translation_error));
+    all.push_back(error_series({"rotation_error", "RRE per scan", "RRE", "degrees"}, truth->rotation_error));
   }
   all.push_back(make_series({"iterations", "Iterations", "number", ""}, registration(run, &FrameRow::iterations)));
   all.back().panel.whole_numbers = true;
-  all.push_back(make_series({"inlier_rmse", "Distance of matched points", "inlier RMSE", "m"},
-                            registration(run, &FrameRow::inlier_rmse)));
+  all.push_back(
+      make_series({"inlier_rmse", "Inlier RMSE", "inlier RMSE", "m"}, registration(run, &FrameRow::inlier_rmse)));
   all.push_back(
       make_series({"fitness", "Fitness", "share of points matched", ""}, registration(run, &FrameRow::fitness)));
-  all.push_back(make_series({"degeneracy", "How well the least known direction is held", "information ratio", ""},
+  all.push_back(make_series({"degeneracy", "Degeneracy: information ratio (eigenvalues)", "information ratio", ""},
                             registration(run, &FrameRow::information_ratio)));
   all.back().panel.logarithmic = true;
   all.push_back(make_series(

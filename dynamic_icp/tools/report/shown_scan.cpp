@@ -19,7 +19,6 @@ namespace {
 using figures::FrameRow;
 using figures::RunFiles;
 
-
 /// What the run was told about sweeps.
 motion::SweepConfig sweep_config(const RunFiles& run) {
   motion::SweepConfig config;

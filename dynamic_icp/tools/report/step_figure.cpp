@@ -171,7 +171,9 @@ void draw_doppler(Sheet& sheet, const GroundView& view, const RunFiles& run, con
   constexpr double kLimit_mps = 15.0;
   const std::size_t bins = theme.doppler.size();
   sheet.begin(view, "1  Measured Doppler",
-              {{"closer", theme.doppler.front()}, {"0", theme.doppler[bins / 2]}, {"away", theme.doppler.back()}});
+              {{"approaching", theme.doppler.front()},
+               {"static", theme.doppler[bins / 2]},
+               {"receding", theme.doppler.back()}});
   for (std::size_t bin = 0; bin < bins; ++bin) {
     sheet.points(points_where(pair.source_scan,
                               [&](std::size_t i) {
@@ -198,9 +200,9 @@ void draw_filter(Sheet& sheet, const GroundView& view, const RunFiles& run, cons
 void draw_objects(Sheet& sheet, const GroundView& view, const RunFiles& run, const ScanPair& pair,
                   const drawing::Theme& theme) {
   const std::vector<ObjectRow>& objects = run.objects[pair.source];
-  std::vector<drawing::LegendEntry> legend = {{"velocity found", theme.ink}};
+  std::vector<drawing::LegendEntry> legend = {{"estimated velocity", theme.ink}};
   if (!pair.true_objects.empty()) {
-    legend.push_back({"true velocity", theme.series[3]});
+    legend.push_back({"ground-truth velocity", theme.series[3]});
   }
   sheet.begin(view, "3  Objects and their velocities", legend);
   sheet.points(points_where(pair.source_scan, [&](std::size_t i) { return pair.source_scan.labels[i] < kDynamic; }),

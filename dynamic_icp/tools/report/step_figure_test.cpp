@@ -32,7 +32,7 @@ TEST(StepFigure, ShowsEveryStep) {
   for (const char* text : {"Measured Doppler", "Velocity filter", "Objects", "Prediction", "Aligned"}) {
     EXPECT_NE(document.find(text), std::string::npos) << text;
   }
-  EXPECT_EQ(document.find("true velocity"), std::string::npos) << "nobody knows it";
+  EXPECT_EQ(document.find("ground-truth velocity"), std::string::npos) << "nobody knows it";
   EXPECT_LT(document.size(), 900'000u);
 }
 
@@ -43,8 +43,8 @@ TEST(StepFigure, ShowsTrueVelocitiesWhereTheyAreKnown) {
       "drive/objects.jsonl",
       R"({"index":2,"objects":[{"velocity_sensor":[15,0,0],"center_sensor":[21,0,0],"size":[4,2,1],"points":9}]})"
       "\n");
-  EXPECT_NE(drawn(folder, 2).find("true velocity"), std::string::npos);
-  EXPECT_EQ(drawn(folder, 1).find("true velocity"), std::string::npos) << "not of this scan";
+  EXPECT_NE(drawn(folder, 2).find("ground-truth velocity"), std::string::npos);
+  EXPECT_EQ(drawn(folder, 1).find("ground-truth velocity"), std::string::npos) << "not of this scan";
 }
 
 TEST(StepFigure, TakesScansWithoutObjectsAndRefusesTheLast) {

@@ -6,14 +6,14 @@ import { lastNotAbove, speedOf } from '../runs.js';
  * [0, limit] for others; height has a range of its own.
  */
 export const colourings = [
-  { id: 'compensated', source: 0, key: '1', name: 'Doppler, own motion out', unit: 'm/s', map: 'diverging',
-    meaning: 'What is left of the Doppler velocity without the sensor’s own motion: the middle of the bar stands, left of it comes closer, right of it goes away' },
+  { id: 'compensated', source: 0, key: '1', name: 'Doppler, ego-motion compensated', unit: 'm/s', map: 'diverging',
+    meaning: 'Doppler velocity without the sensor’s own motion: the middle of the bar is static, left of it approaching, right of it receding' },
   { id: 'doppler', source: 1, key: '2', name: 'Doppler as measured', unit: 'm/s', map: 'diverging',
-    meaning: 'Doppler velocity as measured: left of the middle of the bar comes closer, right of it goes away' },
-  { id: 'kind', source: 2, key: '3', name: 'Static, moving, object', unit: '', map: 'categories',
-    meaning: 'What the odometry took a point for; every object has its colour' },
+    meaning: 'Doppler velocity as measured: left of the middle of the bar approaching, right of it receding' },
+  { id: 'kind', source: 2, key: '3', name: 'Segmentation', unit: '', map: 'categories',
+    meaning: 'Class of a point: static, moving or object; every object has its colour' },
   { id: 'residual', source: 3, key: '4', name: 'Residual', unit: 'm', map: 'sequential',
-    meaning: 'Distance to the surface of the scan before' },
+    meaning: 'Distance to the surface of the previous scan' },
   { id: 'height', source: 4, key: '5', name: 'Height', unit: 'm', map: 'sequential',
     meaning: 'Height over the ground under the sensor' },
 ];

@@ -32,7 +32,7 @@ function scaleBar(store, chosen, ground) {
     button('−', 'Narrower range of colours ([)', () => changeLimit(store, -1)),
     element('div', { class: 'legend-axis' }, bar,
       element('div', { class: 'legend-ticks' }, ...ends.map((value) => element('span', { text: signed(value) }))),
-      chosen.id === 'compensated' ? element('div', { class: 'legend-hint', text: 'closer ← stands → away' }) : null),
+      chosen.id === 'compensated' ? element('div', { class: 'legend-hint', text: 'approaching ← static → receding' }) : null),
     button('+', 'Wider range of colours (])', () => changeLimit(store, 1)));
 }
 
@@ -83,9 +83,9 @@ export function createPointReading(store) {
       ['point', `${picked.place.map((value) => value.toFixed(2)).join('  ')} m`],
       ['range', `${shortNumber(Math.hypot(...picked.place), 4)} m`],
       ['Doppler', known(picked.doppler, 'm/s')],
-      ['own motion out', known(picked.compensated, 'm/s')],
+      ['ego-motion compensated', known(picked.compensated, 'm/s')],
       ['residual', known(picked.residual, 'm')],
-      ['taken for', kind],
+      ['class', kind],
     ];
     reading.replaceChildren(...rows.map(([name, value]) =>
       element('div', {}, element('span', { text: name }), element('b', { text: value }))));

@@ -52,7 +52,7 @@ export function createConfigurationSheet(report, store) {
     const run = runAt(report, store.state);
     const wanted = search.value.trim().toLowerCase();
     const entries = run.configuration.filter(([key, value]) => `${key} ${value}`.toLowerCase().includes(wanted));
-    origin.replaceChildren(...(run.origin.length ? [section('Origin', pairTable(run.origin))] : []));
+    origin.replaceChildren(...(run.origin.length ? [section('Provenance', pairTable(run.origin))] : []));
     found.replaceChildren(...(entries.length
       ? [...byStage(entries)].map(([stage, rows]) => element('details', { open: wanted !== '' },
         element('summary', { text: `${stage} (${rows.length})` }), pairTable(rows)))

@@ -46,7 +46,7 @@ export function createToolbar(report, store, view) {
   return element('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'View' },
     element('label', { class: 'field', hidden: noScans }, element('span', { text: 'Colour' }), colour.element),
     element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' }, ...cameras),
-    button('Reset', 'Put the camera back (R)', () => view.resetCamera()),
+    button('Reset', 'Reset camera (R)', () => view.resetCamera()),
     layerMenu(report, store),
     element('label', { class: 'field size', hidden: noScans && report.runs.every((run) => run.map === null) }, element('span', { text: 'Points' }), size));
 }

@@ -39,7 +39,7 @@ export function distributionsOf(shown) {
     const [low, high] = [positive[Math.floor(0.02 * positive.length)] ?? 0.1, positive.at(-1) ?? 1];
     const log = id !== 'iterations' && high / low > 8;
     return [{
-      id: `${id}-distribution`, title: `${plot.title}, distribution`, unit: '% of frames', xName: plot.unit ? `up to (${plot.unit})` : 'up to',
+      id: `${id}-distribution`, title: `${plot.title}, CDF`, unit: '% of frames', xName: plot.unit ? `${plot.title} (${plot.unit})` : plot.title,
       y: {}, yRange: { low: 0, high: 101 }, series, x: log ? { low, high, log } : { low: 0, high },
     }];
   });
