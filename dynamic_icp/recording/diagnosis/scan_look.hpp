@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
 
@@ -40,7 +41,6 @@ struct ScanLook {
   Eigen::Vector3d look_spread = Eigen::Vector3d::Zero();     ///< root mean square of each axis of the lines of sight
   ego_motion::EgoVelocity ego;                               ///< by the Doppler, with its bias
   double static_share = 0.0;                                 ///< of the points that fit to this velocity within 0.5 m/s
-  double median_residual_mps = 0.0;
 
   /// Whether the velocity is one: enough points agree and all directions are known.
   [[nodiscard]] bool has_velocity() const;
@@ -48,9 +48,6 @@ struct ScanLook {
 
 /// Looks at a scan; `still` takes its points that fit to the velocity, or all of them where no velocity fits.
 ScanLook look_at(std::size_t index, const RawScan& raw, const Workers& workers, Scan* still = nullptr);
-
-/// The value below which a share of the values lies; 0 of none.
-double quantile(std::vector<double> values, double share);
 
 /// Median absolute deviation from the median; 0 of none.
 double scatter_of(std::vector<double> values);
