@@ -94,7 +94,6 @@ double largest_deviation(const Eigen::Matrix3d& covariance) {
 ObjectEstimate reconstruct(const Scan& scan, std::span<const double> compensated, const Rows& rows,
                            const ObjectVelocityConfig& config) {
   ObjectEstimate object;
-  object.cluster_points = rows.size();
   if (rows.size() < kUnknowns) {
     object.verdict = ClusterVerdict::kTooFewPoints;
     return object;
