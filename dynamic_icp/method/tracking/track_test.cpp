@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 
+#include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/random_source.hpp"
