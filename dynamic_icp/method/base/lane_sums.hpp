@@ -9,6 +9,11 @@
 
 namespace dynamic_icp::simd {
 
+// Two ways to write a kernel for vectors, both within simd::run and with the same bits at every level:
+//   - where the compiler turns loops into vectors by itself, as over columns of numbers, plain arrays as lanes: below,
+//     and ego_motion/velocity_modes.cpp in single precision. The first choice.
+//   - where it does not, because a loop searches, compares or jumps, vectors of four written out: base/lanes.hpp.
+
 /// A sum over rows in lanes: row i is added to lane i modulo their number, whatever the machine, for loops that the
 /// compiler turns into vectors (DYNAMIC_ICP_LANE_LOOP).
 inline constexpr std::size_t kSumLanes = 8;

@@ -5,19 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <utility>
 #include <vector>
+
+#include "dynamic_icp/method/base/quantile.hpp"
 
 namespace dynamic_icp {
 namespace {
 
 constexpr std::size_t kMaxSamples = 2000;
 constexpr double kMinMargin_s = 0.1;
-
-double quantile(std::vector<double>& values, double share) {
-  const auto rank = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + rank, values.end());
-  return values[static_cast<std::size_t>(rank)];
-}
 
 }  // namespace
 
@@ -33,7 +30,7 @@ TimeWindow plausible_times(std::span<const double> times_s) {
     return {-kMaxPointTime_s, kMaxPointTime_s};
   }
   const double low = quantile(sample, 0.05);
-  const double high = quantile(sample, 0.95);
+  const double high = quantile(std::move(sample), 0.95);
   const double margin = std::max(kMinMargin_s, high - low);
   return {std::max(low - margin, -kMaxPointTime_s), std::min(high + margin, kMaxPointTime_s)};
 }

@@ -10,7 +10,6 @@
 #include <tuple>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/method/dynamics/bucket_sort.hpp"
 #include "dynamic_icp/method/dynamics/condensed_tree.hpp"
 #include "dynamic_icp/method/dynamics/mutual_reachability.hpp"
 #include "dynamic_icp/method/spatial/kd_tree.hpp"
@@ -36,22 +35,11 @@ void check(std::span<const Eigen::Vector3d> points, const HdbscanConfig& config)
 std::vector<std::uint32_t> lexicographic_order(std::span<const Eigen::Vector3d> points) {
   std::vector<std::uint32_t> order(points.size());
   std::iota(order.begin(), order.end(), std::uint32_t{0});
-  const auto [first, last] =
-      std::minmax_element(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.x() < b.x(); });
-  const double lowest = first->x();
-  const double range = last->x() - lowest;
-  const std::size_t buckets = bucket_count_for(points.size());
-  const auto most = static_cast<double>(buckets - 1);
-  bucket_sort(
-      order, buckets,
-      [&](std::uint32_t i) {
-        return range > 0.0 ? static_cast<std::size_t>((points[i].x() - lowest) / range * most) : 0;
-      },
-      [&](std::uint32_t i, std::uint32_t j) {
-        const Eigen::Vector3d& a = points[i];
-        const Eigen::Vector3d& b = points[j];
-        return std::tie(a.x(), a.y(), a.z(), i) < std::tie(b.x(), b.y(), b.z(), j);
-      });
+  std::sort(order.begin(), order.end(), [&](std::uint32_t i, std::uint32_t j) {
+    const Eigen::Vector3d& a = points[i];
+    const Eigen::Vector3d& b = points[j];
+    return std::tie(a.x(), a.y(), a.z(), i) < std::tie(b.x(), b.y(), b.z(), j);
+  });
   return order;
 }
 

@@ -5,13 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <bit>
-#include <functional>
 #include <limits>
 #include <stdexcept>
 #include <tuple>
 
-#include "dynamic_icp/method/dynamics/bucket_sort.hpp"
 #include "dynamic_icp/method/dynamics/core_distances.hpp"
 #include "dynamic_icp/method/spatial/disjoint_sets.hpp"
 #include "dynamic_icp/method/spatial/kd_tree.hpp"
@@ -45,22 +42,6 @@ class Bound {
  private:
   std::atomic<double> value_{kLargest};
 };
-
-/// The bits of a number that is not negative, as an integer, have the order of such numbers; they spread weights
-/// evenly, the smallest of which are small by orders of magnitude.
-void sort_edges(std::vector<ReachabilityEdge>& edges) {
-  const auto bits = [](const ReachabilityEdge& edge) { return std::bit_cast<std::uint64_t>(edge.squared_weight); };
-  const auto [first, last] = std::minmax_element(
-      edges.begin(), edges.end(), [](const auto& a, const auto& b) { return a.squared_weight < b.squared_weight; });
-  const std::uint64_t lowest = bits(*first);
-  const std::size_t buckets = bucket_count_for(edges.size());
-  int shift = 0;
-  while ((bits(*last) - lowest) >> shift >= buckets) {
-    ++shift;
-  }
-  bucket_sort(
-      edges, buckets, [&](const ReachabilityEdge& edge) { return (bits(edge) - lowest) >> shift; }, std::less<>());
-}
 
 /// Boruvka's algorithm: in every round each component but the largest finds the smallest edge that leaves it, by the
 /// total order of edges. All these edges belong to the tree, and they leave at most half as many components.
@@ -102,7 +83,7 @@ class SpanningTreeSearch {
       workers_.for_each(tree_.leaf_count(), 4, [this](std::size_t leaf) { search_from(leaf); });
       join_components();
     }
-    sort_edges(edges_);
+    std::sort(edges_.begin(), edges_.end());
     return std::move(edges_);
   }
 

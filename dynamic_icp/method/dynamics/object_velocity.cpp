@@ -6,10 +6,9 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "dynamic_icp/method/estimation/robust_kernel.hpp"
+#include "dynamic_icp/method/estimation/velocity_regression.hpp"
 
 namespace dynamic_icp::dynamics {
 namespace {
@@ -17,9 +16,6 @@ namespace {
 using Rows = std::vector<std::uint32_t>;
 
 constexpr std::size_t kUnknowns = 3;
-
-constexpr int kMaxIterations = 50;
-constexpr double kStepTolerance = 1e-6;  // m/s
 
 // The velocity gate of an object at rest would have no width: allow for rounding.
 constexpr double kSmallestGate = 1e-12;
@@ -44,55 +40,23 @@ Conditioning conditioning(const Scan& scan, const Rows& rows) {
   return {std::sqrt(std::max(0.0, values[0])), std::sqrt(std::max(0.0, values[2]))};
 }
 
-/// Covariance of the M-estimate, [sum psi^2 / (n - 3)] / [mean psi']^2 (U^T U)^-1; zero for three points or fewer.
-Eigen::Matrix3d residual_covariance(const Scan& scan, std::span<const double> compensated, const Rows& rows,
-                                    double delta, const Eigen::Vector3d& velocity) {
-  Eigen::Matrix3d UtU = Eigen::Matrix3d::Zero();
-  double psi_squared = 0.0;
-  double inliers = 0.0;
+/// Least squares or, with a threshold, Huber regression of the velocity of some rows.
+estimation::VelocityRegression regress(const Scan& scan, std::span<const double> compensated, const Rows& rows,
+                                       const ObjectVelocityConfig& config) {
+  std::vector<Eigen::Vector3d> directions;
+  std::vector<double> range_rates;
+  directions.reserve(rows.size());
+  range_rates.reserve(rows.size());
   for (const std::uint32_t row : rows) {
-    const Eigen::Vector3d& u = scan.directions()[row];
-    const double e = u.dot(velocity) - compensated[row];
-    const double psi = estimation::huber_weight(e, delta) * e;
-    UtU += u * u.transpose();
-    psi_squared += psi * psi;
-    inliers += std::abs(e) <= delta ? 1.0 : 0.0;
+    directions.push_back(scan.directions()[row]);
+    range_rates.push_back(compensated[row]);
   }
-  const auto n = static_cast<double>(rows.size());
-  if (rows.size() <= kUnknowns || inliers == 0.0) {
-    return Eigen::Matrix3d::Zero();
-  }
-  const double inlier_share = inliers / n;
-  return psi_squared / (n - kUnknowns) / (inlier_share * inlier_share) * UtU.inverse();
-}
-
-struct Velocity {
-  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();
-};
-
-/// Minimises sum rho(u_i . v - s~_i): the square for delta = infinity, which takes one step, else Huber's loss.
-Velocity regress(const Scan& scan, std::span<const double> compensated, const Rows& rows, double delta) {
-  Velocity result;
-  for (int iteration = 0; iteration < kMaxIterations; ++iteration) {
-    Eigen::Matrix3d H = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
-    for (const std::uint32_t row : rows) {
-      const Eigen::Vector3d& u = scan.directions()[row];
-      const double e = u.dot(result.velocity) - compensated[row];
-      // The first step starts from nowhere, so its residuals say nothing yet.
-      const double w = iteration == 0 ? 1.0 : estimation::huber_weight(e, delta);
-      H += w * u * u.transpose();
-      b += w * e * u;
-    }
-    const Eigen::Vector3d step = -H.ldlt().solve(b);
-    result.velocity += step;
-    if (std::isinf(delta) || step.norm() < kStepTolerance) {
-      break;
-    }
-  }
-  result.covariance = residual_covariance(scan, compensated, rows, delta, result.velocity);
-  return result;
+  const bool robust = config.huber_delta_mps > 0.0;
+  return estimation::regress_velocity(
+      directions, range_rates, std::nullopt,
+      {.huber_delta_mps = robust ? config.huber_delta_mps : std::numeric_limits<double>::infinity(),
+       .rank = estimation::Rank::kFull},
+      Workers(1));
 }
 
 /// The rows of each label, in scan order.
@@ -130,7 +94,6 @@ double largest_deviation(const Eigen::Matrix3d& covariance) {
 ObjectEstimate reconstruct(const Scan& scan, std::span<const double> compensated, const Rows& rows,
                            const ObjectVelocityConfig& config) {
   ObjectEstimate object;
-  object.cluster_points = rows.size();
   if (rows.size() < kUnknowns) {
     object.verdict = ClusterVerdict::kTooFewPoints;
     return object;
@@ -142,8 +105,7 @@ ObjectEstimate reconstruct(const Scan& scan, std::span<const double> compensated
     object.verdict = ClusterVerdict::kIllConditioned;
     return object;
   }
-  const double delta = config.huber_delta_mps > 0.0 ? config.huber_delta_mps : std::numeric_limits<double>::infinity();
-  const Velocity estimate = regress(scan, compensated, rows, delta);
+  const estimation::VelocityRegression estimate = regress(scan, compensated, rows, config);
   object.velocity_sensor = estimate.velocity;
   object.covariance = estimate.covariance;
   // The paper writes the threshold with a vector; it is read as lambda times the speed of the cluster.

@@ -44,7 +44,6 @@ struct ObjectEstimate {
   ClusterVerdict verdict = ClusterVerdict::kNotRun;
   Eigen::Vector3d velocity_sensor = Eigen::Vector3d::Zero();  ///< m/s over ground, in the sensor frame of the scan
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();       ///< (m/s)^2, from the residuals; zero if not estimated
-  std::size_t cluster_points = 0;
   double inlier_fraction = 0.0;
   double smallest_singular_value = 0.0;  ///< of U_k
   double condition_number = 0.0;         ///< of U_k; 0 when the smallest singular value is 0 (infinite)

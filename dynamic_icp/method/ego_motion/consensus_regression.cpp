@@ -24,11 +24,32 @@ constexpr double kStepToleranceMps = 3e-4;  // a tenth of the deviation of a goo
 constexpr double kOpenDeviationMps = 2.0;   // who knows a component no better than this knows it better by any prior
 constexpr double kFloorMps = 1e-3;          // errors of all lines of sight together: 0.003 degrees at 20 m/s
 constexpr double kLeastSlope = 0.6;         // of psi' to the weights; 0.8 for normal noise at the default cutoff
-constexpr double kWider = 1.4;
+constexpr double kWider = 1.4;              // of the scale, in one step: twice the variance
 constexpr double kLeastVariance = 1e-12;    // a prior without any doubt must not divide by zero
 constexpr double kUnknownMps = 30.0;        // of a velocity of which nothing is known
 constexpr double kBonusDeviationMps = 0.3;  // a velocity this near to the expected one still earns most of its bonus
 constexpr double kJerk = 10.0;              // m/s^3, of hard braking and steering
+
+// Refining a mode: the first steps look farther than the cutoff, because a mode begins away from its best velocity.
+constexpr double kFirstStepsWider = 1.5;
+constexpr int kCoarseSteps = 3;              // bring a sample of three points to within the noise
+constexpr int kFineSteps = 4;                // and one more where acceleration and bias follow
+constexpr double kFixed = 1e9;               // information of an unknown that is not estimated
+constexpr double kCoarseNoise = 0.5;         // of vote_width_mps, as long as the noise of the scan is unknown,
+constexpr double kCoarseCutoff = 2.0;        // and the cutoff that goes with it
+constexpr double kMinShareOfBest = 0.5;      // dynamic outliers may gather half of the support, but hardly more
+constexpr std::size_t kFineHypotheses = 63;  // with the mode itself a multiple of the lanes of find_modes
+constexpr std::size_t kMaxParts = 3;         // the static scene and slow movers on either side of it
+constexpr double kFineReach = 2.0;           // of vote_width_mps: what is farther belongs to another mode
+constexpr double kFineWidth = 3.0;           // sigmas of the noise: nearly all static points support the static scene
+constexpr double kFineResolution = 2.0;      // sigmas of the noise: nearer velocities cannot be distinguished
+// Rows of one object err together, so a row counts for a ninth: acceleration and bias must not bend a mode through the
+// static scene and slow movers where the scene itself says little about them.
+constexpr double kCorrelatedNoise = 3.0;
+
+// Priors of acceleration and bias cost a mode nothing within two sigmas; beyond, they do as with twice the sigma.
+constexpr double kFreeSigmas2 = 4.0;
+constexpr double kPriorDecay = 0.125;
 
 /// The priors of acceleration and bias alone: the search for the static scene must not lean on an earlier velocity.
 DopplerModel voting_model(const EgoPrior& prior, const ConsensusRegressionConfig& config) {
@@ -85,7 +106,7 @@ DopplerModel fitting_model(const EgoPrior& prior, const ConsensusRegressionConfi
 void refine(const DopplerRows& voters, const DopplerModel& model, const RobustScale& scale, int steps,
             const Workers& workers, Vector7d& x) {
   RobustScale wide = scale;
-  wide.cutoff_mps *= 1.5;
+  wide.cutoff_mps *= kFirstStepsWider;
   for (int k = 0; k < steps; ++k) {
     const FitSums sums = sum_fit(voters, x, k + 1 < steps ? wide : scale, model.has_bias, workers);
     x += solve_fit(sums, x, model, kOpenDeviationMps).step;
@@ -120,15 +141,15 @@ std::vector<VelocityMode> coarse_modes(const Electorate& voters, const EgoPrior&
       voters.rows.takes_time ? std::sqrt(prior.covariance.diagonal().segment<3>(3).mean()) : 0.0;
   std::vector<VelocityMode> modes = find_modes(voters, start, search, workers);
   DopplerModel velocity_only = model;
-  velocity_only.information.diagonal().tail<4>().setConstant(1e9);
-  const RobustScale scale{0.5 * config.vote_width_mps, 2.0 * config.vote_width_mps, 0.0};
+  velocity_only.information.diagonal().tail<4>().setConstant(kFixed);
+  const RobustScale scale{kCoarseNoise * config.vote_width_mps, kCoarseCutoff * config.vote_width_mps, 0.0};
   workers.for_each(modes.size(), 1, [&](std::size_t k) {
     VelocityMode& mode = modes[k];
-    refine(voters.rows, velocity_only, scale, 3, workers, mode.x);
+    refine(voters.rows, velocity_only, scale, kCoarseSteps, workers, mode.x);
     mode.votes = votes(voters, mode.x, config.vote_width_mps);
   });
   remove_duplicates(voters.rows, config.vote_width_mps, modes);
-  const double enough = 0.5 * modes.front().votes;
+  const double enough = kMinShareOfBest * modes.front().votes;
   std::erase_if(modes, [&](const VelocityMode& mode) { return mode.votes < enough; });
   return modes;
 }
@@ -138,19 +159,18 @@ std::vector<VelocityMode> split_mode(const Electorate& voters, const VelocityMod
                                      const ConsensusRegressionConfig& config, double noise_mps,
                                      const Workers& workers) {
   ModeSearch search;
-  search.hypotheses = 63;
-  search.most_modes = 3;
+  search.hypotheses = kFineHypotheses;
+  search.most_modes = kMaxParts;
   search.width_mps = std::min(config.vote_width_mps, config.tukey_cutoff * noise_mps);
-  search.within_mps = 2.0 * config.vote_width_mps;
+  search.within_mps = kFineReach * config.vote_width_mps;
   search.seed = 1;
   std::vector<VelocityMode> parts = find_modes(voters, mode.x, search, workers);
   for (VelocityMode& part : parts) {
-    // Rows of one crowd err together, so a row counts for a ninth here: acceleration and bias must not bend a mode
-    // through the static scene and a crowd where the scene itself says little about them.
-    refine(voters.rows, model, {3.0 * noise_mps, config.tukey_cutoff * noise_mps, 0.0}, 4, workers, part.x);
-    part.votes = votes(voters, part.x, 3.0 * noise_mps);
+    refine(voters.rows, model, {kCorrelatedNoise * noise_mps, config.tukey_cutoff * noise_mps, 0.0}, kFineSteps,
+           workers, part.x);
+    part.votes = votes(voters, part.x, kFineWidth * noise_mps);
   }
-  remove_duplicates(voters.rows, 2.0 * noise_mps, parts);
+  remove_duplicates(voters.rows, kFineResolution * noise_mps, parts);
   return parts;
 }
 
@@ -159,7 +179,7 @@ std::vector<VelocityMode> split_mode(const Electorate& voters, const VelocityMod
 /// it decides between modes of similar support and cannot hold a velocity that the scan does not bear out.
 double prior_factor(const EgoPrior& prior, const DopplerModel& model, const Vector7d& x, double weight) {
   const double deviation2 = (x - model.prior).cwiseAbs2().dot(model.information.diagonal());
-  const double plausible = std::exp(-0.125 * std::max(0.0, deviation2 - 4.0));
+  const double plausible = std::exp(-kPriorDecay * std::max(0.0, deviation2 - kFreeSigmas2));
   if (!prior.has_velocity) {
     return plausible;
   }
@@ -200,7 +220,8 @@ Choice choose_mode(const DopplerRows& rows, const EgoPrior& prior, const Doppler
   }
   workers.for_each(modes.size(), 1, [&](std::size_t k) {
     VelocityMode& mode = modes[k];
-    mode.votes = votes(many, mode.x, 3.0 * choice.noise_mps) * prior_factor(prior, model, mode.x, config.prior_weight);
+    mode.votes =
+        votes(many, mode.x, kFineWidth * choice.noise_mps) * prior_factor(prior, model, mode.x, config.prior_weight);
   });
   remove_duplicates(few.rows, config.tukey_cutoff * choice.noise_mps, modes);
   choice.x = modes.front().x;

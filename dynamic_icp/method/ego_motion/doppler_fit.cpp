@@ -9,7 +9,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 
-#include "dynamic_icp/method/estimation/median.hpp"
+#include "dynamic_icp/method/base/quantile.hpp"
 
 namespace dynamic_icp::ego_motion {
 namespace {
@@ -105,7 +105,7 @@ double noise_from_neighbours(const DopplerRows& rows, const Vector7d& x, double 
   }
   // The median of a handful of residuals that were just fitted says nothing.
   const double noise =
-      sizes.size() < kEnough / 2 ? maximum_mps : estimation::kDeviationPerMad * estimation::median(std::move(sizes));
+      sizes.size() < kEnough / 2 ? maximum_mps : kDeviationPerMad * median(std::move(sizes));
   return std::clamp(noise, minimum_mps, maximum_mps);
 }
 

@@ -19,12 +19,9 @@ struct DopplerRegressionConfig {
 
 ConfigFields fields(DopplerRegressionConfig& config);
 
-/// Robust regression of the paper's Eq. (3): min_v sum rho(s_i + u_i . v) with the Huber loss, by iteratively
-/// reweighted least squares from the prior (m/s, sensor frame). The loss is convex: where the lines of sight span all
-/// three dimensions the prior decides only how fast the minimum is found.
-///
-/// The covariance is that of Huber's M-estimator, from the residuals of this scan:
-/// [sum psi^2 / (n - 3)] / [mean psi']^2 (U^T U)^-1.
+/// Robust regression of the paper's Eq. (3): min_v sum rho(s_i + u_i . v) with the Huber loss, from the prior (m/s,
+/// sensor frame), which is kept along directions that no line of sight observes; see
+/// estimation/velocity_regression.hpp.
 EgoVelocity estimate_velocity(const Scan& scan, const Eigen::Vector3d& prior_sensor,
                               const DopplerRegressionConfig& config, const Workers& workers);
 

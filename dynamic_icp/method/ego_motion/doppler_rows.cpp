@@ -31,25 +31,12 @@ std::uint64_t sector_key(const Eigen::Vector3d& u) {
 }
 
 /// Finds out where each point goes.
-void place_in_cells(const Scan& scan, double cell_size_m, const Workers& workers, SortMemory& memory) {
-  memory.keys.resize(scan.size());
-  memory.cell.resize(scan.size());
-  memory.rank.resize(scan.size());
-  memory.cell_size.clear();
-  memory.numbers.clear();
+void place_in_cells(const Scan& scan, double cell_size_m, const Workers& workers, spatial::CellOrder& order) {
+  order.keys.resize(scan.size());
   const double per_cell = 1.0 / cell_size_m;
   workers.for_each(scan.size(), kBlock,
-                   [&](std::size_t i) { memory.keys[i] = spatial::clamped_cell_key(per_cell * scan.points()[i]); });
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    // Points that follow each other often share a cell.
-    const bool same = i > 0 && memory.keys[i] == memory.keys[i - 1];
-    const std::uint32_t cell = same ? memory.cell[i - 1] : memory.numbers.number_of(memory.keys[i]);
-    if (cell == memory.cell_size.size()) {
-      memory.cell_size.push_back(0);
-    }
-    memory.cell[i] = cell;
-    memory.rank[i] = memory.cell_size[cell]++;
-  }
+                   [&](std::size_t i) { order.keys[i] = spatial::clamped_cell_key(per_cell * scan.points()[i]); });
+  order.sort();
 }
 
 void number_sectors(DopplerRows& rows) {
@@ -76,43 +63,37 @@ void measure_time(const Scan& scan, DopplerRows& rows) {
 }  // namespace
 
 DopplerRows sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers) {
-  SortMemory memory;
+  spatial::CellOrder order;
   DopplerRows rows;
-  sort_into_cells(scan, cell_size_m, workers, memory, rows);
+  sort_into_cells(scan, cell_size_m, workers, order, rows);
   return rows;
 }
 
-void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, SortMemory& memory,
+void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, spatial::CellOrder& order,
                      DopplerRows& rows) {
-  place_in_cells(scan, cell_size_m, workers, memory);
-  for (int halving = 0; halving < kMostHalvings && memory.cell_size.size() < std::min(kEnoughCells, scan.size() / 4);
-       ++halving) {
+  place_in_cells(scan, cell_size_m, workers, order);
+  for (int halving = 0; halving < kMostHalvings && order.cells() < std::min(kEnoughCells, scan.size() / 4); ++halving) {
     cell_size_m *= 0.5;
-    place_in_cells(scan, cell_size_m, workers, memory);
+    place_in_cells(scan, cell_size_m, workers, order);
   }
-  const std::size_t cells = memory.cell_size.size();
-  rows.first.resize(cells + 1);
-  rows.first[0] = 0;
-  for (std::size_t c = 0; c < cells; ++c) {
-    rows.first[c + 1] = rows.first[c] + memory.cell_size[c];
-  }
+  rows.first = order.first;
   measure_time(scan, rows);
   for (std::vector<double>* column : {&rows.ux, &rows.uy, &rows.uz, &rows.s, &rows.dt}) {
     column->resize(scan.size());
   }
-  rows.range.resize(cells);
+  rows.range.resize(order.cells());
   workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
-    const std::uint32_t row = rows.first[memory.cell[i]] + memory.rank[i];
+    const std::uint32_t row = order.place(i);
     rows.ux[row] = scan.directions()[i].x();
     rows.uy[row] = scan.directions()[i].y();
     rows.uz[row] = scan.directions()[i].z();
     rows.s[row] = scan.doppler()[i];
     rows.dt[row] = rows.takes_time ? scan.times()[i] - rows.reference_time_s : 0.0;
-    if (memory.rank[i] == 0) {
-      rows.range[memory.cell[i]] = scan.points()[i].norm();
+    if (order.rank[i] == 0) {
+      rows.range[order.cell[i]] = scan.points()[i].norm();
     }
   });
-  rows.sector.resize(cells);
+  rows.sector.resize(order.cells());
   number_sectors(rows);
 }
 

@@ -10,7 +10,7 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
-#include "dynamic_icp/method/spatial/key_numbers.hpp"
+#include "dynamic_icp/method/spatial/cell_order.hpp"
 
 namespace dynamic_icp::ego_motion {
 
@@ -41,17 +41,8 @@ struct DopplerRows {
 /// point, rows in scan order within their cell.
 DopplerRows sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers);
 
-/// Working memory of the sorting, to be used again for the next scan.
-struct SortMemory {
-  std::vector<std::uint64_t> keys;       ///< of each point
-  std::vector<std::uint32_t> cell;       ///< of each point
-  std::vector<std::uint32_t> rank;       ///< of each point: how many points of its cell came before
-  std::vector<std::uint32_t> cell_size;  ///< of each cell
-  spatial::KeyNumbers numbers;
-};
-
-/// The same into `rows`, whose memory is used again too.
-void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, SortMemory& memory,
+/// The same into `rows`; its memory and that of `order`, the cells of the points, are used again.
+void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, spatial::CellOrder& order,
                      DopplerRows& rows);
 
 /// Rows that vote on what stands still, and the weight of each vote; the weights sum to one.

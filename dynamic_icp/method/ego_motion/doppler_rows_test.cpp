@@ -114,10 +114,10 @@ TEST(Electorate, IsNoLargerThanAllowedAndTakesCellsEvenly) {
 }
 
 TEST(SortIntoCells, UsesItsMemoryAgain) {
-  SortMemory memory;
+  spatial::CellOrder order;
   DopplerRows reused;
   for (const Scan& scan : {random_scan(6, 8000, 60.0), Scan{}, random_scan(7, 300, 5.0)}) {
-    sort_into_cells(scan, 2.0, Workers(2), memory, reused);
+    sort_into_cells(scan, 2.0, Workers(2), order, reused);
     const DopplerRows fresh = sort_into_cells(scan, 2.0, Workers(1));
     EXPECT_EQ(reused.first, fresh.first);
     EXPECT_EQ(reused.s, fresh.s);

@@ -21,10 +21,10 @@ ConfigFields fields(VelocityFilterConfig& config) {
 }
 
 std::vector<double> compensated_doppler(const Scan& scan, const Eigen::Vector3d& velocity_sensor) {
-  std::vector<double> compensated(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    compensated[i] = scan.doppler()[i] + scan.directions()[i].dot(velocity_sensor);
-  }
+  EgoVelocity ego;
+  ego.velocity_sensor = velocity_sensor;
+  std::vector<double> compensated;
+  compensated_doppler(scan, ego, Workers(1), compensated);
   return compensated;
 }
 

@@ -25,6 +25,28 @@ TEST(VelocityFilter, TakesTheSensorsOwnMotionOut) {
   EXPECT_NEAR(compensated[3], 0.0, 1e-12);
 }
 
+TEST(VelocityFilter, CompensatesTheMotionAtTheTimeOfEachPoint) {
+  const Eigen::Vector3d v(10.0, 1.0, 0.0);
+  const Eigen::Vector3d a(-4.0, 0.0, 2.0);
+  RawScan raw;
+  raw.points = {{20, 5, 1}, {20, 5, 1}, {-3, 8, 2}};
+  raw.times = {0.0, 0.05, 0.1};
+  EgoVelocity ego;
+  ego.velocity_sensor = v;
+  ego.acceleration_sensor = a;
+  ego.reference_time_s = 0.05;
+  ego.bias_mps = 0.3;
+  for (std::size_t i = 0; i < 3; ++i) {  // static points
+    raw.doppler.push_back(0.3 - raw.points[i].normalized().dot(v + (raw.times[i] - 0.05) * a));
+  }
+  raw.doppler[1] += 7.0;  // but one
+  std::vector<double> compensated;
+  compensated_doppler(Scan::from_raw(raw), ego, Workers(1), compensated);
+  EXPECT_NEAR(compensated[0], 0.0, 1e-12);
+  EXPECT_NEAR(compensated[1], 7.0, 1e-12);
+  EXPECT_NEAR(compensated[2], 0.0, 1e-12);
+}
+
 TEST(VelocityFilter, ThresholdGrowsWithTheDistance) {
   // tau(100 m) = 0.35 + 0.005 * 100 = 0.85 m/s, tau(10 m) = 0.40 m/s.
   const Scan scan = scan_of({{100, 0, 0}, {100, 0, 0}, {10, 0, 0}, {10, 0, 0}, {0, 10, 0}}, {0, 0, 0, 0, 0});

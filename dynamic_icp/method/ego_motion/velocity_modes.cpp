@@ -11,18 +11,19 @@
 #include <Eigen/LU>
 
 #include "dynamic_icp/method/base/random_source.hpp"
+#include "dynamic_icp/method/base/simd.hpp"
 
 namespace dynamic_icp::ego_motion {
 namespace {
 
-constexpr int kLanes = 8;            // hypotheses that are judged together, one per lane of a vector register
+constexpr std::size_t kLanes = 8;    // hypotheses that are counted together, one per lane
 constexpr double kLeastShare = 0.4;  // of the votes of the best; a mode of three noisy rows has lost some to the noise
 constexpr std::uint64_t kDraws = 5;  // rows looked at for the second and the third row of a sample
 
 // Without a pull towards the start a sample in a plane would have no solution; velocities of 100 m/s are free of it.
 constexpr double kFreeSpeedMps = 100.0;
 
-using Lanes = Eigen::Array<float, kLanes, 1>;
+using Lanes = std::array<float, kLanes>;
 
 /// What a vote needs, in single precision: the votes only rank, and twice as many fit into a register.
 struct VoteRow {
@@ -109,22 +110,31 @@ class Sampler {
 
 /// Votes of up to kLanes changes of velocity at once. Lanes do not mix, so the width of a register changes no bit.
 void vote(const std::vector<VoteRow>& rows, const Eigen::Vector3d* changes, std::size_t n, double* result) {
-  Lanes x = Lanes::Zero();
-  Lanes y = Lanes::Zero();
-  Lanes z = Lanes::Zero();
+  Lanes x{};
+  Lanes y{};
+  Lanes z{};
   for (std::size_t h = 0; h < n; ++h) {
-    const auto lane = static_cast<Eigen::Index>(h);
-    x[lane] = static_cast<float>(changes[h].x());
-    y[lane] = static_cast<float>(changes[h].y());
-    z[lane] = static_cast<float>(changes[h].z());
+    x[h] = static_cast<float>(changes[h].x());
+    y[h] = static_cast<float>(changes[h].y());
+    z[h] = static_cast<float>(changes[h].z());
   }
-  Lanes sum = Lanes::Zero();
-  for (const VoteRow& row : rows) {
-    const Lanes e = row.e + row.ux * x + row.uy * y + row.uz * z;
-    sum += row.weight * (1.0F - e * e * row.per_width2).max(0.0F);
-  }
+  Lanes sums{};
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const Lanes vx = x;  // in registers
+    const Lanes vy = y;
+    const Lanes vz = z;
+    Lanes sum{};
+    for (const VoteRow& row : rows) {
+      DYNAMIC_ICP_LANE_LOOP for (std::size_t l = 0; l < kLanes; ++l) {
+        const float e = row.e + row.ux * vx[l] + row.uy * vy[l] + row.uz * vz[l];
+        const float share = 1.0F - e * e * row.per_width2;
+        sum[l] += row.weight * (share > 0.0F ? share : 0.0F);
+      }
+    }
+    sums = sum;
+  });
   for (std::size_t h = 0; h < n; ++h) {
-    result[h] = static_cast<double>(sum[static_cast<Eigen::Index>(h)]);
+    result[h] = static_cast<double>(sums[h]);
   }
 }
 

@@ -6,11 +6,6 @@
 
 namespace dynamic_icp::estimation {
 
-double huber_loss(double e, double k) {
-  const double size = std::abs(e);
-  return size <= k ? 0.5 * e * e : k * size - 0.5 * k * k;
-}
-
 double huber_weight(double e, double k) {
   const double size = std::abs(e);
   return size <= k ? 1.0 : k / size;
@@ -20,11 +15,6 @@ double tukey_loss(double e, double k) {
   const double inside = 1.0 - (e / k) * (e / k);
   const double full = k * k / 6.0;
   return inside <= 0.0 ? full : full * (1.0 - inside * inside * inside);
-}
-
-double geman_mcclure_loss(double e, double k) {
-  const double ratio = e / k;
-  return 0.5 * e * e / (1.0 + ratio * ratio);
 }
 
 double geman_mcclure_weight(double e, double k) {

@@ -5,17 +5,15 @@
 namespace dynamic_icp::estimation {
 
 // Robust kernels for residuals e with scale k, both in the same unit. For each kernel:
-//   loss   rho(e): what is minimised, e^2/2 near zero;
+//   loss   rho(e): what is minimised, e^2/2 near zero (a function only where somebody needs its value);
 //   weight w(e) = rho'(e) / e: what iteratively reweighted least squares multiplies e^2 with.
 // The weight depends on e/k alone, so changing the unit of both changes nothing.
 
-/// rho = e^2/2 for |e| <= k, k|e| - k^2/2 beyond: convex, every residual keeps some pull.
-double huber_loss(double e, double k);
-
+/// Huber: rho = e^2/2 for |e| <= k, k|e| - k^2/2 beyond: convex, every residual keeps some pull.
 /// w = 1 for |e| <= k, k/|e| beyond.
 double huber_weight(double e, double k);
 
-/// rho = k^2/6 (1 - (1 - (e/k)^2)^3) for |e| <= k, k^2/6 beyond: residuals beyond k have no pull at all.
+/// Tukey: rho = k^2/6 (1 - (1 - (e/k)^2)^3) for |e| <= k, k^2/6 beyond: residuals beyond k have no pull at all.
 double tukey_loss(double e, double k);
 
 /// w = (1 - (e/k)^2)^2 for |e| <= k, 0 beyond.
@@ -25,8 +23,6 @@ inline double tukey_weight(double e, double k) {
 }
 
 /// Geman and McClure: rho = e^2/2 k^2/(k^2 + e^2), which approaches k^2/2: far residuals have ever less pull.
-double geman_mcclure_loss(double e, double k);
-
 /// w = (k^2/(k^2 + e^2))^2.
 double geman_mcclure_weight(double e, double k);
 

@@ -16,6 +16,10 @@ struct Kernel {
   Function weight;
 };
 
+double huber_loss(double e, double k) { return std::abs(e) <= k ? 0.5 * e * e : k * std::abs(e) - 0.5 * k * k; }
+
+double geman_mcclure_loss(double e, double k) { return 0.5 * e * e * k * k / (k * k + e * e); }
+
 class RobustKernel : public ::testing::TestWithParam<Kernel> {};
 
 TEST_P(RobustKernel, WeightIsTheSlopeOfTheLossOverTheResidual) {
@@ -60,7 +64,6 @@ TEST(GemanMcClureWeight, FallsToAQuarterAtTheScaleAndNeverToZero) {
   EXPECT_NEAR(geman_mcclure_weight(-0.5, 0.5), 0.25, 1e-15);
   EXPECT_NEAR(geman_mcclure_weight(1.5, 0.5), 0.01, 1e-15);
   EXPECT_GT(geman_mcclure_weight(500.0, 0.5), 0.0);
-  EXPECT_NEAR(geman_mcclure_loss(1e6, 0.5), 0.125, 1e-9);
 }
 
 }  // namespace

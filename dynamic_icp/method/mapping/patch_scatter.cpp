@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-#include "dynamic_icp/method/estimation/median.hpp"
+#include "dynamic_icp/method/base/quantile.hpp"
 
 namespace dynamic_icp::mapping {
 namespace {
@@ -22,7 +22,7 @@ double median_ratio(std::span<const PatchMean> patches, double deviation_m) {
   for (const PatchMean& patch : patches) {
     ratios.push_back(patch.squared_mean / (patch.explained + deviation_m * deviation_m + kLeastVariance_m2));
   }
-  return estimation::median(std::move(ratios));
+  return median(std::move(ratios));
 }
 
 }  // namespace

@@ -73,7 +73,7 @@ class MapOdometry final : public Odometry {
     std::vector<double> radial;           ///< m/s, Doppler of each point without the sensor's motion
     std::vector<std::uint8_t> is_moving;  ///< each point
     preprocess::VoxelMemory voxels;
-    ego_motion::SortMemory sort;
+    spatial::CellOrder sort;
   };
 
   [[nodiscard]] ego_motion::EgoVelocity estimate_ego(const Scan& scan, const ego_motion::DopplerRows& rows,

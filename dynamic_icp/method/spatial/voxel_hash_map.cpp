@@ -4,24 +4,14 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace dynamic_icp::spatial {
 namespace {
 
 constexpr double kMaxCell = 1 << 30;
-constexpr std::uint32_t kFree = std::numeric_limits<std::uint32_t>::max();
-constexpr std::size_t kFewestSlots = 64;
-
-std::uint64_t hash(const std::array<std::int32_t, 3>& cell) {
-  std::uint64_t mixed = 0;
-  for (const std::int32_t coordinate : cell) {
-    mixed = (mixed ^ static_cast<std::uint32_t>(coordinate)) * 0x9e3779b97f4a7c15ULL;
-    mixed ^= mixed >> 32;  // the lower bits choose the slot
-  }
-  return mixed;
-}
+constexpr std::uint32_t kNone = KeyNumbers::kNone;
 
 /// The 27 steps from a voxel to itself and its neighbours, itself first: what it holds is likely to be nearest, and
 /// most neighbours are then too far away to be looked into.
@@ -47,9 +37,7 @@ constexpr auto kSteps = steps();
 }  // namespace
 
 VoxelHashMap::VoxelHashMap(double voxel_size_m, int max_points_per_voxel)
-    : voxel_size_m_(voxel_size_m),
-      capacity_(static_cast<std::uint32_t>(max_points_per_voxel)),
-      slots_(kFewestSlots, kFree) {
+    : voxel_size_m_(voxel_size_m), capacity_(static_cast<std::uint32_t>(max_points_per_voxel)) {
   if (!(voxel_size_m > 0.0) || max_points_per_voxel < 1) {
     throw std::invalid_argument("a voxel needs an edge above zero and room for at least one point");
   }
@@ -61,11 +49,14 @@ void VoxelHashMap::add(std::span<const Eigen::Vector3d> points) {
     if (!cell) {
       continue;
     }
-    const std::uint32_t row = voxel_at(*cell);
-    Voxel& voxel = voxels_[row];
-    if (voxel.count < capacity_) {
-      points_[std::size_t{row} * capacity_ + voxel.count] = point;
-      ++voxel.count;
+    const std::size_t row = voxels_.number_of(*cell);
+    if (row == counts_.size()) {
+      counts_.push_back(0);
+      points_.resize(points_.size() + capacity_);
+    }
+    if (counts_[row] < capacity_) {
+      points_[row * capacity_ + counts_[row]] = point;
+      ++counts_[row];
     }
   }
 }
@@ -73,21 +64,24 @@ void VoxelHashMap::add(std::span<const Eigen::Vector3d> points) {
 void VoxelHashMap::remove_far(const Eigen::Vector3d& position, double max_distance_m) {
   const double gate = squared_gate(max_distance_m);
   std::size_t kept = 0;
-  for (std::size_t row = 0; row < voxels_.size(); ++row) {
+  for (std::size_t row = 0; row < counts_.size(); ++row) {
     const auto first = points_.begin() + static_cast<std::ptrdiff_t>(row * capacity_);
     if (squared_distance(*first, position) > gate) {
       continue;
     }
     if (kept != row) {
-      voxels_[kept] = voxels_[row];
-      std::copy_n(first, voxels_[row].count, points_.begin() + static_cast<std::ptrdiff_t>(kept * capacity_));
+      std::copy_n(first, counts_[row], points_.begin() + static_cast<std::ptrdiff_t>(kept * capacity_));
+      counts_[kept] = counts_[row];
     }
     ++kept;
   }
-  if (kept != voxels_.size()) {
-    voxels_.resize(kept);
+  if (kept != counts_.size()) {
+    counts_.resize(kept);
     points_.resize(kept * capacity_);
-    rebuild_slots(slots_.size());
+    voxels_.clear();
+    for (std::size_t row = 0; row < kept; ++row) {
+      voxels_.number_of(*cell_of(points_[row * capacity_]));
+    }
   }
 }
 
@@ -96,44 +90,38 @@ std::optional<Neighbour> VoxelHashMap::nearest(const Eigen::Vector3d& query, dou
   if (!centre) {
     return std::nullopt;
   }
-  Neighbour best{kFree, squared_gate(max_distance_m)};
+  Neighbour best{kNone, squared_gate(max_distance_m)};
   for (const auto& step : kSteps) {
     const Cell cell = {(*centre)[0] + step[0], (*centre)[1] + step[1], (*centre)[2] + step[2]};
     if (squared_gap(query, cell) > best.squared_distance) {
       continue;
     }
-    const std::uint32_t row = slots_[slot_of(cell)];
-    if (row == kFree) {
+    const std::uint32_t row = voxels_.find(cell);
+    if (row == kNone) {
       continue;
     }
     const std::uint32_t begin = row * capacity_;
-    for (std::uint32_t index = begin; index < begin + voxels_[row].count; ++index) {
+    for (std::uint32_t index = begin; index < begin + counts_[row]; ++index) {
       const Neighbour candidate{index, squared_distance(points_[index], query)};
       if (is_nearer(candidate, best)) {
         best = candidate;
       }
     }
   }
-  return best.index == kFree ? std::nullopt : std::optional(best);
+  return best.index == kNone ? std::nullopt : std::optional(best);
 }
 
 std::vector<Eigen::Vector3d> VoxelHashMap::points() const {
   std::vector<Eigen::Vector3d> all;
   all.reserve(size());
-  for (std::size_t row = 0; row < voxels_.size(); ++row) {
+  for (std::size_t row = 0; row < counts_.size(); ++row) {
     const auto first = points_.begin() + static_cast<std::ptrdiff_t>(row * capacity_);
-    all.insert(all.end(), first, first + voxels_[row].count);
+    all.insert(all.end(), first, first + counts_[row]);
   }
   return all;
 }
 
-std::size_t VoxelHashMap::size() const {
-  std::size_t sum = 0;
-  for (const Voxel& voxel : voxels_) {
-    sum += voxel.count;
-  }
-  return sum;
-}
+std::size_t VoxelHashMap::size() const { return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0}); }
 
 /// Nothing for a point that is not finite or too far out.
 std::optional<VoxelHashMap::Cell> VoxelHashMap::cell_of(const Eigen::Vector3d& point) const {
@@ -148,16 +136,6 @@ std::optional<VoxelHashMap::Cell> VoxelHashMap::cell_of(const Eigen::Vector3d& p
   return cell;
 }
 
-/// Where the voxel stands, or where it would stand.
-std::size_t VoxelHashMap::slot_of(const Cell& cell) const {
-  const std::size_t mask = slots_.size() - 1;
-  std::size_t slot = hash(cell) & mask;
-  while (slots_[slot] != kFree && voxels_[slots_[slot]].cell != cell) {
-    slot = (slot + 1) & mask;
-  }
-  return slot;
-}
-
 /// The square of the distance from the query to the nearest place of the voxel.
 double VoxelHashMap::squared_gap(const Eigen::Vector3d& query, const Cell& cell) const {
   double sum = 0.0;
@@ -167,29 +145,6 @@ double VoxelHashMap::squared_gap(const Eigen::Vector3d& query, const Cell& cell)
     sum += gap * gap;
   }
   return sum;
-}
-
-/// The row of the voxel, which is made when it is not there. At most half of the slots are taken.
-std::uint32_t VoxelHashMap::voxel_at(const Cell& cell) {
-  const std::size_t slot = slot_of(cell);
-  if (slots_[slot] != kFree) {
-    return slots_[slot];
-  }
-  const auto row = static_cast<std::uint32_t>(voxels_.size());
-  slots_[slot] = row;
-  voxels_.push_back({cell, 0});
-  points_.resize(points_.size() + capacity_);
-  if (2 * voxels_.size() > slots_.size()) {
-    rebuild_slots(2 * slots_.size());
-  }
-  return row;
-}
-
-void VoxelHashMap::rebuild_slots(std::size_t slots) {
-  slots_.assign(slots, kFree);
-  for (std::uint32_t row = 0; row < voxels_.size(); ++row) {
-    slots_[slot_of(voxels_[row].cell)] = row;
-  }
 }
 
 }  // namespace dynamic_icp::spatial

@@ -11,6 +11,7 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/method/spatial/key_numbers.hpp"
 #include "dynamic_icp/method/spatial/neighbour.hpp"
 
 namespace dynamic_icp::spatial {
@@ -44,27 +45,19 @@ class VoxelHashMap {
   [[nodiscard]] std::vector<Eigen::Vector3d> points() const;
 
   [[nodiscard]] std::size_t size() const;
-  [[nodiscard]] bool empty() const { return voxels_.empty(); }
+  [[nodiscard]] bool empty() const { return counts_.empty(); }
 
  private:
   using Cell = std::array<std::int32_t, 3>;
 
-  struct Voxel {
-    Cell cell;
-    std::uint32_t count;  ///< points in it; never 0
-  };
-
   [[nodiscard]] std::optional<Cell> cell_of(const Eigen::Vector3d& point) const;
-  [[nodiscard]] std::size_t slot_of(const Cell& cell) const;
   [[nodiscard]] double squared_gap(const Eigen::Vector3d& query, const Cell& cell) const;
-  std::uint32_t voxel_at(const Cell& cell);
-  void rebuild_slots(std::size_t slots);
 
   double voxel_size_m_;
   std::uint32_t capacity_;
-  std::vector<Voxel> voxels_;            ///< by age
-  std::vector<Eigen::Vector3d> points_;  ///< capacity_ places for each voxel, in the order of voxels_
-  std::vector<std::uint32_t> slots_;     ///< open addressing: rows of voxels_, or kFree
+  NumbersOf<Cell> voxels_;               ///< by age
+  std::vector<std::uint32_t> counts_;    ///< of each voxel: points in it; never 0
+  std::vector<Eigen::Vector3d> points_;  ///< capacity_ places for each voxel
 };
 
 }  // namespace dynamic_icp::spatial

@@ -9,7 +9,7 @@
 
 #include <Eigen/Eigenvalues>
 
-#include "dynamic_icp/method/estimation/median.hpp"
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/estimation/robust_kernel.hpp"
 
 namespace dynamic_icp::tracking {
@@ -45,13 +45,13 @@ ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions
   for (const Eigen::Vector3d& u : directions) {
     mean += u;
   }
-  result.W = estimation::median({radial.begin(), radial.end()}) * mean.normalized();
+  result.W = median({radial.begin(), radial.end()}) * mean.normalized();
   std::vector<double> magnitudes(radial.size());
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     for (std::size_t i = 0; i < radial.size(); ++i) {
       magnitudes[i] = std::abs(radial[i] - directions[i].dot(result.W));
     }
-    const double scale = std::max(sigma_mps, estimation::kDeviationPerMad * estimation::median(magnitudes));
+    const double scale = std::max(sigma_mps, kDeviationPerMad * median(magnitudes));
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < radial.size(); ++i) {

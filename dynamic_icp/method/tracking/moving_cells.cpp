@@ -5,11 +5,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
+#include <limits>
+#include <numbers>
 #include <numeric>
+#include <utility>
 
 #include "dynamic_icp/method/spatial/cell_key.hpp"
+#include "dynamic_icp/method/spatial/cell_order.hpp"
 #include "dynamic_icp/method/spatial/disjoint_sets.hpp"
-#include "dynamic_icp/method/spatial/key_numbers.hpp"
+#include "dynamic_icp/method/tracking/oriented_box.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -92,30 +97,85 @@ template <typename Visit>
 void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::uint32_t> chosen, double reach_m,
                       const Visit& visit) {
   const double cube_m = kWiderThanReach * reach_m;
-  spatial::KeyNumbers numbers(chosen.size());
-  std::vector<std::uint64_t> keys;
-  std::vector<std::vector<std::uint32_t>> cubes;
-  for (const std::uint32_t i : chosen) {
-    const std::uint64_t key = spatial::clamped_cell_key(cells[i].centroid / cube_m);
-    const std::uint32_t number = numbers.number_of(key);
-    if (number == cubes.size()) {
-      cubes.emplace_back();
-      keys.push_back(key);
-    }
-    cubes[number].push_back(i);
+  spatial::CellOrder cubes;
+  cubes.keys.resize(chosen.size());
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    cubes.keys[k] = spatial::clamped_cell_key(cells[chosen[k]].centroid / cube_m);
+  }
+  cubes.sort();
+  std::vector<std::uint64_t> keys(cubes.cells());
+  std::vector<std::uint32_t> members(chosen.size());
+  for (std::size_t k = 0; k < chosen.size(); ++k) {
+    keys[cubes.cell[k]] = cubes.keys[k];
+    members[cubes.place(k)] = chosen[k];
   }
   const std::vector<std::uint64_t> offsets = half_neighbourhood();
-  for (std::size_t cube = 0; cube < cubes.size(); ++cube) {
+  for (std::size_t cube = 0; cube < cubes.cells(); ++cube) {
     for (const std::uint64_t offset : offsets) {
-      const std::uint32_t other = numbers.find(keys[cube] + offset);
+      const std::uint32_t other = cubes.numbers.find(keys[cube] + offset);
       if (other == spatial::KeyNumbers::kNone) {
         continue;
       }
-      for (std::size_t a = 0; a < cubes[cube].size(); ++a) {
-        for (std::size_t b = other == cube ? a + 1 : 0; b < cubes[other].size(); ++b) {
-          visit(cubes[cube][a], cubes[other][b]);
+      for (std::uint32_t a = cubes.first[cube]; a < cubes.first[cube + 1]; ++a) {
+        for (std::uint32_t b = other == cube ? a + 1 : cubes.first[other]; b < cubes.first[other + 1]; ++b) {
+          visit(members[a], members[b]);
         }
       }
+    }
+  }
+}
+
+constexpr double kTighter = 0.8;     // links are shortened by this factor ...
+constexpr int kMostTightenings = 2;  // ... so often; much shorter ones than a cell would part everything
+
+/// The groups that some of the cells make among themselves.
+std::vector<CellGroup> groups_among(const MovingCells& moving, std::span<const std::uint32_t> cells,
+                                    const GroupingConfig& config) {
+  std::vector<MovingCell> chosen;
+  for (const std::uint32_t cell : cells) {
+    chosen.push_back(moving.cells[cell]);
+  }
+  const std::vector<std::uint32_t> numbers = group_cells(chosen, config);
+  std::vector<CellGroup> groups;
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (numbers[i] == groups.size()) {
+      groups.emplace_back();
+    }
+    groups[numbers[i]].cells.push_back(cells[i]);
+  }
+  return groups;
+}
+
+/// Whether seen from above the cells need a wider strip than one vehicle.
+bool too_wide(const MovingCells& moving, const CellGroup& group, double largest_width_m) {
+  constexpr int kDirections = 12;
+  double width = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < kDirections; ++i) {
+    const Eigen::Vector3d across = upright_axes(std::numbers::pi * i / kDirections).col(1);
+    double low = std::numeric_limits<double>::infinity();
+    double high = -low;
+    for (const std::uint32_t cell : group.cells) {
+      low = std::min(low, across.dot(moving.cells[cell].centroid));
+      high = std::max(high, across.dot(moving.cells[cell].centroid));
+    }
+    width = std::min(width, high - low);
+  }
+  return width > largest_width_m;
+}
+
+/// Gives each group its rows.
+void add_rows(const MovingCells& moving, std::vector<CellGroup>& groups) {
+  constexpr std::uint32_t kNoGroup = ~0u;
+  std::vector<std::uint32_t> group_of_cell(moving.cells.size(), kNoGroup);
+  for (std::uint32_t i = 0; i < groups.size(); ++i) {
+    for (const std::uint32_t cell : groups[i].cells) {
+      group_of_cell[cell] = i;
+    }
+  }
+  for (std::size_t i = 0; i < moving.rows.size(); ++i) {
+    const std::uint32_t group = group_of_cell[moving.cell_of[i]];
+    if (group != kNoGroup) {
+      groups[group].rows.push_back(moving.rows[i]);
     }
   }
 }
@@ -142,36 +202,24 @@ MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::
   MovingCells result;
   result.rows = moving_rows(is_moving, workers);
   const std::size_t n = result.rows.size();
-  std::vector<std::uint64_t> keys(n);
+  spatial::CellOrder order;
+  order.keys.resize(n);
   workers.for_each(n, kBlock, [&](std::size_t i) {
-    keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
+    order.keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
   });
-  spatial::KeyNumbers numbers;
-  std::vector<std::uint32_t> first = {0};  // of each cell, among the points sorted by cell
-  result.cell_of.resize(n);
-  for (std::size_t i = 0; i < n; ++i) {
-    // Points that follow each other often share a cell.
-    const bool same = i > 0 && keys[i] == keys[i - 1];
-    const std::uint32_t cell = same ? result.cell_of[i - 1] : numbers.number_of(keys[i]);
-    if (cell + 1 == first.size()) {
-      first.push_back(0);
-    }
-    result.cell_of[i] = cell;
-    ++first[cell + 1];
-  }
-  std::partial_sum(first.begin(), first.end(), first.begin());
+  order.sort();
   std::vector<std::uint32_t> rows_by_cell(n);
-  std::vector<std::uint32_t> filled(first.begin(), first.end() - 1);
   for (std::size_t i = 0; i < n; ++i) {
-    rows_by_cell[filled[result.cell_of[i]]++] = result.rows[i];
+    rows_by_cell[order.place(i)] = result.rows[i];
   }
-  result.cells.resize(filled.size());
+  result.cells.resize(order.cells());
   workers.for_each(result.cells.size(), kCellBlock, [&](std::size_t cell) {
-    for (std::uint32_t k = first[cell]; k < first[cell + 1]; ++k) {
+    for (std::uint32_t k = order.first[cell]; k < order.first[cell + 1]; ++k) {
       add_point(scan, rows_by_cell[k], radial[rows_by_cell[k]], result.cells[cell]);
     }
     take_means(result.cells[cell]);
   });
+  result.cell_of = std::move(order.cell);
   return result;
 }
 
@@ -209,6 +257,29 @@ std::vector<std::uint32_t> group_cells(std::span<const MovingCell> cells, const 
     }
     groups[i] = number;
   }
+  return groups;
+}
+
+std::vector<CellGroup> vehicle_groups(const MovingCells& moving, std::span<const std::uint32_t> cells,
+                                      double largest_width_m, int min_points, const GroupingConfig& config) {
+  GroupingConfig tighter = config;
+  std::vector<CellGroup> groups = groups_among(moving, cells, config);
+  for (int i = 0; i < kMostTightenings; ++i) {
+    tighter.link_distance_m *= kTighter;
+    tighter.link_growth *= kTighter;
+    std::vector<CellGroup> parted;
+    for (CellGroup& group : groups) {
+      if (too_wide(moving, group, largest_width_m)) {
+        std::vector<CellGroup> parts = groups_among(moving, group.cells, tighter);
+        std::move(parts.begin(), parts.end(), std::back_inserter(parted));
+      } else {
+        parted.push_back(std::move(group));
+      }
+    }
+    groups = std::move(parted);
+  }
+  add_rows(moving, groups);
+  std::erase_if(groups, [&](const CellGroup& group) { return std::cmp_less(group.rows.size(), min_points); });
   return groups;
 }
 

@@ -9,8 +9,6 @@
 #include <stdexcept>
 #include <utility>
 
-#include "dynamic_icp/method/tracking/cell_groups.hpp"
-
 namespace dynamic_icp::tracking {
 namespace {
 

@@ -12,8 +12,8 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/tracking/expectation.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
-#include "dynamic_icp/method/tracking/still_points.hpp"
 #include "dynamic_icp/method/tracking/tracked_object.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 

@@ -61,26 +61,17 @@ DopplerValues doppler_values(const std::vector<double>& doppler, const std::vect
 
 }  // namespace
 
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto at = std::min(values.size() - 1, static_cast<std::size_t>(share * static_cast<double>(values.size())));
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(at);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 double scatter_of(std::vector<double> values) {
-  const double median = quantile(values, 0.5);
+  const double middle = median(values);
   for (double& value : values) {
-    value = std::abs(value - median);
+    value = std::abs(value - middle);
   }
-  return quantile(std::move(values), 0.5);
+  return median(std::move(values));
 }
 
 double median_error(const std::vector<double>& values) {
-  constexpr double kErrorPerMad = 1.4826 * 1.2533;  // of the median of normal numbers, times the root of their count
+  constexpr double kErrorPerMad =
+      kDeviationPerMad * 1.2533;  // of the median of normal numbers, times the root of their count
   return values.empty() ? 0.0 : kErrorPerMad * scatter_of(values) / std::sqrt(static_cast<double>(values.size()));
 }
 

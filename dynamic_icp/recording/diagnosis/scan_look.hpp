@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
 
@@ -49,9 +50,6 @@ struct ScanLook {
 
 /// Looks at a scan; `still` takes its points that fit to the velocity, or all of them where no velocity fits.
 ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still = nullptr);
-
-/// The value below which a share of the values lies; 0 of none.
-double quantile(std::vector<double> values, double share);
 
 /// Median absolute deviation from the median; 0 of none.
 double scatter_of(std::vector<double> values);

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/tools/drawing/markup.hpp"
 #include "dynamic_icp/tools/figures/ground_view.hpp"
 #include "dynamic_icp/tools/figures/object_marks.hpp"
@@ -167,7 +169,7 @@ std::vector<PanelContent> panel_contents(const ScanView& view) {
       {"Measured Doppler", "every point comes with its radial velocity", view.scan.doppler()}};
   if (view.ego_velocity.allFinite()) {
     contents.push_back({"Own motion taken out", "what is still coloured moves by itself",
-                        compensated_doppler(view.scan, view.ego_velocity)});
+                        ego_motion::compensated_doppler(view.scan, view.ego_velocity)});
   }
   return contents;
 }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <tuple>
 
+#include "dynamic_icp/method/base/quantile.hpp"
+
 namespace dynamic_icp::figures {
 namespace {
 
@@ -33,15 +35,6 @@ Coordinates ground_coordinates(const Scan& scan, std::span<const std::uint32_t> 
 }
 
 }  // namespace
-
-double quantile(std::vector<double> values, double share) {
-  if (values.empty()) {
-    return 0.0;
-  }
-  const auto place = static_cast<std::ptrdiff_t>(std::lround(share * static_cast<double>(values.size() - 1)));
-  std::nth_element(values.begin(), values.begin() + place, values.end());
-  return values[static_cast<std::size_t>(place)];
-}
 
 std::vector<std::uint32_t> rows_per_cell(const Scan& scan, double cell_m) {
   using Entry = std::tuple<double, double, double, std::uint32_t>;  // square along x and y, Doppler, row
@@ -98,15 +91,6 @@ drawing::Range field_of_view(const Scan& scan) {
   }
   constexpr double kNearlyAll = 0.999;
   return middle_part(azimuths, kNearlyAll);
-}
-
-std::vector<double> compensated_doppler(const Scan& scan, const Eigen::Vector3d& ego_velocity) {
-  std::vector<double> compensated;
-  compensated.reserve(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    compensated.push_back(scan.doppler()[i] + scan.directions()[i].dot(ego_velocity));
-  }
-  return compensated;
 }
 
 std::vector<std::uint32_t> rows_on_object(const ScanView& view, const std::vector<double>& compensated,

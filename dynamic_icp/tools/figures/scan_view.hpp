@@ -49,10 +49,6 @@ Region region_of_interest(const Scan& scan, std::span<const std::uint32_t> rows,
 /// lie.
 drawing::Range field_of_view(const Scan& scan);
 
-/// The Doppler that is left when the sensor's own motion is taken out, s_i + u_i.v of the paper's Eq. (4), m/s; zero
-/// for static points but for noise.
-std::vector<double> compensated_doppler(const Scan& scan, const Eigen::Vector3d& ego_velocity);
-
 /// The rows of the scan on an object: by the labels or, without them, the points near its centroid that move, and
 /// whose Doppler without own motion (`compensated`) agrees with its velocity.
 std::vector<std::uint32_t> rows_on_object(const ScanView& view, const std::vector<double>& compensated,
@@ -60,8 +56,5 @@ std::vector<std::uint32_t> rows_on_object(const ScanView& view, const std::vecto
 
 /// The box of an object from above: around its rows, or where those are too few, its extent around its centroid.
 Region footprint(const ScanView& view, std::span<const std::uint32_t> rows, const ObjectRow& object);
-
-/// The value below which a share (0 to 1) of `values` lies; 0 when there are none.
-double quantile(std::vector<double> values, double share);
 
 }  // namespace dynamic_icp::figures

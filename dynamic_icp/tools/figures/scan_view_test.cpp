@@ -10,6 +10,8 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+
 namespace dynamic_icp::figures {
 namespace {
 
@@ -44,7 +46,7 @@ struct Scene {
 
 TEST(ScanView, StaticPointsHaveNoCompensatedDoppler) {
   const Scene scene;
-  const std::vector<double> compensated = compensated_doppler(scene.view.scan, scene.velocity);
+  const std::vector<double> compensated = ego_motion::compensated_doppler(scene.view.scan, scene.velocity);
   for (std::size_t k = 100; k < compensated.size(); ++k) {
     EXPECT_NEAR(compensated[k], 0.0, 1e-12);
   }
@@ -73,7 +75,7 @@ TEST(ScanView, OneRowPerCellWithTheMedianDoppler) {
 
 TEST(ScanView, FindsTheRowsOfAnObjectWithAndWithoutLabels) {
   Scene scene;
-  const std::vector<double> compensated = compensated_doppler(scene.view.scan, scene.velocity);
+  const std::vector<double> compensated = ego_motion::compensated_doppler(scene.view.scan, scene.velocity);
   std::vector<std::uint32_t> car(100);
   for (std::uint32_t k = 0; k < 100; ++k) {
     car[k] = k;
@@ -92,7 +94,7 @@ TEST(ScanView, FindsTheRowsOfAnObjectWithAndWithoutLabels) {
 
 TEST(ScanView, FootprintIsTheBoxOfTheRowsOrTheExtent) {
   const Scene scene;
-  const std::vector<double> compensated = compensated_doppler(scene.view.scan, scene.velocity);
+  const std::vector<double> compensated = ego_motion::compensated_doppler(scene.view.scan, scene.velocity);
   const Region box = footprint(scene.view, rows_on_object(scene.view, compensated, scene.car), scene.car);
   EXPECT_NEAR(box.middle().x(), 30.0, 0.3);
   EXPECT_NEAR(box.x.length(), 4.0, 0.4);
@@ -131,14 +133,6 @@ TEST(ScanView, FieldOfViewOfASector) {
   const drawing::Range view = field_of_view(Scan::from_raw(raw));
   EXPECT_NEAR(view.minimum, -std::numbers::pi / 3.0, 0.01);
   EXPECT_NEAR(view.maximum, std::numbers::pi / 3.0, 0.01);
-}
-
-TEST(ScanView, QuantilesOfLittle) {
-  EXPECT_EQ(quantile({}, 0.5), 0.0);
-  EXPECT_EQ(quantile({4.0}, 0.9), 4.0);
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.5), 2.0);
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 1.0), 3.0);
-  EXPECT_EQ(quantile({3.0, 1.0, 2.0}, 0.0), 1.0);
 }
 
 }  // namespace

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/tools/drawing/axes.hpp"
-#include "dynamic_icp/tools/figures/scan_view.hpp"
 
 namespace dynamic_icp::figures {
 namespace {

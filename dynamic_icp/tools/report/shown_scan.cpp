@@ -8,6 +8,7 @@
 #include <optional>
 #include <unordered_map>
 
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/motion/sweep_times.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
@@ -69,20 +70,16 @@ Scan at_stamp(const RunFiles& run, std::size_t frame, const Scan& scan,
 }
 
 std::vector<double> compensated_doppler(const FrameRow& row, const Scan& scan,
-                                        const std::optional<motion::SweepMotion>& motion) {
-  std::vector<double> compensated = scan.doppler();
+                                        const std::optional<motion::SweepMotion>& motion, const Workers& workers) {
+  ego_motion::EgoVelocity ego;
+  ego.bias_mps = std::isfinite(row.doppler_bias) ? row.doppler_bias : 0.0;
   if (scan.doppler_kind() == DopplerKind::kRelative) {
-    compensated = figures::compensated_doppler(scan, row.ego_velocity);
-    if (motion && scan.has_times()) {
-      for (std::size_t i = 0; i < scan.size(); ++i) {
-        compensated[i] = scan.doppler()[i] + scan.directions()[i].dot(motion->velocity_at(scan.times()[i]));
-      }
-    }
+    const bool in_sweep = motion && scan.has_times();
+    ego.velocity_sensor = in_sweep ? motion->velocity : row.ego_velocity;
+    ego.acceleration_sensor = in_sweep ? motion->acceleration : Eigen::Vector3d::Zero();
   }
-  const double bias = std::isfinite(row.doppler_bias) ? row.doppler_bias : 0.0;
-  for (double& value : compensated) {
-    value -= bias;
-  }
+  std::vector<double> compensated;
+  ego_motion::compensated_doppler(scan, ego, workers, compensated);
   return compensated;
 }
 
@@ -189,7 +186,7 @@ ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, 
   const Scan scan = undo ? at_stamp(run, frame, measured, motion, workers) : measured;
 
   ShownScan shown;
-  shown.compensated = compensated_doppler(run.frames[frame], scan, undo ? motion : std::nullopt);
+  shown.compensated = compensated_doppler(run.frames[frame], scan, undo ? motion : std::nullopt, workers);
   const std::optional<std::vector<std::int32_t>> saved = figures::read_labels(run, frame, raw.points.size());
   shown.labels = saved ? saved_labels(run, frame, scan, *saved, shown.compensated)
                        : guessed_labels(run, frame, scan, shown.compensated);

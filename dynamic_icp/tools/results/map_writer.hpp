@@ -21,7 +21,7 @@ std::filesystem::path map_destination(const std::filesystem::path& path, const s
                                       const std::filesystem::path& staging);
 
 /// Collects the static points of a run in world axes: of each voxel the first point that falls into it. The memory it
-/// takes (about 50 bytes a voxel) grows with the scene and not with the time spent in it; the points and their order
+/// takes (about 90 bytes a voxel) grows with the scene and not with the time spent in it; the points and their order
 /// depend on the frames alone.
 class MapWriter {
  public:

@@ -1,0 +1,29 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace dynamic_icp {
+
+/// Standard deviation of normal errors over the median of their absolute values.
+inline constexpr double kDeviationPerMad = 1.4826;
+
+/// The value in place round(share * (n - 1)) of the ascending values, share from 0 to 1; 0 of none. Unlike
+/// evaluation::percentile it does not interpolate: what it gives was measured.
+inline double quantile(std::vector<double> values, double share) {
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto place = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
+  std::nth_element(values.begin(), place, values.end());
+  return *place;
+}
+
+/// The middle value, of an even number the upper of the two; 0 of none.
+inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
+
+}  // namespace dynamic_icp

@@ -1,0 +1,92 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/track.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/random_source.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+const Vector3d kSize(4.5, 1.8, 1.5);
+
+/// The rear and the right side of a car that drives straight; the sensor is in the origin, the points were measured
+/// `time_s` after the stamp.
+Sighting car_at(const Vector3d& centre, const Vector3d& velocity, std::uint64_t seed, double time_s = 0.0) {
+  const Eigen::Matrix3d axes = upright_axes(std::atan2(velocity.y(), velocity.x()));
+  Sighting sighting;
+  for (std::uint64_t i = 0; i < 200; ++i) {
+    const RandomSource one = RandomSource(seed).fork(i);
+    Vector3d q(one.uniform(0, -0.5, 0.5), one.uniform(1, -0.5, 0.5), one.uniform(2, -0.5, 0.5));
+    (i % 3 == 0 ? q.x() : q.y()) = -0.5;
+    const Vector3d noise(0.02 * one.normal(3), 0.02 * one.normal(4), 0.0);
+    sighting.points.emplace_back(centre + time_s * velocity + axes * (q.cwiseProduct(kSize) + noise));
+    sighting.directions.push_back(sighting.points.back().normalized());
+    sighting.radial.push_back(sighting.directions.back().dot(velocity) + 0.05 * one.normal(5));
+    sighting.times.push_back(time_s);
+  }
+  sighting.mean_time_s = time_s;
+  return sighting;
+}
+
+double largest_sigma(const Eigen::Matrix3d& covariance) {
+  return std::sqrt(covariance.selfadjointView<Eigen::Lower>().eigenvalues().maxCoeff());
+}
+
+TEST(Track, FindsTheMotionThatOneScanLeavesOpen) {
+  const TrackConfig config;
+  const Vector3d velocity = 12.0 * upright_axes(0.5).col(0);
+  Vector3d centre(25.0, 8.0, 0.0);
+  Track track(car_at(centre, velocity, 1), 0.0, config);
+  const double at_first = largest_sigma(track.velocity_covariance());
+  for (std::uint64_t scan = 2; scan < 12; ++scan) {
+    centre += 0.1 * velocity;
+    track.correct(car_at(centre, velocity, scan), 0.1 * static_cast<double>(scan - 1), config);
+  }
+  EXPECT_LT((track.motion().velocity() - velocity).norm(), 0.5);
+  EXPECT_LT((track.box().centre - centre).head<2>().norm(), 0.5);
+  EXPECT_GT(std::abs(track.box().axes.col(0).dot(velocity.normalized())), 0.99);
+  EXPECT_LT(largest_sigma(track.velocity_covariance()), 0.5 * at_first);
+}
+
+TEST(Track, IsAtTheMeanTimeOfItsLastMeasurement) {
+  const TrackConfig config;
+  const Vector3d velocity(10.0, 0.0, 0.0);
+  Track track(car_at({20.0, 5.0, 0.0}, velocity, 1, 0.04), 3.0, config);
+  EXPECT_DOUBLE_EQ(track.time_s(), 3.04);
+  track.correct(car_at({21.0, 5.0, 0.0}, velocity, 2, 0.06), 3.1, config);
+  EXPECT_DOUBLE_EQ(track.time_s(), 3.16);
+}
+
+TEST(Track, PredictsAlongItsVelocityAndBackAgain) {
+  const TrackConfig config;
+  const Vector3d velocity(10.0, 0.0, 0.0);
+  Track track(car_at({20.0, 5.0, 0.0}, velocity, 1), 0.0, config);
+  const Vector3d position = track.motion().position();
+  const double sigma = largest_sigma(track.velocity_covariance());
+  const Vector3d step = 0.3 * track.motion().velocity();
+  track.predict(0.3, config);
+  EXPECT_LT((track.motion().position() - position - step).norm(), 0.02 * step.norm() + 0.02);
+  EXPECT_GT(largest_sigma(track.velocity_covariance()), sigma) << "the future is less certain";
+  track.predict(0.0, config);
+  EXPECT_LT((track.motion().position() - position).norm(), 1e-6);
+}
+
+TEST(Track, CovarianceIncludesTheDisagreementOfTheHypotheses) {
+  // At first sight the side of a car tells its direction up to quarter turns only.
+  const TrackConfig config;
+  const Track track(car_at({25.0, 8.0, 0.0}, 12.0 * upright_axes(0.5).col(0), 1), 0.0, config);
+  const Eigen::Matrix3d best = track.motion().covariance().block<3, 3>(3, 3);
+  EXPECT_GE(track.velocity_covariance().trace(), best.trace());
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
