@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <iterator>
-#include <set>
+#include <span>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -58,48 +58,6 @@ namespace {
 // Of earlier versions, where it chose between the two presets of dynamic-icp.
 constexpr const char* kScanToScan = "odometry.scan_to_scan";
 
-/// All keys that there are, each with a value in some configuration: those of the pipeline asked for first.
-class AllKeys {
- public:
-  AllKeys(odometry::Config& config, const std::string& preset) : scan_to_scan_(preset == "paper") {
-    add(odometry::fields(config));
-    own_ = fields_.size();
-    others_.push_back(odometry::configuration("dynamic-icp", preset));
-    for (const odometry::Pipeline& pipeline : odometry::pipelines()) {
-      others_.push_back(pipeline.config);
-    }
-    for (odometry::Config& other : others_) {
-      add(odometry::fields(other));
-    }
-    add({{kScanToScan, &scan_to_scan_, 0, 0, "", ""}});
-  }
-  AllKeys(const AllKeys&) = delete;
-  AllKeys& operator=(const AllKeys&) = delete;
-
-  [[nodiscard]] const ConfigFields& fields() const { return fields_; }
-
-  /// Whether the pipeline asked for has it.
-  [[nodiscard]] bool is_own(const std::string& key) const {
-    return std::any_of(fields_.begin(), fields_.begin() + static_cast<std::ptrdiff_t>(own_),
-                       [&](const ConfigField& field) { return field.key == key; });
-  }
-
- private:
-  void add(const ConfigFields& more) {
-    for (const ConfigField& field : more) {
-      if (known_.insert(field.key).second) {
-        fields_.push_back(field);
-      }
-    }
-  }
-
-  bool scan_to_scan_;
-  std::vector<odometry::Config> others_;
-  ConfigFields fields_;
-  std::set<std::string> known_;
-  std::size_t own_ = 0;
-};
-
 /// Reads the file, which may list all keys, as `dynamic-icp config` prints them. Returns the keys that it changes.
 std::vector<std::string> load_file(const std::string& path, const ConfigFields& fields) {
   std::vector<std::string> before;
@@ -114,18 +72,32 @@ std::vector<std::string> load_file(const std::string& path, const ConfigFields& 
   return changed;
 }
 
-/// Returns the keys that are not those of the configuration.
+bool has_key(std::span<const ConfigField> fields, const std::string& key) {
+  return std::ranges::find(fields, key, &ConfigField::key) != fields.end();
+}
+
+/// Sets what is given and returns the keys of it that are not those of the configuration: other pipelines read them.
 std::vector<std::string> read_settings(const MethodOptions& options, odometry::Config& config) {
-  const AllKeys keys(config, options.preset);
+  std::vector<odometry::Config> others = {odometry::configuration("dynamic-icp", options.preset)};
+  std::ranges::transform(odometry::pipelines(), std::back_inserter(others), &odometry::Pipeline::config);
+  ConfigFields all = odometry::fields(config);
+  const std::size_t own = all.size();
+  for (odometry::Config& other : others) {
+    std::ranges::copy_if(odometry::fields(other), std::back_inserter(all),
+                         [&](const ConfigField& field) { return !has_key(all, field.key); });
+  }
+  bool scan_to_scan = options.preset == "paper";
+  all.push_back({kScanToScan, &scan_to_scan, 0, 0, "", ""});
+
   std::vector<std::string> given;
   if (!options.config_file.empty()) {
-    given = load_file(options.config_file, keys.fields());
+    given = load_file(options.config_file, all);
   }
-  apply_settings(keys.fields(), options.settings);
+  apply_settings(all, options.settings);
   for (const std::string& setting : options.settings) {
     given.push_back(setting.substr(0, setting.find('=')));
   }
-  std::erase_if(given, [&](const std::string& key) { return keys.is_own(key); });
+  std::erase_if(given, [&](const std::string& key) { return has_key(std::span(all).first(own), key); });
   return given;
 }
 
@@ -150,8 +122,8 @@ std::string nearest_read(const std::string& key, const std::vector<ResolvedConfi
 std::string readers(const std::string& key) {
   std::vector<std::string> names;
   for (const odometry::Pipeline& pipeline : odometry::pipelines()) {
-    const std::vector<std::string> keys = keys_of(pipeline.config);
-    if (std::ranges::find(keys, key) != keys.end()) {
+    odometry::Config config = pipeline.config;
+    if (has_key(odometry::fields(config), key)) {
       names.push_back(pipeline.preset.empty() ? std::string(pipeline.method)
                                               : fmt::format("preset {}", pipeline.preset));
     }

@@ -45,30 +45,20 @@ void check_together(const PreprocessConfig& config) {
   }
 }
 
+constexpr const char* kPredict = "cluster moving points and predict them to the next scan; off: they are left out";
+constexpr const char* kMinPoints =
+    "a scan with fewer points after preprocessing is not aligned; the last motion is continued";
+
 void append_preprocess(ConfigFields& all, PreprocessConfig& config) {
   append_fields(all, "preprocess.range", fields(config.range));
   append_fields(all, "preprocess.voxel", fields(config.voxel));
-}
-
-ConfigField predict_field(bool& predict) {
-  return {"predict", &predict, 0,
-          0,         "",       "cluster moving points and predict them to the next scan; off: they are left out"};
-}
-
-ConfigField min_points_field(int& min_points) {
-  return {"min_points",
-          &min_points,
-          6,
-          1000000,
-          "",
-          "a scan with fewer points after preprocessing is not aligned; the last motion is continued"};
 }
 
 void append_stream(ConfigFields& all, StreamConfig& config) {
   append_fields(all, "odometry",
                 {{"max_gap_s", &config.max_gap_s, 1e-3, 3600.0, "s",
                   "scans farther apart in time are not aligned; the last motion is continued"},
-                 min_points_field(config.min_points)});
+                 {"min_points", &config.min_points, 6, 1000000, "", kMinPoints}});
 }
 
 ScanToScanIcpConfig icp(registration::GeometryTerm geometry) {
@@ -87,7 +77,7 @@ ConfigFields fields(PaperConfig& config) {
   append_fields(all, "ego_motion.filter", fields(config.ego_motion.filter));
   append_fields(all, "dynamics.clustering", fields(config.dynamics.clustering));
   append_fields(all, "dynamics.velocity", fields(config.dynamics.velocity));
-  append_fields(all, "dynamics", {predict_field(config.dynamics.predict)});
+  append_fields(all, "dynamics", {{"predict", &config.dynamics.predict, 0, 0, "", kPredict}});
   append_fields(all, "registration", fields(config.registration));
   append_stream(all, config.stream);
   return all;
@@ -112,7 +102,7 @@ ConfigFields fields(MapOdometryConfig& config) {
   append_fields(all, "mapping", fields(config.mapping));
   append_fields(all, "registration.map", fields(config.map_align));
   append_fields(all, "turn", fields(config.turn));
-  append_fields(all, "dynamics", {predict_field(config.track_objects)});
+  append_fields(all, "dynamics", {{"predict", &config.track_objects, 0, 0, "", kPredict}});
   append_fields(all, "tracking", fields(config.tracking));
   append_fields(
       all, "odometry",
@@ -179,7 +169,7 @@ ConfigFields fields(KissIcpConfig& config) {
        {"max_iterations", &config.max_iterations, 1, 10000, "", "most Gauss-Newton steps"},
        {"min_step", &config.min_step, 1e-12, 1.0, "",
         "the registration has converged when the step, rad and m together, is shorter"}});
-  append_fields(all, "odometry", {min_points_field(config.min_points)});
+  append_fields(all, "odometry", {{"min_points", &config.min_points, 6, 1000000, "", kMinPoints}});
   return all;
 }
 

@@ -3,16 +3,16 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
+#include "dynamic_icp/method/odometry/motion_by_geometry.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
-#include "dynamic_icp/method/registration/align.hpp"
 
 namespace dynamic_icp::odometry {
 
@@ -42,21 +42,17 @@ class DynamicIcp final : public Odometry {
   struct Reference;
 
   void align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const;
-  [[nodiscard]] std::optional<double> interval_s(Stamp stamp) const;
-  void continue_motion(Frame& frame, FrameStatus status) const;
-  [[nodiscard]] registration::Alignment align_without_doppler(const Scan& source, const registration::Target& target,
-                                                              Stamp stamp) const;
-  [[nodiscard]] ego_motion::EgoVelocity velocity_of_motion(const Frame& frame) const;
-  [[nodiscard]] bool has_motion(const Frame& frame) const;
-  [[nodiscard]] Eigen::Isometry3d predicted_motion(Stamp stamp) const;
+  std::vector<double> estimate_ego_motion(const Scan& scan, Frame& frame);
+  [[nodiscard]] Eigen::Isometry3d predicted_motion() const;
   [[nodiscard]] Eigen::Vector3d velocity_prior(const Frame& frame) const;
   [[nodiscard]] std::vector<std::int32_t> cluster(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) const;
 
   PaperConfig config_;
   Workers workers_;
   DopplerKind expected_;
-  std::optional<Stamp> last_stamp_;
+  ScanStream stream_;
   std::unique_ptr<Reference> last_;  ///< the last usable scan; empty before the first
+  MotionByGeometry by_geometry_;     ///< where the Doppler is compensated
 };
 
 }  // namespace dynamic_icp::odometry

@@ -2,21 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 
-#include <algorithm>
-
-#include <fmt/format.h>
-
-#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/scan_limits.hpp"
 
 namespace dynamic_icp::odometry {
-
-void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp) {
-  if (last_stamp && raw.stamp <= *last_stamp) {
-    throw DataError(fmt::format("the scan at {} s is not later than the one before, at {} s", format_seconds(raw.stamp),
-                                format_seconds(*last_stamp)));
-  }
-}
 
 void take_over(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame) {
   const Scan::RangeLimits limits{config.range.min_range_m, config.range.max_range_m};
@@ -33,25 +21,6 @@ Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Worker
   frame.points_used = scan.size();
   return scan;
 }
-
-FrameStatus obstacle(std::size_t points, std::optional<double> interval_s, const StreamConfig& config) {
-  if (points < static_cast<std::size_t>(config.min_points)) {
-    return FrameStatus::kTooFewPoints;
-  }
-  if (!interval_s) {
-    return FrameStatus::kFirst;
-  }
-  if (*interval_s < kMinScanInterval_s) {
-    return FrameStatus::kTooSoon;
-  }
-  return *interval_s > config.max_gap_s ? FrameStatus::kTimeGap : FrameStatus::kNotRun;
-}
-
-bool is_skipped(FrameStatus obstacle) {
-  return obstacle == FrameStatus::kTooFewPoints || obstacle == FrameStatus::kTooSoon;
-}
-
-double prediction_time_s(Stamp from, Stamp to) { return std::min(seconds_between(from, to), kMaxPrediction_s); }
 
 bool is_plausible_motion(const Eigen::Isometry3d& T_target_source, double dt_s) {
   return T_target_source.linear().allFinite() && T_target_source.translation().norm() <= kMaxDoppler_mps * dt_s;

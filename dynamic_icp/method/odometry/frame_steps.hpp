@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
@@ -19,25 +17,12 @@ const PipelineConfig& checked(const PipelineConfig& config) {
   return config;
 }
 
-/// Throws DataError when the scan is not later than the last one.
-void check_order(const RawScan& raw, const std::optional<Stamp>& last_stamp);
-
 /// Takes over what is finite and in range into `scan`, whose memory is used again; fills stamp, counts and `labels` (-1
 /// for all points) of the frame.
 void take_over(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame);
 
 /// Takes over the scan and thins it by the voxel grid.
 Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame);
-
-/// Why a scan with so many usable points, taken `interval_s` after the last usable one, is not aligned to it: kFirst
-/// when there is none (no interval), kTooFewPoints, kTooSoon or kTimeGap. kNotRun: it can be aligned.
-FrameStatus obstacle(std::size_t points, std::optional<double> interval_s, const StreamConfig& config);
-
-/// Whether a scan with this obstacle takes no part: the reference and the state stay those of the scan before.
-bool is_skipped(FrameStatus obstacle);
-
-/// From one stamp to another, but never longer than a motion is predicted ahead.
-double prediction_time_s(Stamp from, Stamp to);
 
 /// Whether a vehicle can make this motion in `dt_s`; false when it is not finite.
 bool is_plausible_motion(const Eigen::Isometry3d& T_target_source, double dt_s);

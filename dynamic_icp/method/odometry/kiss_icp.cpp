@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/estimation/robust_kernel.hpp"
@@ -89,10 +90,11 @@ KissIcp::KissIcp(const KissIcpConfig& config, int threads)
     : config_(checked(config)),
       workers_(threads),
       map_(config_.voxel_size_m, config_.max_points_per_voxel),
-      threshold_(config_.initial_threshold_m, config_.min_motion_m, config_.max_range_m) {}
+      threshold_(config_.initial_threshold_m, config_.min_motion_m, config_.max_range_m),
+      stream_({std::numeric_limits<double>::infinity(), config.min_points}, 0.0) {}
 
 Frame KissIcp::process(const RawScan& raw) {
-  check_order(raw, last_stamp_);
+  stream_.check_order(raw.stamp);
   Frame frame;
   StageClock clock(frame.times);
   const ThinnedScan scan = thin(deskewed_in_range(raw, frame), config_.voxel_size_m);
@@ -100,28 +102,20 @@ Frame KissIcp::process(const RawScan& raw) {
   frame.points_used = source.size();
   clock.finish(Stage::kPreprocess);
 
-  const std::optional<Stamp> before = std::exchange(last_stamp_, raw.stamp);
-  const Eigen::Isometry3d T_world_predicted = T_world_last_.value_or(Eigen::Isometry3d::Identity()) * T_last_now_;
-  frame.T_world_sensor = T_world_predicted;
-  if (source.size() < static_cast<std::size_t>(config_.min_points)) {
-    frame.status = FrameStatus::kTooFewPoints;
-    if (T_world_last_) {
-      continue_from(*T_world_last_, frame);
-    }
+  frame.status = stream_.add(raw.stamp, source.size());
+  frame.T_world_sensor = T_world_last_ * T_last_now_;
+  if (is_skipped(frame.status)) {
+    go_on_to(frame);
     return frame;
   }
   for (const std::uint32_t record : source.records()) {
     frame.labels[record] = 0;
   }
-  if (!T_world_last_) {
-    frame.status = FrameStatus::kFirst;
-  } else {
-    register_to_map(source, T_world_predicted, frame);
+  if (frame.status == FrameStatus::kNotRun) {
+    register_to_map(source, T_world_last_ * T_last_now_, frame);
   }
-  continue_from(T_world_last_.value_or(frame.T_world_sensor), frame);
-  if (before) {
-    tell_velocity_from_motion(frame, seconds_between(*before, raw.stamp));
-  }
+  go_on_to(frame);
+  tell_velocity_from_motion(frame, stream_.since_any_s());
   update_map(scan.map_points, frame.T_world_sensor);
   clock.finish(Stage::kRegistration);
   return frame;
@@ -169,11 +163,11 @@ void KissIcp::update_map(const Scan& points, const Eigen::Isometry3d& T_world_se
   map_.remove_far(T_world_sensor.translation(), config_.max_range_m);
 }
 
-/// Makes the frame's pose the last one and its motion from `T_world_before` the prediction of the next.
-void KissIcp::continue_from(Eigen::Isometry3d T_world_before, Frame& frame) {
+/// Makes the frame's pose the last one and the motion to it the prediction of the next.
+void KissIcp::go_on_to(Frame& frame) {
   // Each pose is a product of the two before it: what a rotation lacks in orthogonality would grow exponentially.
   frame.T_world_sensor.linear() = Eigen::Quaterniond(frame.T_world_sensor.linear()).normalized().toRotationMatrix();
-  T_last_now_ = T_world_before.inverse() * frame.T_world_sensor;
+  T_last_now_ = T_world_last_.inverse() * frame.T_world_sensor;
   T_world_last_ = frame.T_world_sensor;
   frame.T_target_source = T_last_now_.inverse();
 }

@@ -2,11 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <optional>
-
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/odometry/adaptive_threshold.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/method/spatial/voxel_hash_map.hpp"
 
 namespace dynamic_icp::odometry {
@@ -50,14 +49,14 @@ class KissIcp final : public Odometry {
   [[nodiscard]] Scan deskewed_in_range(const RawScan& raw, Frame& frame) const;
   void register_to_map(const Scan& source, const Eigen::Isometry3d& T_world_predicted, Frame& frame);
   void update_map(const Scan& points, const Eigen::Isometry3d& T_world_sensor);
-  void continue_from(Eigen::Isometry3d T_world_before, Frame& frame);
+  void go_on_to(Frame& frame);
 
   KissIcpConfig config_;
   Workers workers_;
   spatial::VoxelHashMap map_;  ///< in the world frame
   AdaptiveThreshold threshold_;
-  std::optional<Stamp> last_stamp_;
-  std::optional<Eigen::Isometry3d> T_world_last_;                 ///< empty before the first usable scan
+  ScanStream stream_;
+  Eigen::Isometry3d T_world_last_ = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_last_now_ = Eigen::Isometry3d::Identity();  ///< the last motion, also the next by prediction
 };
 

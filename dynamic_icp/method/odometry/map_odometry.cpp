@@ -14,6 +14,7 @@
 #include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/motion/motion_uncertainty.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
+#include "dynamic_icp/method/odometry/frame_labels.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/registration/gauss_newton.hpp"
 
@@ -85,55 +86,30 @@ MapOdometry::MapOdometry(const MapOdometryConfig& config, int threads, DopplerKi
       workers_(threads),
       expected_(expected),
       map_(config.mapping),
-      tracker_(config.tracking) {}
+      tracker_(config.tracking),
+      stream_(config.stream) {}
 
 std::vector<std::string> MapOdometry::assumptions() const {
   return expected_ == DopplerKind::kCompensated ? std::vector{compensated_sentence()} : std::vector<std::string>{};
 }
 
 Frame MapOdometry::process(const RawScan& raw) {
-  check_order(raw, last_stamp_);
+  stream_.check_order(raw.stamp);
   Frame frame;
-  frame.sweep = motion::sweep_as_configured(raw, config_.sweep);
   StageClock clock(frame.times);
-  const std::optional<RawScan> timed = motion::retimed(raw, config_.sweep);
-  Scan& whole = memory_.whole;
-  std::vector<std::uint32_t>& thinned = memory_.thinned;
-  ego_motion::DopplerRows& rows = memory_.rows;
-  take_over(timed ? *timed : raw, config_.preprocess, workers_, whole, frame);
-  workers_.both([&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, thinned); },
-                [&] {
-                  ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
-                                              rows);
-                });
-  frame.points_used = thinned.size();
+  thin_and_sort(raw, frame);
   clock.finish(Stage::kPreprocess);
-  last_stamp_ = raw.stamp;
-  Moment now;
-  now.stamp_s = seconds_between(first_stamp_.value_or(raw.stamp), raw.stamp);
-  const std::optional<double> interval_s = state_ ? std::optional(now.stamp_s - state_->stamp_s) : std::nullopt;
-  const FrameStatus found = obstacle(thinned.size(), interval_s, config_.stream);
+
+  const FrameStatus found = stream_.add(raw.stamp, memory_.thinned.size());
   frame.status = found;
   if (is_skipped(found)) {
     if (state_) {
-      extrapolate(now.stamp_s, found, frame);
+      extrapolate(stream_.elapsed_s(), found, frame);
     }
     return frame;
   }
-  if (!first_stamp_) {
-    first_stamp_ = raw.stamp;
-  }
-  now.middle_s = rows.reference_time_s;
-  now.duration_s = rows.duration_s;
-  now.is_relative = whole.doppler_kind() == DopplerKind::kRelative;
-  now.filtered = estimate_ego(whole, rows, now.stamp_s);
-  now.ego = now.is_relative ? ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift) : now.filtered;
+  Moment now = tell_static_from_moving();
   frame.ego = now.ego;
-  const ego_motion::EgoVelocity in_doppler = now.is_relative ? now.ego : at_rest(whole);
-  ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
-  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, in_doppler), workers_,
-                           memory_.is_moving);
-  now.still = whole.select(still_rows(thinned, memory_.is_moving));
   clock.finish(Stage::kEgoMotion);
 
   if (found == FrameStatus::kFirst) {
@@ -158,9 +134,43 @@ Frame MapOdometry::process(const RawScan& raw) {
   return frame;
 }
 
-ego_motion::EgoVelocity MapOdometry::estimate_ego(const Scan& scan, const ego_motion::DopplerRows& rows,
-                                                  double stamp_s) const {
+/// The scan in range, the rows that the voxel grid keeps, and its Doppler by cells.
+void MapOdometry::thin_and_sort(const RawScan& raw, Frame& frame) {
+  frame.sweep = sweep_as_configured(raw, config_.sweep);
+  const std::optional<RawScan> timed = retimed(raw, config_.sweep);
+  const Scan& whole = memory_.whole;
+  take_over(timed ? *timed : raw, config_.preprocess, workers_, memory_.whole, frame);
+  workers_.both(
+      [&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, memory_.thinned); },
+      [&] {
+        ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
+                                    memory_.rows);
+      });
+  frame.points_used = memory_.thinned.size();
+}
+
+/// The velocity of the sensor at this scan, and the points that stand still.
+MapOdometry::Moment MapOdometry::tell_static_from_moving() {
+  const Scan& whole = memory_.whole;
+  Moment now;
+  now.stamp_s = stream_.elapsed_s();
+  now.middle_s = memory_.rows.reference_time_s;
+  now.duration_s = memory_.rows.duration_s;
+  now.is_relative = whole.doppler_kind() == DopplerKind::kRelative;
+  now.filtered = estimate_ego(now.stamp_s);
+  now.ego = now.is_relative ? ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift) : now.filtered;
+  const ego_motion::EgoVelocity in_doppler = now.is_relative ? now.ego : at_rest(whole);
+  ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
+  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, in_doppler), workers_,
+                           memory_.is_moving);
+  now.still = whole.select(still_rows(memory_.thinned, memory_.is_moving));
+  return now;
+}
+
+ego_motion::EgoVelocity MapOdometry::estimate_ego(double stamp_s) const {
   const EgoMotionConfig& config = config_.ego_motion;
+  const Scan& scan = memory_.whole;
+  const ego_motion::DopplerRows& rows = memory_.rows;
   if (scan.doppler_kind() == DopplerKind::kCompensated) {
     return state_ ? goes_on(state_->filtered, stamp_s - state_->stamp_s) : unknown_velocity();
   }
@@ -375,36 +385,14 @@ std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
   return points;
 }
 
-/// Labels the points, tracks what moves, and counts both over the thinned scan.
+/// Tracks what moves, and labels the points.
 void MapOdometry::track_objects(Frame& frame) {
-  Scan& scan = memory_.whole;
-  const std::vector<std::uint8_t>& is_moving = memory_.is_moving;
-  workers_.for_each(scan.size(), kBlock,
-                    [&](std::size_t row) { frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0; });
-  std::vector<std::uint8_t> in_track(scan.size(), 0);
+  std::vector<tracking::TrackedObject> objects;
   if (config_.track_objects) {
-    scan = motion::deskew(std::move(scan), state_->sweep, workers_);
-    for (tracking::TrackedObject& object :
-         tracker_.update(scan, memory_.radial, is_moving, frame.T_world_sensor, workers_)) {
-      const bool is_confirmed = object.status == tracking::TrackStatus::kConfirmed;
-      for (const std::uint32_t row : object.members) {
-        in_track[row] = 1;
-        if (is_confirmed) {
-          frame.labels[scan.records()[row]] = static_cast<std::int32_t>(object.id);
-        }
-      }
-      if (is_confirmed) {
-        frame.tracked.push_back(std::move(object));
-      }
-    }
+    memory_.whole = motion::deskew(std::move(memory_.whole), state_->sweep, workers_);
+    objects = tracker_.update(memory_.whole, memory_.radial, memory_.is_moving, frame.T_world_sensor, workers_);
   }
-  for (const std::uint32_t row : memory_.thinned) {
-    if (is_moving[row] != 0) {
-      ++frame.dynamic_candidates;
-      frame.dynamic_clustered += in_track[row];
-      frame.dynamic_refined += frame.labels[scan.records()[row]] > 0 ? 1 : 0;
-    }
-  }
+  describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, std::move(objects), workers_);
 }
 
 }  // namespace dynamic_icp::odometry

@@ -16,6 +16,7 @@
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
 #include "dynamic_icp/method/preprocess/voxel_grid.hpp"
 #include "dynamic_icp/method/tracking/object_tracker.hpp"
@@ -76,8 +77,9 @@ class MapOdometry final : public Odometry {
     spatial::CellOrder sort;
   };
 
-  [[nodiscard]] ego_motion::EgoVelocity estimate_ego(const Scan& scan, const ego_motion::DopplerRows& rows,
-                                                     double stamp_s) const;
+  void thin_and_sort(const RawScan& raw, Frame& frame);
+  [[nodiscard]] Moment tell_static_from_moving();
+  [[nodiscard]] ego_motion::EgoVelocity estimate_ego(double stamp_s) const;
   void begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor);
   void go_on(const Moment& now, Frame& frame);
   void lose(const Moment& now, const mapping::MotionPrior& prior, Frame& frame);
@@ -107,8 +109,7 @@ class MapOdometry final : public Odometry {
   ScanMemory memory_;
   mapping::PlaneMap map_;
   tracking::ObjectTracker tracker_;
-  std::optional<Stamp> first_stamp_;
-  std::optional<Stamp> last_stamp_;
+  ScanStream stream_;
   std::optional<State> state_;  ///< empty before the first usable scan
 };
 

@@ -47,14 +47,15 @@ struct ScanToScanIcp::Reference {
 };
 
 ScanToScanIcp::ScanToScanIcp(const ScanToScanIcpConfig& config, int threads)
-    : config_(checked(config)), workers_(threads), expected_(DopplerKind::kRelative) {}
+    : config_(checked(config)), workers_(threads), expected_(DopplerKind::kRelative), stream_(config.stream) {}
 
 ScanToScanIcp::ScanToScanIcp(const DopplerIcpConfig& config, const Surroundings& surroundings, int threads)
     : config_(checked(config).icp),
       doppler_icp_(config),
       T_vehicle_sensor_(surroundings.T_vehicle_sensor),
       workers_(threads),
-      expected_(surroundings.doppler_kind) {}
+      expected_(surroundings.doppler_kind),
+      stream_(config.icp.stream) {}
 
 ScanToScanIcp::~ScanToScanIcp() = default;
 
@@ -73,15 +74,18 @@ std::vector<std::string> ScanToScanIcp::assumptions() const {
 }
 
 Frame ScanToScanIcp::process(const RawScan& raw) {
-  check_order(raw, last_stamp_);
+  stream_.check_order(raw.stamp);
   Frame frame;
   StageClock clock(frame.times);
   const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
   clock.finish(Stage::kPreprocess);
-  last_stamp_ = raw.stamp;
-  const FrameStatus found = obstacle(scan.size(), interval_s(raw.stamp), config_.stream);
-  if (is_skipped(found)) {
-    continue_motion(frame, found);
+
+  frame.status = stream_.add(raw.stamp, scan.size());
+  const bool can_align = frame.status == FrameStatus::kNotRun;
+  if (!can_align && last_) {
+    set_motion(frame, frame.status, last_->T_world_sensor, predicted_motion());
+  }
+  if (is_skipped(frame.status)) {
     return frame;
   }
   for (const std::uint32_t record : scan.records()) {
@@ -95,29 +99,26 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
                     : registration::PreparedTarget(std::move(points), config_.normals, workers_)});
   clock.finish(Stage::kNormals);
 
-  if (found == FrameStatus::kNotRun) {
+  if (can_align) {
     align_to_last(*now, frame);
-  } else {
-    continue_motion(frame, found);
   }
   clock.finish(Stage::kRegistration);
 
   now->T_world_sensor = frame.T_world_sensor;
   if (last_) {
-    const double dt_s = *interval_s(raw.stamp);
-    now->twist = log_se3(frame.T_target_source) / dt_s;
-    tell_velocity_from_motion(frame, dt_s);
+    now->twist = log_se3(frame.T_target_source) / stream_.interval_s();
+    tell_velocity_from_motion(frame, stream_.interval_s());
   }
   last_ = std::move(now);
   return frame;
 }
 
 void ScanToScanIcp::align_to_last(const Reference& now, Frame& frame) const {
-  const double dt_s = seconds_between(last_->prepared.scan.stamp(), frame.stamp);
+  const double dt_s = stream_.interval_s();
   const registration::PreparedTarget& last = last_->prepared;
   const registration::Source source{last.scan, last.normals.vectors, last.normals.valid};
   const registration::Target target = now.prepared.target();
-  Eigen::Isometry3d T_initial = predicted_motion(frame.stamp);
+  Eigen::Isometry3d T_initial = predicted_motion();
   if (T_vehicle_sensor_) {
     T_initial = *T_vehicle_sensor_ * T_initial * T_vehicle_sensor_->inverse();
   }
@@ -128,25 +129,14 @@ void ScanToScanIcp::align_to_last(const Reference& now, Frame& frame) const {
   }
   const FrameStatus status = frame_status(frame.alignment, dt_s);
   set_motion(frame, status, last_->T_world_sensor,
-             is_aligned(status) ? frame.alignment.T_target_source : predicted_motion(frame.stamp));
+             is_aligned(status) ? frame.alignment.T_target_source : predicted_motion());
 }
 
-std::optional<double> ScanToScanIcp::interval_s(Stamp stamp) const {
-  return last_ ? std::optional(seconds_between(last_->prepared.scan.stamp(), stamp)) : std::nullopt;
-}
-
-void ScanToScanIcp::continue_motion(Frame& frame, FrameStatus status) const {
-  frame.status = status;
-  if (last_) {
-    set_motion(frame, status, last_->T_world_sensor, predicted_motion(frame.stamp));
-  }
-}
-
-Eigen::Isometry3d ScanToScanIcp::predicted_motion(Stamp stamp) const {
+Eigen::Isometry3d ScanToScanIcp::predicted_motion() const {
   if (!config_.constant_velocity_start) {
     return Eigen::Isometry3d::Identity();
   }
-  return exp_se3(prediction_time_s(last_->prepared.scan.stamp(), stamp) * last_->twist);
+  return exp_se3(stream_.prediction_time_s() * last_->twist);
 }
 
 registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {

@@ -8,6 +8,7 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/method/registration/align.hpp"
 
 namespace dynamic_icp::odometry {
@@ -30,9 +31,7 @@ class ScanToScanIcp final : public Odometry {
   struct Reference;
 
   void align_to_last(const Reference& now, Frame& frame) const;
-  [[nodiscard]] std::optional<double> interval_s(Stamp stamp) const;
-  void continue_motion(Frame& frame, FrameStatus status) const;
-  [[nodiscard]] Eigen::Isometry3d predicted_motion(Stamp stamp) const;
+  [[nodiscard]] Eigen::Isometry3d predicted_motion() const;
   [[nodiscard]] registration::Objective objective(DopplerKind kind, double dt_s) const;
 
   ScanToScanIcpConfig config_;
@@ -40,7 +39,7 @@ class ScanToScanIcp final : public Odometry {
   std::optional<Eigen::Isometry3d> T_vehicle_sensor_;  ///< of Doppler-ICP only: it then works in the vehicle frame
   Workers workers_;
   DopplerKind expected_;
-  std::optional<Stamp> last_stamp_;
+  ScanStream stream_;
   std::unique_ptr<Reference> last_;  ///< the last usable scan; empty before the first
 };
 
