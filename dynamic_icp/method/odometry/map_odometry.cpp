@@ -136,8 +136,8 @@ Frame MapOdometry::process(const RawScan& raw) {
 
 /// The scan in range, the rows that the voxel grid keeps, and its Doppler by cells.
 void MapOdometry::thin_and_sort(const RawScan& raw, Frame& frame) {
-  frame.sweep = sweep_as_configured(raw, config_.sweep);
-  const std::optional<RawScan> timed = retimed(raw, config_.sweep);
+  frame.sweep = motion::sweep_as_configured(raw, config_.sweep);
+  const std::optional<RawScan> timed = motion::retimed(raw, config_.sweep);
   const Scan& whole = memory_.whole;
   take_over(timed ? *timed : raw, config_.preprocess, workers_, memory_.whole, frame);
   workers_.both(
