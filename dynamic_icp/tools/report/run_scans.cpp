@@ -19,7 +19,7 @@
 namespace dynamic_icp::report {
 namespace {
 
-using figures::RunFiles;
+using runs::RunFiles;
 
 constexpr double kMapShare = 0.1;        // of the budget
 constexpr double kWholeShare = 0.25;     // of the budget, for scans that nobody asked for
@@ -106,7 +106,7 @@ double seconds_to_next(const RunFiles& run, std::size_t frame) {
 }
 
 /// The number of points that a frame says it has; 0 for what is no number of points.
-std::size_t points_of(const figures::FrameRow& frame) {
+std::size_t points_of(const runs::FrameRow& frame) {
   constexpr double kMost = 1e9;
   return frame.points >= 0.0 && frame.points < kMost ? static_cast<std::size_t>(frame.points) : 0;
 }
@@ -190,7 +190,7 @@ std::vector<std::string> notes_of(const RunFiles& run, const RunScans& kept, con
   std::vector<std::size_t> whole;
   std::size_t unlabelled = 0;
   for (const KeptScan& scan : kept.scans) {
-    unlabelled += figures::lacks_labels(run, scan.frame) ? 1 : 0;
+    unlabelled += runs::lacks_labels(run, scan.frame) ? 1 : 0;
     points += static_cast<double>(scan.points);
     of += static_cast<double>(scan.of);
     bytes += static_cast<double>(scan.blob.size());
@@ -279,7 +279,7 @@ RunScans keep_scans(const RunFiles& run, const std::optional<figures::RunTruth>&
     on_whole.add(kept[frame] = keep(run, frame, scan, scan.size()));
   }
   std::vector<std::size_t> points_of_scans;
-  for (const figures::FrameRow& frame : run.frames) {
+  for (const runs::FrameRow& frame : run.frames) {
     points_of_scans.push_back(points_of(frame));
   }
   std::vector<std::size_t> whole;

@@ -9,8 +9,8 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/recording/datasets/dataset.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
 
 namespace dynamic_icp::report {
 
@@ -49,7 +49,7 @@ struct RunScans {
 /// space, those on objects before others; where fewer than kFewestPoints are left to a scan, scans as well. The result
 /// does not depend on the number of threads. Throws UsageError when a frame of `choice.whole` does not exist, DataError
 /// when the recording is not the one of the run.
-RunScans keep_scans(const figures::RunFiles& run, const std::optional<figures::RunTruth>& truth,
+RunScans keep_scans(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth,
                     const datasets::Dataset& recording, const ScanChoice& choice, const Workers& workers);
 
 /// The rows of a scan to keep when there are too many: half of `count` may go to points on objects, kept before

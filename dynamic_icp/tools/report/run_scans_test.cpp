@@ -18,9 +18,9 @@ namespace dynamic_icp::report {
 namespace {
 
 RunScans scans_of(const WallDrive& drive, const ScanChoice& choice, int threads = 1) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   drive.write(folder);
-  const figures::RunFiles run = figures::read_run(folder.path() / "run");
+  const runs::RunFiles run = runs::read_run(folder.path() / "run");
   std::vector<std::string> notes;
   const auto recording = figures::open_recording(run, notes);
   return keep_scans(run, std::nullopt, *recording, choice, Workers(threads));

@@ -17,8 +17,8 @@
 namespace dynamic_icp::report {
 namespace {
 
-using figures::FrameRow;
-using figures::RunFiles;
+using runs::FrameRow;
+using runs::RunFiles;
 
 constexpr double kMoving_mps = 0.5;  // compensated Doppler beyond which a point counts as moving
 
@@ -28,7 +28,7 @@ preprocess::SweepConfig sweep_config(const RunFiles& run) {
   ConfigFields known;
   append_fields(known, "sweep", preprocess::fields(config));
   for (const ConfigField& field : known) {
-    if (const std::string text = figures::text_of(run.configuration, field.key); !text.empty()) {
+    if (const std::string text = runs::text_of(run.configuration, field.key); !text.empty()) {
       set_field(known, field.key, text);
     }
   }
@@ -37,7 +37,7 @@ preprocess::SweepConfig sweep_config(const RunFiles& run) {
 
 /// The motion during a scan: by the twists at its stamp and at the next one or, at the end, the one before.
 std::optional<registration::SweepMotion> sweep_motion(const RunFiles& run, std::size_t frame) {
-  const std::optional<figures::TwistRow>& twist = run.frames[frame].twist;
+  const std::optional<runs::TwistRow>& twist = run.frames[frame].twist;
   if (!twist || !twist->angular.allFinite() || !twist->linear.allFinite()) {
     return std::nullopt;
   }
@@ -49,7 +49,7 @@ std::optional<registration::SweepMotion> sweep_motion(const RunFiles& run, std::
   constexpr double kLongest_s = 0.5;
   if (run.frames.size() > 1 && run.frames[other].twist) {
     const double dt_s = run.seconds(other) - run.seconds(frame);
-    const figures::TwistRow& there = *run.frames[other].twist;
+    const runs::TwistRow& there = *run.frames[other].twist;
     if (std::abs(dt_s) < kLongest_s && there.angular.allFinite() && there.linear.allFinite()) {
       motion.alpha = (there.angular - motion.omega) / dt_s;
       motion.acceleration = (there.linear - motion.velocity) / dt_s;
@@ -58,7 +58,7 @@ std::optional<registration::SweepMotion> sweep_motion(const RunFiles& run, std::
   return motion;
 }
 
-bool undid_sweep(const RunFiles& run) { return figures::text_of(run.run, "sweep.undone") == "true"; }
+bool undid_sweep(const RunFiles& run) { return runs::text_of(run.run, "sweep.undone") == "true"; }
 
 /// The scan with its points where the run had them.
 Scan at_stamp(const RunFiles& run, std::size_t frame, const Scan& scan,
@@ -97,7 +97,7 @@ std::uint8_t object_label(std::size_t place) {
 }
 
 /// Whether the method of the run tells moving points from static ones at all.
-bool tells_motion(const RunFiles& run) { return figures::text_of(run.run, "method") == "dynamic-icp"; }
+bool tells_motion(const RunFiles& run) { return runs::text_of(run.run, "method") == "dynamic-icp"; }
 
 bool moves(double compensated) { return std::abs(compensated) > kMoving_mps; }
 
@@ -145,7 +145,7 @@ std::vector<std::uint8_t> guessed_labels(const RunFiles& run, std::size_t frame,
 /// Undoes what the objects themselves moved between the stamp and the time of each of their points: where the boxes
 /// are.
 void put_objects_at_stamp(const RunFiles& run, std::size_t frame, const std::vector<double>& times, ShownScan& shown) {
-  const std::vector<figures::ObjectRow>& objects = run.objects[frame];
+  const std::vector<runs::ObjectRow>& objects = run.objects[frame];
   for (std::size_t i = 0; i < shown.size(); ++i) {
     const std::size_t object = shown.labels[i] - std::size_t{kFirstObject};
     if (shown.labels[i] >= kFirstObject && objects[object].velocity.allFinite()) {
@@ -194,7 +194,7 @@ ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, 
 
   ShownScan shown;
   shown.compensated = compensated_doppler(run.frames[frame], scan, undo ? motion : std::nullopt);
-  const std::optional<std::vector<std::int32_t>> saved = figures::read_labels(run, frame, raw.points.size());
+  const std::optional<std::vector<std::int32_t>> saved = runs::read_labels(run, frame, raw.points.size());
   shown.labels = saved ? saved_labels(run, frame, scan, *saved, shown.compensated)
                        : guessed_labels(run, frame, scan, shown.compensated);
   shown.points = scan.points();

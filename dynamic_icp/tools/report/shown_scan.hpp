@@ -10,7 +10,7 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 
 namespace dynamic_icp::report {
 
@@ -42,6 +42,6 @@ ShownScan select(const ShownScan& scan, std::span<const std::uint32_t> rows);
 /// from labels/*.bin or, where the run did not write them, from the objects and the compensated Doppler: then every
 /// point counts as used; where the method does not tell moving points from static ones, as static. Throws DataError
 /// when the labels do not fit the scan.
-ShownScan show_scan(const figures::RunFiles& run, std::size_t frame, const RawScan& raw, const Workers& workers);
+ShownScan show_scan(const runs::RunFiles& run, std::size_t frame, const RawScan& raw, const Workers& workers);
 
 }  // namespace dynamic_icp::report

@@ -24,9 +24,9 @@ namespace {
 using drawing::Pixel;
 using figures::GroundView;
 using figures::kArrowSeconds;
-using figures::ObjectRow;
 using figures::Region;
-using figures::RunFiles;
+using runs::ObjectRow;
+using runs::RunFiles;
 
 constexpr double kWidth = 1120.0;  // px
 constexpr double kMargin = 20.0;
@@ -233,7 +233,7 @@ ScanPair read_pair(const RunFiles& run, const datasets::Dataset& recording, std:
   ScanPair pair{.source = source, .source_scan = {}, .target_scan = {}, .true_objects = {}};
   pair.source_scan = show_scan(run, source, figures::read_scan(run, recording, source), workers);
   pair.target_scan = show_scan(run, source + 1, figures::read_scan(run, recording, source + 1), workers);
-  const std::filesystem::path truth = std::filesystem::path(figures::text_of(run.run, "input.path")) / "objects.jsonl";
+  const std::filesystem::path truth = std::filesystem::path(runs::text_of(run.run, "input.path")) / "objects.jsonl";
   if (std::filesystem::exists(truth)) {
     for (evaluation::TrueObjects& scan : evaluation::read_true_objects(truth)) {
       if (scan.index == static_cast<std::int64_t>(run.frames[source].index)) {

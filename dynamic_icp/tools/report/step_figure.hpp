@@ -7,9 +7,9 @@
 
 #include "dynamic_icp/recording/datasets/dataset.hpp"
 #include "dynamic_icp/recording/evaluation/object_error.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/drawing/svg.hpp"
 #include "dynamic_icp/tools/drawing/theme.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
 #include "dynamic_icp/tools/report/shown_scan.hpp"
 
 namespace dynamic_icp::report {
@@ -24,12 +24,12 @@ struct ScanPair {
 
 /// Throws UsageError when the run has no frame after `source`, DataError as `figures::read_scan` does. True objects are
 /// read from objects.jsonl of a simulated recording.
-ScanPair read_pair(const figures::RunFiles& run, const datasets::Dataset& recording, std::size_t source,
+ScanPair read_pair(const runs::RunFiles& run, const datasets::Dataset& recording, std::size_t source,
                    const Workers& workers);
 
 /// The steps of the method on one pair from above: the measured Doppler; what the velocity filter tells to move;
 /// objects with boxes and velocities, and the true ones; the points of the largest object, as they are and predicted,
 /// beside the next scan; and both scans as they were aligned.
-drawing::Svg step_figure(const figures::RunFiles& run, const ScanPair& pair, const drawing::Theme& theme);
+drawing::Svg step_figure(const runs::RunFiles& run, const ScanPair& pair, const drawing::Theme& theme);
 
 }  // namespace dynamic_icp::report

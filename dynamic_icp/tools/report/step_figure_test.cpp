@@ -13,8 +13,8 @@
 namespace dynamic_icp::report {
 namespace {
 
-std::string drawn(const figures::TestFolder& folder, std::size_t source) {
-  const figures::RunFiles run = figures::read_run(folder.path() / "run");
+std::string drawn(const runs::TestFolder& folder, std::size_t source) {
+  const runs::RunFiles run = runs::read_run(folder.path() / "run");
   std::vector<std::string> notes;
   const auto recording = figures::open_recording(run, notes);
   const std::string document =
@@ -26,7 +26,7 @@ std::string drawn(const figures::TestFolder& folder, std::size_t source) {
 }
 
 TEST(StepFigure, ShowsEveryStep) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   const std::string document = drawn(folder, 2);
   for (const char* text : {"Measured Doppler", "Velocity filter", "Objects", "Prediction", "Aligned"}) {
@@ -37,7 +37,7 @@ TEST(StepFigure, ShowsEveryStep) {
 }
 
 TEST(StepFigure, ShowsTrueVelocitiesWhereTheyAreKnown) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   folder.write(
       "drive/objects.jsonl",
@@ -48,7 +48,7 @@ TEST(StepFigure, ShowsTrueVelocitiesWhereTheyAreKnown) {
 }
 
 TEST(StepFigure, TakesScansWithoutObjectsAndRefusesTheLast) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive drive;
   drive.frames = 2;
   drive.write(folder);

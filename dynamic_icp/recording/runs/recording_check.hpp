@@ -8,7 +8,7 @@
 
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 
-namespace dynamic_icp::apps {
+namespace dynamic_icp::runs {
 
 /// What the diagnosis of a recording says.
 struct RecordingCheck {
@@ -23,4 +23,4 @@ struct RecordingCheck {
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
                                std::size_t begin, std::size_t end, bool needs_doppler, int threads);
 
-}  // namespace dynamic_icp::apps
+}  // namespace dynamic_icp::runs

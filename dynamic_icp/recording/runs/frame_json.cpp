@@ -1,11 +1,11 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/results/frame_json.hpp"
+#include "dynamic_icp/recording/runs/frame_json.hpp"
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
-namespace dynamic_icp::results {
+namespace dynamic_icp::runs {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -205,4 +205,4 @@ std::string pair_document(const Frame& source, const Frame& target, const std::v
   return document.dump(2);
 }
 
-}  // namespace dynamic_icp::results
+}  // namespace dynamic_icp::runs

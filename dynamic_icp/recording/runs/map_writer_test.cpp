@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/results/map_writer.hpp"
+#include "dynamic_icp/recording/runs/map_writer.hpp"
 
 #include <array>
 #include <cmath>
@@ -19,7 +19,7 @@
 #include "dynamic_icp/recording/formats/ply.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
-namespace dynamic_icp::results {
+namespace dynamic_icp::runs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -182,4 +182,4 @@ TEST_F(MapWriterTest, AMapWithinTheRunWaitsInItsStaging) {
 }
 
 }  // namespace
-}  // namespace dynamic_icp::results
+}  // namespace dynamic_icp::runs

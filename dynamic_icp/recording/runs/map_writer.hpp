@@ -8,7 +8,7 @@
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/spatial/voxel_hash_map.hpp"
 
-namespace dynamic_icp::results {
+namespace dynamic_icp::runs {
 
 /// Throws UsageError unless the file's name ends in .ply or .pcd: a map is written as one of them.
 void check_map_file(const std::filesystem::path& path);
@@ -46,4 +46,4 @@ class MapWriter {
   spatial::VoxelHashMap voxels_;
 };
 
-}  // namespace dynamic_icp::results
+}  // namespace dynamic_icp::runs

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/figures/run_folder.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 
 #include <gtest/gtest.h>
 
@@ -8,7 +8,7 @@
 
 #include "testing/sample_run.hpp"
 
-namespace dynamic_icp::figures {
+namespace dynamic_icp::runs {
 namespace {
 
 std::string message_of(const TestFolder& folder) {
@@ -152,4 +152,4 @@ TEST(RunFolder, ReadsLabelsOfTheScan) {
 }
 
 }  // namespace
-}  // namespace dynamic_icp::figures
+}  // namespace dynamic_icp::runs

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/results/map_writer.hpp"
+#include "dynamic_icp/recording/runs/map_writer.hpp"
 
 #include <vector>
 
@@ -11,7 +11,7 @@
 #include "dynamic_icp/recording/formats/pcd.hpp"
 #include "dynamic_icp/recording/formats/ply.hpp"
 
-namespace dynamic_icp::results {
+namespace dynamic_icp::runs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -89,4 +89,4 @@ void MapWriter::write(const fs::path& path) const {
   }
 }
 
-}  // namespace dynamic_icp::results
+}  // namespace dynamic_icp::runs

@@ -1,20 +1,18 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/results/run_writer.hpp"
+#include "dynamic_icp/recording/runs/run_writer.hpp"
 
 #include <algorithm>
 #include <numeric>
-
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/evaluation/statistics.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
-#include "dynamic_icp/tools/results/frame_json.hpp"
+#include "dynamic_icp/recording/runs/frame_json.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 
-namespace dynamic_icp::results {
+namespace dynamic_icp::runs {
 namespace {
 
 std::optional<double> mean(const std::vector<double>& values) {
@@ -33,10 +31,6 @@ void count_status(std::vector<std::pair<std::string, std::size_t>>& counts, std:
   }
 }
 
-nlohmann::ordered_json number(const std::optional<double>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
 }  // namespace
 
 RunWriter::RunWriter(const std::filesystem::path& folder, bool save_labels)
@@ -53,7 +47,7 @@ void RunWriter::add(std::size_t index, const odometry::Frame& frame) {
   frames_file_.write(frame_line(index, frame) + "\n");
   objects_file_.write(objects_line(index, frame) + "\n");
   if (save_labels_) {
-    formats::write_values<std::int32_t>(folder_ / "labels" / fmt::format("{:05}.bin", index + 1), frame.labels);
+    formats::write_values<std::int32_t>(labels_file(folder_, index), frame.labels);
   }
   trajectory_.push_back({frame.stamp, frame.T_world_sensor});
   total_ms_.push_back(frame.times.total_ms);
@@ -76,7 +70,7 @@ void RunWriter::add(std::size_t index, const odometry::Frame& frame) {
 }
 
 RunSummary RunWriter::finish(const std::string& method, const formats::Trajectory& ground_truth,
-                             const std::vector<std::string>& assumptions, const std::string& run_json) {
+                             const std::vector<std::string>& assumptions) {
   RunSummary summary;
   summary.assumptions = assumptions;
   summary.method = method;
@@ -108,40 +102,7 @@ RunSummary RunWriter::finish(const std::string& method, const formats::Trajector
   objects_file_.close();
   formats::write_tum(folder_ / "trajectory.tum", trajectory_);
   formats::write_whole_file(folder_ / "summary.json", summary_json(summary) + "\n");
-  formats::write_whole_file(folder_ / "run.json", run_json);
   return summary;
 }
 
-std::string summary_json(const RunSummary& summary) {
-  nlohmann::ordered_json statuses = nlohmann::ordered_json::object();
-  for (const auto& [status, count] : summary.status_counts) {
-    statuses[status] = count;
-  }
-  const evaluation::RunAccuracy& accuracy = summary.accuracy;
-  const nlohmann::ordered_json json = {{"method", summary.method},
-                                       {"frames", summary.frames},
-                                       {"rte_rmse_m", number(accuracy.rte_rmse_m)},
-                                       {"rte_mean_m", number(accuracy.rte_mean_m)},
-                                       {"rte_median_m", number(accuracy.rte_median_m)},
-                                       {"rre_rmse_deg", number(accuracy.rre_rmse_deg)},
-                                       {"rre_mean_deg", number(accuracy.rre_mean_deg)},
-                                       {"rre_median_deg", number(accuracy.rre_median_deg)},
-                                       {"ate_rmse_m", number(accuracy.ate_rmse_m)},
-                                       {"path_length_m", number(accuracy.path_length_m)},
-                                       {"mean_iterations", number(summary.mean_iterations)},
-                                       {"convergence_rate", number(summary.convergence_rate)},
-                                       {"ms_mean", number(summary.ms_mean)},
-                                       {"ms_median", number(summary.ms_median)},
-                                       {"ms_p95", number(summary.ms_p95)},
-                                       {"fps", number(summary.fps)},
-                                       {"dynamic_ratio_mean", number(summary.dynamic_ratio_mean)},
-                                       {"dynamic_ratio_max", number(summary.dynamic_ratio_max)},
-                                       {"clustered_ratio_mean", number(summary.clustered_ratio_mean)},
-                                       {"refined_ratio_mean", number(summary.refined_ratio_mean)},
-                                       {"matched_poses", accuracy.matched},
-                                       {"statuses", statuses},
-                                       {"assumptions", summary.assumptions}};
-  return json.dump(2);
-}
-
-}  // namespace dynamic_icp::results
+}  // namespace dynamic_icp::runs

@@ -7,17 +7,15 @@
 #include <filesystem>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
-#include <variant>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/base/se3.hpp"
-#include "dynamic_icp/recording/formats/trajectory.hpp"
 
-namespace dynamic_icp::figures {
+// What frame_json.hpp writes, read again.
+namespace dynamic_icp::runs {
 
 /// How the sensor moves at the stamp of a scan, in its own axes.
 struct TwistRow {
@@ -70,40 +68,15 @@ inline Eigen::Vector3d velocity_at_stamp(const FrameRow& frame) {
   return frame.twist && frame.twist->linear.allFinite() ? frame.twist->linear : frame.ego_velocity;
 }
 
-/// A value of summary.json or run.json: null, a switch, a number or a text.
-using Value = std::variant<std::monostate, bool, double, std::string>;
-
-/// Keys with their values in the order of the keys; nested objects have dotted keys.
-using Settings = std::vector<std::pair<std::string, Value>>;
-
-/// The text of the value of a key; empty when there is no such key or it is null.
-std::string text_of(const Settings& settings, std::string_view key);
-
-/// What a run left behind.
-struct RunFiles {
-  std::filesystem::path folder;
-  formats::Trajectory trajectory;  ///< one pose per frame
-  std::vector<FrameRow> frames;
-  std::vector<std::vector<ObjectRow>> objects;  ///< one list per frame
-  Settings summary;                             ///< summary.json
-  Settings run;                                 ///< run.json without configuration and warnings
-  Settings configuration;                       ///< "configuration" of run.json
-  std::vector<std::string> warnings;            ///< "assumptions" and "warnings" of run.json
-
-  /// When a frame was taken, in seconds after the first one.
-  [[nodiscard]] double seconds(std::size_t frame) const;
+/// The objects of a scan.
+struct ObjectsRow {
+  std::size_t index = 0;  ///< of the scan in the recording
+  std::vector<ObjectRow> objects;
 };
 
-/// Reads the folder of a finished run. Throws DataError naming the file, the line and what was expected when a file is
-/// missing, a line is no complete JSON object, a key is missing or of the wrong kind, or the files disagree about how
-/// many scans there are.
-RunFiles read_run(const std::filesystem::path& folder);
+/// frames.jsonl and objects.jsonl. Throw DataError naming the file, the line and what was expected when a line is no
+/// complete JSON object or a key is missing or of the wrong kind.
+std::vector<FrameRow> read_frames(const std::filesystem::path& path);
+std::vector<ObjectsRow> read_objects(const std::filesystem::path& path);
 
-/// Whether the run wrote labels (`--save-labels`) but not, or no more, those of this frame.
-bool lacks_labels(const RunFiles& run, std::size_t frame);
-
-/// labels/*.bin of a frame (with `--save-labels`): per point of the scan as read -1 not used, 0 static, > 0 the
-/// id of its object. Empty optional when there is no such file; DataError when its length is not `points`.
-std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::size_t frame, std::size_t points);
-
-}  // namespace dynamic_icp::figures
+}  // namespace dynamic_icp::runs

@@ -9,7 +9,7 @@
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/registration/align.hpp"
 
-namespace dynamic_icp::results {
+namespace dynamic_icp::runs {
 
 /// One line of frames.jsonl, without its line break. `index` is that of the scan in the recording.
 std::string frame_line(std::size_t index, const odometry::Frame& frame);
@@ -22,4 +22,4 @@ std::string objects_line(std::size_t index, const odometry::Frame& frame);
 std::string pair_document(const odometry::Frame& source, const odometry::Frame& target,
                           const std::vector<std::string>& assumptions = {});
 
-}  // namespace dynamic_icp::results
+}  // namespace dynamic_icp::runs

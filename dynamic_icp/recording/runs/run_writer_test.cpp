@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/results/run_writer.hpp"
+#include "dynamic_icp/recording/runs/run_writer.hpp"
 
 #include <cmath>
 #include <sstream>
@@ -10,9 +10,9 @@
 #include <unistd.h>
 
 #include "dynamic_icp/recording/formats/tum.hpp"
-#include "dynamic_icp/tools/results/frame_json.hpp"
+#include "dynamic_icp/recording/runs/frame_json.hpp"
 
-namespace dynamic_icp::results {
+namespace dynamic_icp::runs {
 namespace {
 
 namespace fs = std::filesystem;
@@ -66,7 +66,7 @@ TEST_F(RunWriterTest, WritesTheFilesOfTheContract) {
   writer.add(1, second);
   const formats::Trajectory truth = {{first.stamp, Eigen::Isometry3d::Identity()},
                                      {second.stamp, Eigen::Isometry3d(Eigen::Translation3d(1.1, 0.0, 0.0))}};
-  const RunSummary summary = writer.finish("dynamic-icp", truth, {"taken for granted"}, "{}\n");
+  const RunSummary summary = writer.finish("dynamic-icp", truth, {"taken for granted"});
 
   EXPECT_NEAR(*summary.accuracy.rte_rmse_m, 0.1, 1e-12);
   EXPECT_EQ(*summary.mean_iterations, 7.0);
@@ -104,7 +104,7 @@ TEST_F(RunWriterTest, WritesTheFilesOfTheContract) {
 TEST_F(RunWriterTest, WithoutTruthOrFramesNumbersAreNull) {
   RunWriter writer(folder_, false);
   writer.add(0, frame_at(0, 0.0, odometry::FrameStatus::kFirst));
-  const json stored = json::parse(summary_json(writer.finish("dynamic-icp", {}, {}, "{}\n")));
+  const json stored = json::parse(summary_json(writer.finish("dynamic-icp", {}, {})));
   for (const char* key : {"rte_rmse_m", "rre_rmse_deg", "ate_rmse_m", "path_length_m", "mean_iterations",
                           "convergence_rate", "refined_ratio_mean"}) {
     EXPECT_TRUE(stored[key].is_null()) << key;
@@ -125,4 +125,4 @@ TEST_F(RunWriterTest, PairDocumentHoldsTransformAndCovariance) {
 }
 
 }  // namespace
-}  // namespace dynamic_icp::results
+}  // namespace dynamic_icp::runs

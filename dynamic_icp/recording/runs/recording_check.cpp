@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "apps/recording_check.hpp"
+#include "dynamic_icp/recording/runs/recording_check.hpp"
 
 #include <algorithm>
 
@@ -9,7 +9,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
-namespace dynamic_icp::apps {
+namespace dynamic_icp::runs {
 namespace {
 
 // Some seconds of driving are enough and keep the time that the check takes bounded, however long the recording is.
@@ -58,4 +58,4 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   return check;
 }
 
-}  // namespace dynamic_icp::apps
+}  // namespace dynamic_icp::runs
