@@ -15,8 +15,8 @@
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
 #include "dynamic_icp/tools/figures/run_figures.hpp"
+#include "dynamic_icp/tools/figures/step_figure.hpp"
 #include "dynamic_icp/tools/report/run_facts.hpp"
-#include "dynamic_icp/tools/report/step_figure.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/svg_to_png.hpp"
@@ -61,8 +61,8 @@ drawing::Svg steps_of_pair(const runs::RunFiles& run, std::int64_t source, const
   if (recording == nullptr) {
     throw DataError(notes.back());
   }
-  return report::step_figure(run, report::read_pair(run, *recording, static_cast<std::size_t>(source), Workers()),
-                             theme);
+  return figures::step_figure(run, figures::read_pair(run, *recording, static_cast<std::size_t>(source), Workers()),
+                              theme);
 }
 
 Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme) {

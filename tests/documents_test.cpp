@@ -44,7 +44,8 @@ TEST(Documents, TheMapNamesEveryModuleAndWhatItIncludes) {
 }
 
 TEST(Documents, LinksLeadToFiles) {
-  for (const fs::path folder : {fs::path(), fs::path("docs"), fs::path("docs/derivations"), fs::path("docs/results")}) {
+  for (const fs::path& folder :
+       {fs::path(), fs::path("docs"), fs::path("docs/derivations"), fs::path("docs/results")}) {
     for (const fs::directory_entry& page : fs::directory_iterator(source_folder() / folder)) {
       if (page.path().extension() != ".md") {
         continue;

@@ -1,13 +1,13 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/report/point_thinning.hpp"
+#include "dynamic_icp/tools/figures/point_thinning.hpp"
 
 #include <algorithm>
 #include <array>
 #include <bit>
 #include <cmath>
 
-namespace dynamic_icp::report {
+namespace dynamic_icp::figures {
 namespace {
 
 constexpr double kFinest_m = 0.02;  // edge of the cubes that no longer tell points apart
@@ -83,4 +83,4 @@ std::vector<std::uint32_t> spread_rows(std::span<const Eigen::Vector3d> points, 
   return rows;
 }
 
-}  // namespace dynamic_icp::report
+}  // namespace dynamic_icp::figures

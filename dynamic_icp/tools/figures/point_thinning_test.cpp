@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/report/point_thinning.hpp"
+#include "dynamic_icp/tools/figures/point_thinning.hpp"
 
 #include <algorithm>
 #include <random>
@@ -8,7 +8,7 @@
 
 #include <gtest/gtest.h>
 
-namespace dynamic_icp::report {
+namespace dynamic_icp::figures {
 namespace {
 
 /// Half of the points within 2 m of the sensor, the others up to 100 m away.
@@ -69,4 +69,4 @@ TEST(PointThinning, TakesPointsOnTopOfEachOtherAndFarOut) {
 }
 
 }  // namespace
-}  // namespace dynamic_icp::report
+}  // namespace dynamic_icp::figures

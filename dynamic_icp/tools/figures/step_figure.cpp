@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/report/step_figure.hpp"
+#include "dynamic_icp/tools/figures/step_figure.hpp"
 
 #include <algorithm>
 #include <array>
@@ -15,16 +15,13 @@
 #include "dynamic_icp/tools/drawing/colour_map.hpp"
 #include "dynamic_icp/tools/figures/ground_view.hpp"
 #include "dynamic_icp/tools/figures/object_marks.hpp"
+#include "dynamic_icp/tools/figures/point_thinning.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
-#include "dynamic_icp/tools/report/point_thinning.hpp"
 
-namespace dynamic_icp::report {
+namespace dynamic_icp::figures {
 namespace {
 
 using drawing::Pixel;
-using figures::GroundView;
-using figures::kArrowSeconds;
-using figures::Region;
 using runs::ObjectRow;
 using runs::RunFiles;
 
@@ -222,6 +219,43 @@ void draw_objects(Sheet& sheet, const GroundView& view, const RunFiles& run, con
   sheet.end();
 }
 
+/// What the lower panels show, in the frame of the target.
+struct Lower {
+  std::size_t focus = 0;  ///< the largest object of the source
+  Eigen::Isometry3d T_target_source;
+  std::vector<Eigen::Vector3d> predicted;  ///< the points of the source, still in its frame
+};
+
+void draw_prediction(Sheet& sheet, const GroundView& view, const Lower& lower, const ScanPair& pair,
+                     const drawing::Theme& theme) {
+  const auto is_focus = [&](std::size_t i) { return pair.source_scan.labels[i] == kFirstObject + lower.focus; };
+  std::vector<Eigen::Vector3d> predicted_object;
+  for (std::size_t i = 0; i < lower.predicted.size(); ++i) {
+    if (is_focus(i)) {
+      predicted_object.push_back(lower.predicted[i]);
+    }
+  }
+  sheet.begin(
+      view, "4  Prediction of the largest object",
+      {{"raw", theme.series[kMovingColour]}, {"predicted", theme.series[kGoodColour]}, {"next scan", theme.muted}});
+  sheet.points(
+      points_where(pair.target_scan, [&](std::size_t i) { return pair.target_scan.labels[i] >= kFirstObject; }),
+      theme.muted, 4.4);
+  sheet.points(moved(points_where(pair.source_scan, is_focus), lower.T_target_source), theme.series[kMovingColour],
+               3.0);
+  sheet.points(moved(predicted_object, lower.T_target_source), theme.series[kGoodColour], 3.0);
+  sheet.end();
+}
+
+void draw_alignment(Sheet& sheet, const GroundView& view, const Lower& lower, const ScanPair& pair,
+                    const drawing::Theme& theme) {
+  sheet.begin(view, "5  Aligned scans",
+              {{"target", theme.series[kMovingColour]}, {"source, predicted and aligned", theme.series[kGoodColour]}});
+  sheet.points(pair.target_scan.points, theme.series[kMovingColour], 3.0);
+  sheet.points(moved(lower.predicted, lower.T_target_source), theme.series[kGoodColour], 1.6);
+  sheet.end();
+}
+
 }  // namespace
 
 ScanPair read_pair(const RunFiles& run, const datasets::Dataset& recording, std::size_t source,
@@ -231,8 +265,8 @@ ScanPair read_pair(const RunFiles& run, const datasets::Dataset& recording, std:
                                  std::max<std::size_t>(run.frames.size(), 2) - 2));
   }
   ScanPair pair{.source = source, .source_scan = {}, .target_scan = {}, .true_objects = {}};
-  pair.source_scan = show_scan(run, source, figures::read_scan(run, recording, source), workers);
-  pair.target_scan = show_scan(run, source + 1, figures::read_scan(run, recording, source + 1), workers);
+  pair.source_scan = show_scan(run, source, read_scan(run, recording, source), workers);
+  pair.target_scan = show_scan(run, source + 1, read_scan(run, recording, source + 1), workers);
   const std::filesystem::path truth = std::filesystem::path(runs::text_of(run.run, "input.path")) / "objects.jsonl";
   if (std::filesystem::exists(truth)) {
     for (evaluation::TrueObjects& scan : evaluation::read_true_objects(truth)) {
@@ -257,47 +291,26 @@ drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawin
   draw_filter(sheet, upper(1), run, pair, theme);
   draw_objects(sheet, upper(2), run, pair, theme);
 
-  // The lower panels are drawn in the frame of the target.
   const double dt_s = run.seconds(pair.source + 1) - run.seconds(pair.source);
-  const Eigen::Isometry3d T_target_source =
-      run.trajectory[pair.source + 1].T_world_sensor.inverse() * run.trajectory[pair.source].T_world_sensor;
-  const std::size_t focus = largest_object(objects);
+  const Lower lower{.focus = largest_object(objects),
+                    .T_target_source = run.trajectory[pair.source + 1].T_world_sensor.inverse() *
+                                       run.trajectory[pair.source].T_world_sensor,
+                    .predicted = predicted(pair.source_scan, objects, dt_s)};
   Eigen::Vector3d middle(12.0, 0.0, 0.0);
-  if (focus < objects.size()) {
-    middle = T_target_source * objects[focus].centroid;
+  if (lower.focus < objects.size()) {
+    middle = lower.T_target_source * objects[lower.focus].centroid;
   }
   const double lower_width = (kWidth - 3.0 * kMargin) / 2.0;
   const double lower_top = 2.0 * kHead + upper_height;
-  const auto lower = [&](int column, double half_m) {
+  const auto view = [&](int column, double half_m) {
     return panel({kMargin + column * (lower_width + kMargin), lower_top, lower_width, kLowerHeight},
                  {{middle.x() - half_m, middle.x() + half_m}, {middle.y() - 0.5 * half_m, middle.y() + 0.5 * half_m}});
   };
-  const auto is_largest = [&](std::size_t i) { return pair.source_scan.labels[i] == kFirstObject + focus; };
-  const std::vector<Eigen::Vector3d> all_predicted = predicted(pair.source_scan, objects, dt_s);
-  std::vector<Eigen::Vector3d> predicted_object;
-  for (std::size_t i = 0; i < all_predicted.size(); ++i) {
-    if (is_largest(i)) {
-      predicted_object.push_back(all_predicted[i]);
-    }
-  }
   constexpr double kCloseUp_m = 3.5;
-  sheet.begin(
-      lower(0, kCloseUp_m), "4  Prediction of the largest object",
-      {{"raw", theme.series[kMovingColour]}, {"predicted", theme.series[kGoodColour]}, {"next scan", theme.muted}});
-  sheet.points(
-      points_where(pair.target_scan, [&](std::size_t i) { return pair.target_scan.labels[i] >= kFirstObject; }),
-      theme.muted, 4.4);
-  sheet.points(moved(points_where(pair.source_scan, is_largest), T_target_source), theme.series[kMovingColour], 3.0);
-  sheet.points(moved(predicted_object, T_target_source), theme.series[kGoodColour], 3.0);
-  sheet.end();
-
   constexpr double kAround_m = 14.0;
-  sheet.begin(lower(1, kAround_m), "5  Aligned scans",
-              {{"target", theme.series[kMovingColour]}, {"source, predicted and aligned", theme.series[kGoodColour]}});
-  sheet.points(pair.target_scan.points, theme.series[kMovingColour], 3.0);
-  sheet.points(moved(all_predicted, T_target_source), theme.series[kGoodColour], 1.6);
-  sheet.end();
+  draw_prediction(sheet, view(0, kCloseUp_m), lower, pair, theme);
+  draw_alignment(sheet, view(1, kAround_m), lower, pair, theme);
   return sheet.svg();
 }
 
-}  // namespace dynamic_icp::report
+}  // namespace dynamic_icp::figures

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/report/shown_scan.hpp"
+#include "dynamic_icp/tools/figures/shown_scan.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -8,13 +8,10 @@
 #include <optional>
 #include <unordered_map>
 
-#include "dynamic_icp/method/odometry/config.hpp"
-#include "dynamic_icp/method/odometry/sweep_report.hpp"
-#include "dynamic_icp/method/preprocess/deskew.hpp"
-#include "dynamic_icp/method/registration/sweep_motion.hpp"
+#include "dynamic_icp/recording/runs/scan_as_run.hpp"
 #include "dynamic_icp/tools/figures/scan_view.hpp"
 
-namespace dynamic_icp::report {
+namespace dynamic_icp::figures {
 namespace {
 
 using runs::FrameRow;
@@ -22,64 +19,15 @@ using runs::RunFiles;
 
 constexpr double kMoving_mps = 0.5;  // compensated Doppler beyond which a point counts as moving
 
-/// What the run was told about sweeps.
-preprocess::SweepConfig sweep_config(const RunFiles& run) {
-  preprocess::SweepConfig config;
-  ConfigFields known;
-  append_fields(known, "sweep", preprocess::fields(config));
-  for (const ConfigField& field : known) {
-    if (const std::string text = runs::text_of(run.configuration, field.key); !text.empty()) {
-      set_field(known, field.key, text);
-    }
-  }
-  return config;
-}
-
-/// The motion during a scan: by the twists at its stamp and at the next one or, at the end, the one before.
-std::optional<registration::SweepMotion> sweep_motion(const RunFiles& run, std::size_t frame) {
-  const std::optional<runs::TwistRow>& twist = run.frames[frame].twist;
-  if (!twist || !twist->angular.allFinite() || !twist->linear.allFinite()) {
-    return std::nullopt;
-  }
-  registration::SweepMotion motion;
-  motion.omega = twist->angular;
-  motion.velocity = twist->linear;
-  motion.acceleration = -twist->angular.cross(twist->linear);  // even motion, in axes that turn
-  const std::size_t other = frame + 1 < run.frames.size() ? frame + 1 : frame - 1;
-  constexpr double kLongest_s = 0.5;
-  if (run.frames.size() > 1 && run.frames[other].twist) {
-    const double dt_s = run.seconds(other) - run.seconds(frame);
-    const runs::TwistRow& there = *run.frames[other].twist;
-    if (std::abs(dt_s) < kLongest_s && there.angular.allFinite() && there.linear.allFinite()) {
-      motion.alpha = (there.angular - motion.omega) / dt_s;
-      motion.acceleration = (there.linear - motion.velocity) / dt_s;
-    }
-  }
-  return motion;
-}
-
-bool undid_sweep(const RunFiles& run) { return runs::text_of(run.run, "sweep.undone") == "true"; }
-
-/// The scan with its points where the run had them.
-Scan at_stamp(const RunFiles& run, std::size_t frame, const Scan& scan,
-              const std::optional<registration::SweepMotion>& motion, const Workers& workers) {
-  if (motion) {
-    return registration::undo_sweep(scan, *motion, workers);
-  }
-  // Methods without a twist take the motion between scans for the one during them.
-  return frame == 0 ? scan
-                    : preprocess::deskew(scan, run.trajectory[frame - 1].T_world_sensor.inverse() *
-                                                   run.trajectory[frame].T_world_sensor);
-}
-
-std::vector<double> compensated_doppler(const FrameRow& row, const Scan& scan,
-                                        const std::optional<registration::SweepMotion>& motion) {
+/// What is left of the Doppler without the motion of the sensor and the bias that the run found.
+std::vector<double> without_own_motion(const FrameRow& row, const runs::ScanAsRun& seen) {
+  const Scan& scan = seen.scan;
   std::vector<double> compensated = scan.doppler();
   if (scan.doppler_kind() == DopplerKind::kRelative) {
-    compensated = figures::compensated_doppler(scan, row.ego_velocity);
-    if (motion && scan.has_times()) {
+    compensated = compensated_doppler(scan, row.ego_velocity);
+    if (seen.motion && scan.has_times()) {
       for (std::size_t i = 0; i < scan.size(); ++i) {
-        compensated[i] = scan.doppler()[i] + scan.directions()[i].dot(motion->velocity_at(scan.times()[i]));
+        compensated[i] = scan.doppler()[i] + scan.directions()[i].dot(seen.motion->velocity_at(scan.times()[i]));
       }
     }
   }
@@ -129,13 +77,13 @@ std::vector<std::uint8_t> guessed_labels(const RunFiles& run, std::size_t frame,
   }
   std::transform(compensated.begin(), compensated.end(), labels.begin(),
                  [](double value) { return moves(value) ? kDynamic : kStatic; });
-  const figures::ScanView view{.title = {},
-                               .scan = scan,
-                               .ego_velocity = run.frames[frame].ego_velocity,
-                               .objects = run.objects[frame],
-                               .labels = {}};
+  const ScanView view{.title = {},
+                      .scan = scan,
+                      .ego_velocity = run.frames[frame].ego_velocity,
+                      .objects = run.objects[frame],
+                      .labels = {}};
   for (std::size_t k = 0; k < view.objects.size(); ++k) {
-    for (const std::uint32_t row : figures::rows_on_object(view, compensated, view.objects[k])) {
+    for (const std::uint32_t row : rows_on_object(view, compensated, view.objects[k])) {
       labels[row] = object_label(k);
     }
   }
@@ -184,21 +132,15 @@ ShownScan select(const ShownScan& scan, std::span<const std::uint32_t> rows) {
 }
 
 ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, const Workers& workers) {
-  const bool undo = undid_sweep(run);
-  preprocess::SweepConfig sweep = sweep_config(run);
-  sweep.undo = undo;
-  const std::optional<RawScan> retimed = odometry::retimed(raw, sweep);
-  const Scan measured = Scan::from_raw(retimed ? *retimed : raw, {.max_m = kFarthestShown_m}, workers);
-  const std::optional<registration::SweepMotion> motion = sweep_motion(run, frame);
-  const Scan scan = undo ? at_stamp(run, frame, measured, motion, workers) : measured;
-
+  const runs::ScanAsRun seen = runs::scan_as_run(run, frame, raw, kFarthestShown_m, workers);
+  const Scan& scan = seen.scan;
   ShownScan shown;
-  shown.compensated = compensated_doppler(run.frames[frame], scan, undo ? motion : std::nullopt);
+  shown.compensated = without_own_motion(run.frames[frame], seen);
   const std::optional<std::vector<std::int32_t>> saved = runs::read_labels(run, frame, raw.points.size());
   shown.labels = saved ? saved_labels(run, frame, scan, *saved, shown.compensated)
                        : guessed_labels(run, frame, scan, shown.compensated);
   shown.points = scan.points();
-  if (undo && scan.has_times()) {
+  if (seen.sweep_undone && scan.has_times()) {
     put_objects_at_stamp(run, frame, scan.times(), shown);
   }
   shown.doppler = scan.doppler();
@@ -206,4 +148,4 @@ ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, 
   return within_reach(shown);
 }
 
-}  // namespace dynamic_icp::report
+}  // namespace dynamic_icp::figures

@@ -12,7 +12,7 @@
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/recording/runs/run_folder.hpp"
 
-namespace dynamic_icp::report {
+namespace dynamic_icp::figures {
 
 // What a point is, as the page says it.
 inline constexpr std::uint8_t kNotUsed = 0;
@@ -38,10 +38,10 @@ struct ShownScan {
 /// The rows named by `rows`, in that order.
 ShownScan select(const ShownScan& scan, std::span<const std::uint32_t> rows);
 
-/// A scan as read by `figures::read_scan`, with what the run says of it. The residuals are still unknown. Labels come
+/// A scan as read by `read_scan`, with what the run says of it. The residuals are still unknown. Labels come
 /// from labels/*.bin or, where the run did not write them, from the objects and the compensated Doppler: then every
 /// point counts as used; where the method does not tell moving points from static ones, as static. Throws DataError
 /// when the labels do not fit the scan.
 ShownScan show_scan(const runs::RunFiles& run, std::size_t frame, const RawScan& raw, const Workers& workers);
 
-}  // namespace dynamic_icp::report
+}  // namespace dynamic_icp::figures

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/report/step_figure.hpp"
+#include "dynamic_icp/tools/figures/step_figure.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,13 +10,13 @@
 #include "testing/wall_drive.hpp"
 #include "testing/well_formed.hpp"
 
-namespace dynamic_icp::report {
+namespace dynamic_icp::figures {
 namespace {
 
 std::string drawn(const runs::TestFolder& folder, std::size_t source) {
   const runs::RunFiles run = runs::read_run(folder.path() / "run");
   std::vector<std::string> notes;
-  const auto recording = figures::open_recording(run, notes);
+  const auto recording = open_recording(run, notes);
   const std::string document =
       step_figure(run, read_pair(run, *recording, source, Workers(1)), drawing::theme(drawing::Ground::kLight))
           .document();
@@ -27,7 +27,7 @@ std::string drawn(const runs::TestFolder& folder, std::size_t source) {
 
 TEST(StepFigure, ShowsEveryStep) {
   const runs::TestFolder folder;
-  WallDrive().write(folder);
+  report::WallDrive().write(folder);
   const std::string document = drawn(folder, 2);
   for (const char* text : {"Measured Doppler", "Velocity filter", "Objects", "Prediction", "Aligned"}) {
     EXPECT_NE(document.find(text), std::string::npos) << text;
@@ -38,7 +38,7 @@ TEST(StepFigure, ShowsEveryStep) {
 
 TEST(StepFigure, ShowsTrueVelocitiesWhereTheyAreKnown) {
   const runs::TestFolder folder;
-  WallDrive().write(folder);
+  report::WallDrive().write(folder);
   folder.write(
       "drive/objects.jsonl",
       R"({"index":2,"objects":[{"velocity_sensor":[15,0,0],"center_sensor":[21,0,0],"size":[4,2,1],"points":9}]})"
@@ -49,7 +49,7 @@ TEST(StepFigure, ShowsTrueVelocitiesWhereTheyAreKnown) {
 
 TEST(StepFigure, TakesScansWithoutObjectsAndRefusesTheLast) {
   const runs::TestFolder folder;
-  WallDrive drive;
+  report::WallDrive drive;
   drive.frames = 2;
   drive.write(folder);
   folder.write("run/objects.jsonl",
@@ -59,4 +59,4 @@ TEST(StepFigure, TakesScansWithoutObjectsAndRefusesTheLast) {
 }
 
 }  // namespace
-}  // namespace dynamic_icp::report
+}  // namespace dynamic_icp::figures

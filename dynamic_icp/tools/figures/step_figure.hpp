@@ -10,9 +10,9 @@
 #include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/drawing/svg.hpp"
 #include "dynamic_icp/tools/drawing/theme.hpp"
-#include "dynamic_icp/tools/report/shown_scan.hpp"
+#include "dynamic_icp/tools/figures/shown_scan.hpp"
 
-namespace dynamic_icp::report {
+namespace dynamic_icp::figures {
 
 /// Two scans of a run that follow each other, as the run saw them.
 struct ScanPair {
@@ -22,7 +22,7 @@ struct ScanPair {
   std::vector<evaluation::TrueObject> true_objects;  ///< of the source; empty where they are not known
 };
 
-/// Throws UsageError when the run has no frame after `source`, DataError as `figures::read_scan` does. True objects are
+/// Throws UsageError when the run has no frame after `source`, DataError as `read_scan` does. True objects are
 /// read from objects.jsonl of a simulated recording.
 ScanPair read_pair(const runs::RunFiles& run, const datasets::Dataset& recording, std::size_t source,
                    const Workers& workers);
@@ -32,4 +32,4 @@ ScanPair read_pair(const runs::RunFiles& run, const datasets::Dataset& recording
 /// beside the next scan; and both scans as they were aligned.
 drawing::Svg step_figure(const runs::RunFiles& run, const ScanPair& pair, const drawing::Theme& theme);
 
-}  // namespace dynamic_icp::report
+}  // namespace dynamic_icp::figures
