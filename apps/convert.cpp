@@ -71,7 +71,7 @@ int convert(const ConvertOptions& options) {
   formats::OutputFolder output(options.output, kind, options.force,
                                {options.input, dataset->scan_file(selection.begin), dataset->ground_truth_file()});
   const std::vector<std::string> notes = output.fill([&] {
-    Progress progress("convert", 2 * (selection.size()), options.quiet);
+    Progress progress("convert", 2 * selection.size(), options.quiet);
     const std::vector<std::string> left_out =
         conversion::convert(*dataset, selection, target, output.path(), [&] { progress.advance(); });
     formats::write_whole_file(output.path() / kind.marker, record_json(options, *dataset, selection, left_out));
