@@ -11,6 +11,7 @@
 #include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/recording/conversion/conversion.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/scan_range.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
@@ -38,8 +39,8 @@ struct ConvertOptions {
   bool quiet = false;
 };
 
-std::string record_json(const ConvertOptions& options, const datasets::Dataset& dataset, const ScanSelection& selection,
-                        const std::vector<std::string>& left_out) {
+std::string record_json(const ConvertOptions& options, const datasets::Dataset& dataset,
+                        const datasets::ScanRange& selection, const std::vector<std::string>& left_out) {
   const nlohmann::ordered_json json = {{"version", version()},
                                        {"command", command_line()},
                                        {"input",
@@ -49,7 +50,7 @@ std::string record_json(const ConvertOptions& options, const datasets::Dataset& 
                                          {"scans", dataset.size()}}},
                                        {"format", options.to},
                                        {"start", selection.begin},
-                                       {"scans", selection.end - selection.begin},
+                                       {"scans", selection.size()},
                                        {"ground_truth", dataset.ground_truth_file().string()},
                                        {"assumptions", dataset.assumptions()},
                                        {"notes", left_out}};
@@ -60,7 +61,7 @@ std::string record_json(const ConvertOptions& options, const datasets::Dataset& 
 int convert(const ConvertOptions& options) {
   const conversion::Target target = conversion::find_target(options.to);
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
-  const ScanSelection selection = select_scans(*dataset, options.start, options.max_frames);
+  const datasets::ScanRange selection = datasets::select_scans(*dataset, options.start, options.max_frames);
   if (!options.quiet) {
     for (const std::string& assumption : dataset->assumptions()) {
       tell("dynamic-icp: warning: {}\n", assumption);
@@ -70,9 +71,9 @@ int convert(const ConvertOptions& options) {
   formats::OutputFolder output(options.output, kind, options.force,
                                {options.input, dataset->scan_file(selection.begin), dataset->ground_truth_file()});
   const std::vector<std::string> notes = output.fill([&] {
-    Progress progress("convert", 2 * (selection.end - selection.begin), options.quiet);
-    const std::vector<std::string> left_out = conversion::convert(*dataset, {selection.begin, selection.end}, target,
-                                                                  output.path(), [&] { progress.advance(); });
+    Progress progress("convert", 2 * selection.size(), options.quiet);
+    const std::vector<std::string> left_out =
+        conversion::convert(*dataset, selection, target, output.path(), [&] { progress.advance(); });
     formats::write_whole_file(output.path() / kind.marker, record_json(options, *dataset, selection, left_out));
     return left_out;
   });
@@ -81,7 +82,7 @@ int convert(const ConvertOptions& options) {
     for (const std::string& note : notes) {
       fmt::print("note         {}\n", note);
     }
-    fmt::print("scans        {}, {} to {}\n", selection.end - selection.begin, dataset->format(), options.to);
+    fmt::print("scans        {}, {} to {}\n", selection.size(), dataset->format(), options.to);
     fmt::print("written to   {}\n", options.output);
   }
   return 0;

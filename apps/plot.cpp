@@ -15,8 +15,8 @@
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
 #include "dynamic_icp/tools/figures/run_figures.hpp"
+#include "dynamic_icp/tools/figures/step_figure.hpp"
 #include "dynamic_icp/tools/report/run_facts.hpp"
-#include "dynamic_icp/tools/report/step_figure.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/svg_to_png.hpp"
@@ -52,7 +52,7 @@ struct Pictures {
   std::vector<std::string> notes;
 };
 
-drawing::Svg steps_of_pair(const figures::RunFiles& run, std::int64_t source, const drawing::Theme& theme) {
+drawing::Svg steps_of_pair(const runs::RunFiles& run, std::int64_t source, const drawing::Theme& theme) {
   if (source < 0) {
     throw UsageError(fmt::format("--pair is {}, expected 0 or more", source));
   }
@@ -61,15 +61,15 @@ drawing::Svg steps_of_pair(const figures::RunFiles& run, std::int64_t source, co
   if (recording == nullptr) {
     throw DataError(notes.back());
   }
-  return report::step_figure(run, report::read_pair(run, *recording, static_cast<std::size_t>(source), Workers()),
-                             theme);
+  return figures::step_figure(run, figures::read_pair(run, *recording, static_cast<std::size_t>(source), Workers()),
+                              theme);
 }
 
 Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme) {
   if (options.frame && *options.frame < 0) {
     throw UsageError(fmt::format("--frame is {}, expected 0 or more", *options.frame));
   }
-  const figures::RunFiles run = figures::read_run(options.folders.front());
+  const runs::RunFiles run = runs::read_run(options.folders.front());
   const std::optional<std::size_t> frame =
       options.frame ? std::optional(static_cast<std::size_t>(*options.frame)) : std::nullopt;
   const figures::RunContext context = figures::read_context(run, frame);
@@ -81,10 +81,10 @@ Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme
 }
 
 /// Paths can be drawn over each other when they are of the same drive and begin with the same scan.
-void check_comparable(const std::vector<figures::RunFiles>& runs) {
-  for (const figures::RunFiles& run : runs) {
-    const std::string input = figures::text_of(runs.front().run, "input.path");
-    if (figures::text_of(run.run, "input.path") != input || run.frames.empty() || runs.front().frames.empty() ||
+void check_comparable(const std::vector<runs::RunFiles>& runs) {
+  for (const runs::RunFiles& run : runs) {
+    const std::string input = runs::text_of(runs.front().run, "input.path");
+    if (runs::text_of(run.run, "input.path") != input || run.frames.empty() || runs.front().frames.empty() ||
         run.frames.front().index != runs.front().frames.front().index) {
       throw UsageError(
           fmt::format("{} and {} are no runs over the same recording from the same scan on: they cannot be "
@@ -98,9 +98,9 @@ Pictures pictures_of_runs(const PlotOptions& options, const drawing::Theme& them
   if (options.frame || options.pair) {
     throw UsageError("--frame and --pair are for the pictures of one run");
   }
-  std::vector<figures::RunFiles> runs;
+  std::vector<runs::RunFiles> runs;
   for (const std::string& folder : options.folders) {
-    runs.push_back(figures::read_run(folder));
+    runs.push_back(runs::read_run(folder));
   }
   check_comparable(runs);
   const std::vector<std::string> names = report::telling_names(runs);

@@ -11,7 +11,7 @@
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/formats/xyzd_bin.hpp"
-#include "dynamic_icp/tools/results/frame_json.hpp"
+#include "dynamic_icp/recording/runs/frame_json.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
@@ -63,7 +63,7 @@ int register_pair(const RegisterOptions& options) {
   if (first.status != odometry::FrameStatus::kFirst) {
     second.status = first.status;  // nothing to align from: the pair is no better than its source
   }
-  fmt::print("{}\n", results::pair_document(first, second, odometry->assumptions()));
+  fmt::print("{}\n", runs::pair_document(first, second, odometry->assumptions()));
   return 0;
 }
 

@@ -12,9 +12,6 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr const char* kPictures[] = {"convergence", "dynamics", "errors", "scan",
-                                     "speed",       "steps",    "timing", "trajectory"};
-
 /// What the marker of a result says; nothing when it cannot be read: then nothing but the usual files is known.
 json content_of(const fs::path& marker) {
   try {
@@ -23,20 +20,6 @@ json content_of(const fs::path& marker) {
   } catch (const std::exception&) {
     return json::object();
   }
-}
-
-std::vector<std::string> run_files(const fs::path& folder) {
-  std::vector<std::string> files = {"run.json",      "summary.json", "trajectory.tum", "frames.jsonl",
-                                    "objects.jsonl", "labels/#.bin", "report.html"};
-  for (const std::string picture : kPictures) {
-    files.push_back("plots/" + picture + ".svg");
-    files.push_back("plots/" + picture + ".png");
-  }
-  const json map = content_of(folder / "run.json").value("/map/file_in_run"_json_pointer, json());
-  if (map.is_string()) {
-    files.push_back(map.get<std::string>());
-  }
-  return files;
 }
 
 std::vector<std::string> conversion_files(const fs::path& /*folder*/) {
@@ -69,8 +52,6 @@ std::vector<std::string> sequence_files(const fs::path& folder) {
 }
 
 }  // namespace
-
-formats::ResultKind run_result() { return {"run.json", run_files}; }
 
 formats::ResultKind conversion_result() { return {"conversion.json", conversion_files}; }
 

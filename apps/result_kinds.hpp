@@ -4,11 +4,9 @@
 
 #include "dynamic_icp/recording/formats/result_kind.hpp"
 
-// What the results of the commands consist of, for --force: it removes these files and no others.
+// What the results of the commands consist of, for --force: it removes these files and no others. Those of `run` are in
+// recording/runs/run_folder.hpp.
 namespace dynamic_icp::apps {
-
-/// Of `run`, with what `report` and `plot` add to it, and its map when that lies in it.
-formats::ResultKind run_result();
 
 /// Of `convert`, in all layouts.
 formats::ResultKind conversion_result();

@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "apps/scan_selection.hpp"
 
-#include <algorithm>
-
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
@@ -36,23 +34,6 @@ void add_selection_options(CLI::App& command, const char* what, std::size_t& sta
           "--max-frames", [&max_frames](const std::string& text) { max_frames = count_of("--max-frames", text, 1); },
           fmt::format("Most scans to {}, 1 or more (default: all)", what))
       ->type_name("N");
-}
-
-ScanSelection select_scans(const datasets::Dataset& dataset, std::size_t start, std::optional<std::size_t> max_frames) {
-  if (start >= dataset.size()) {
-    throw UsageError(fmt::format("--start is {}, expected 0 to {}: the recording has {} scans", start,
-                                 dataset.size() - 1, dataset.size()));
-  }
-  const std::size_t rest = dataset.size() - start;
-  const ScanSelection selection{start, start + std::min(rest, max_frames.value_or(rest))};
-  for (std::size_t i = selection.begin + 1; i < selection.end; ++i) {
-    if (dataset.stamp(i) <= dataset.stamp(i - 1)) {
-      throw DataError(fmt::format("{}: scan {} is at {} s, expected later than scan {} at {} s",
-                                  dataset.scan_file(i).string(), i, format_seconds(dataset.stamp(i)), i - 1,
-                                  format_seconds(dataset.stamp(i - 1))));
-    }
-  }
-  return selection;
 }
 
 }  // namespace dynamic_icp::apps

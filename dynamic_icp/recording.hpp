@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-/// Recordings as sequences of scans, component `io`: open, diagnose, evaluate, convert.
+/// Recordings as sequences of scans, component `io`: open, diagnose, run, evaluate, convert.
 #include "dynamic_icp/recording/conversion/conversion.hpp"
 #include "dynamic_icp/recording/datasets/dataset.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
@@ -11,3 +11,4 @@
 #include "dynamic_icp/recording/evaluation/evaluation.hpp"
 #include "dynamic_icp/recording/evaluation/run_accuracy.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/runs/run_recording.hpp"

@@ -15,8 +15,8 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
-// For the tests of this room: a folder of its own for each test, and a small recording with its run in it.
-namespace dynamic_icp::figures {
+// For tests that read runs: a folder of its own for each test, and a small recording with its run in it.
+namespace dynamic_icp::runs {
 
 /// An empty folder named after the running test, removed with its content at the end.
 class TestFolder {
@@ -113,4 +113,4 @@ struct SampleRun {
   }
 };
 
-}  // namespace dynamic_icp::figures
+}  // namespace dynamic_icp::runs

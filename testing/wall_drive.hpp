@@ -14,7 +14,7 @@
 
 #include "testing/sample_run.hpp"
 
-// For the tests of this room: a drive in a world of planes, as a recording and as the run that a perfect method leaves.
+// For tests of reports: a drive in a world of planes, as a recording and as the run that a perfect method leaves.
 namespace dynamic_icp::report {
 
 /// A sensor that drives along x at 10 m/s, a scan each 0.1 s, over the ground z = -1.7 between a wall y = 8 and, ahead,
@@ -65,7 +65,7 @@ struct WallDrive {
     return all;
   }
 
-  void write(const figures::TestFolder& folder) const {
+  void write(const runs::TestFolder& folder) const {
     std::string truth;
     std::string trajectory;
     std::string rows;

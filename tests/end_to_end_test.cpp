@@ -12,6 +12,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "dynamic_icp/recording/runs/run_recording.hpp"
+
 #include "tests/program.hpp"
 
 namespace dynamic_icp::tests {
@@ -28,6 +30,62 @@ class EndToEnd : public ProgramTest {
     return json::parse(read_file(out / "summary.json"));
   }
 };
+
+/// A line of frames.jsonl, or summary.json, without what the clock says.
+json without_times(const std::string& text) {
+  json object = json::parse(text);
+  for (const char* key : {"ms", "ms_mean", "ms_median", "ms_p95", "fps"}) {
+    object.erase(key);
+  }
+  return object;
+}
+
+TEST_F(EndToEnd, TheFunctionOfTheLibraryWritesTheFilesOfTheProgram) {
+  const fs::path by_program = folder_ / "by_program";
+  const std::string options = " --save-labels --max-frames 3 --start 1 --threads 2 --period 0.2 --preset paper";
+  const Outcome outcome =
+      run_program("run --quiet " + street().string() + " --output " + by_program.string() + options);
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+
+  const json record = json::parse(read_file(by_program / "run.json"));
+  runs::Recording recording{street(), {}};
+  datasets::set(recording.settings, "period", "0.2");
+  runs::RunSettings settings;
+  settings.output = folder_ / "by_library";
+  settings.preset = "paper";
+  settings.config = odometry::preset("paper");
+  settings.threads = 2;
+  settings.start = 1;
+  settings.max_frames = 3;
+  settings.save_labels = true;
+  settings.command = record["command"];
+  ASSERT_TRUE(runs::run_recording(recording, settings));
+
+  std::size_t labels = 0;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(by_program)) {
+    const fs::path name = entry.path().lexically_relative(by_program);
+    ASSERT_TRUE(fs::exists(settings.output / name)) << name;
+    if (entry.is_directory()) {
+      continue;
+    }
+    const std::string ours = read_file(settings.output / name);
+    const std::string theirs = read_file(entry.path());
+    labels += name.extension() == ".bin" ? 1 : 0;
+    if (name == "summary.json") {
+      EXPECT_EQ(without_times(ours), without_times(theirs));
+    } else if (name == "frames.jsonl") {
+      std::istringstream our_lines(ours);
+      std::istringstream their_lines(theirs);
+      for (std::string a, b; std::getline(their_lines, b);) {
+        ASSERT_TRUE(std::getline(our_lines, a));
+        EXPECT_EQ(without_times(a), without_times(b));
+      }
+    } else {
+      EXPECT_EQ(ours, theirs) << name;
+    }
+  }
+  EXPECT_EQ(labels, 3U);
+}
 
 /// Mean absolute error of the reported object velocities along the true motion (m/s), for objects nearer than 50 m
 /// that a reported one lies at.

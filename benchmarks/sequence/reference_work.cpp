@@ -13,8 +13,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/dataset.hpp"
 #include "dynamic_icp/recording/formats/xyzd_bin.hpp"
-
-#include "benchmarks/sequence/child.hpp"
+#include "dynamic_icp/tools/benchmark/child_process.hpp"
 
 namespace dynamic_icp::speed {
 
@@ -34,7 +33,7 @@ ReferenceWork::~ReferenceWork() {
 }
 
 double ReferenceWork::run() const {
-  return parse_milliseconds(output_of_program(program_, {file_.string()}), program_);
+  return parse_milliseconds(benchmark::output_of_program(program_, {file_.string()}), program_);
 }
 
 double parse_milliseconds(std::string_view printed, const std::filesystem::path& program) {

@@ -42,7 +42,7 @@ void write_text(const fs::path& path, const std::string& text) {
 
 class Converter {
  public:
-  Converter(const datasets::Dataset& dataset, const ScanRange& range, Target target, const fs::path& folder,
+  Converter(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target, const fs::path& folder,
             const std::function<void()>& progress)
       : dataset_(dataset), range_(range), target_(target), folder_(folder), progress_(progress) {}
 
@@ -174,7 +174,7 @@ class Converter {
   }
 
   const datasets::Dataset& dataset_;
-  const ScanRange range_;
+  const datasets::ScanRange range_;
   const Target target_;
   const fs::path& folder_;
   const std::function<void()>& progress_;
@@ -195,7 +195,7 @@ Target find_target(std::string_view name) {
   throw UsageError(fmt::format("cannot convert to '{}'; known are:{}", name, known));
 }
 
-std::vector<std::string> convert(const datasets::Dataset& dataset, const ScanRange& range, Target target,
+std::vector<std::string> convert(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target,
                                  const fs::path& folder, const std::function<void()>& progress) {
   return Converter(dataset, range, target, folder, progress).convert();
 }

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstddef>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -10,6 +9,7 @@
 #include <vector>
 
 #include "dynamic_icp/recording/datasets/dataset.hpp"
+#include "dynamic_icp/recording/datasets/scan_range.hpp"
 
 namespace dynamic_icp::conversion {
 
@@ -18,12 +18,6 @@ enum class Target { kDicp, kNpz, kPcd, kPly };
 
 /// The layout of that name: dicp, npz, pcd or ply. Throws UsageError with the known names.
 Target find_target(std::string_view name);
-
-/// The scans [begin, end) of a recording.
-struct ScanRange {
-  std::size_t begin = 0;
-  std::size_t end = 0;
-};
 
 /// Writes scans of a recording into a folder, which exists and is empty, in another layout:
 ///   dicp  as datasets/layouts.hpp has it, with one pose for each scan, interpolated where the truth has other stamps
@@ -36,7 +30,7 @@ struct ScanRange {
 ///
 /// Gives what the target cannot hold, in sentences. Throws DataError where the recording cannot be read or the machine
 /// fails.
-std::vector<std::string> convert(const datasets::Dataset& dataset, const ScanRange& range, Target target,
+std::vector<std::string> convert(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target,
                                  const std::filesystem::path& folder, const std::function<void()>& progress = {});
 
 }  // namespace dynamic_icp::conversion

@@ -6,21 +6,12 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <string>
-#include <string_view>
 
-#include <fmt/format.h>
-#include <nlohmann/json.hpp>
-
-#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/evaluation/statistics.hpp"
-#include "dynamic_icp/recording/formats/text_lines.hpp"
-#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/formats/json_row.hpp"
 
 namespace dynamic_icp::evaluation {
 namespace {
-
-using Json = nlohmann::json;
 
 struct Errors {
   std::vector<double> along;
@@ -65,44 +56,13 @@ std::optional<double> ratio(std::size_t part, std::size_t whole) {
   return whole > 0 ? std::optional(static_cast<double>(part) / static_cast<double>(whole)) : std::nullopt;
 }
 
-Eigen::Vector3d vector_of(const Json& values) {
-  if (values.size() != 3) {
-    throw DataError(fmt::format("{} numbers, expected 3", values.size()));
+/// The truth leaves no number open.
+Eigen::Vector3d known_vector(const formats::JsonRow& row, const char* key) {
+  const Eigen::Vector3d vector = row.numbers<3>(key);
+  if (!vector.allFinite()) {
+    row.fail(key, "a list of 3 numbers");
   }
-  return {values.at(0).get<double>(), values.at(1).get<double>(), values.at(2).get<double>()};
-}
-
-TrueObject true_object(const Json& json) {
-  return {vector_of(json.at("velocity_sensor")), vector_of(json.at("center_sensor")), vector_of(json.at("size")),
-          json.at("points").get<std::size_t>()};
-}
-
-ReportedObject reported_object(const Json& json) {
-  return {vector_of(json.at("velocity")), vector_of(json.at("centroid"))};
-}
-
-template <class Objects, class Read>
-std::vector<Objects> read_lines(const std::filesystem::path& path, const Read& read_object) {
-  const std::string content = formats::read_text_file(path);
-  std::string_view rest = content;
-  std::vector<Objects> scans;
-  for (std::size_t line = 1; const auto text = formats::take_line(rest); ++line) {
-    try {
-      const Json json = Json::parse(*text);
-      Objects scan;
-      scan.index = json.at("index").get<std::int64_t>();
-      for (const Json& object : json.at("objects")) {
-        scan.objects.push_back(read_object(object));
-      }
-      scans.push_back(std::move(scan));
-    } catch (const Json::exception& error) {
-      throw DataError(
-          fmt::format("{}, line {}: not the moving objects of a scan: {}", path.string(), line, error.what()));
-    } catch (const DataError& error) {
-      throw DataError(fmt::format("{}, line {}: {}", path.string(), line, error.what()));
-    }
-  }
-  return scans;
+  return vector;
 }
 
 }  // namespace
@@ -146,11 +106,17 @@ ObjectError compare_objects(const std::vector<TrueObjects>& truth, const std::ve
 }
 
 std::vector<TrueObjects> read_true_objects(const std::filesystem::path& path) {
-  return read_lines<TrueObjects>(path, true_object);
-}
-
-std::vector<ReportedObjects> read_reported_objects(const std::filesystem::path& path) {
-  return read_lines<ReportedObjects>(path, reported_object);
+  std::vector<TrueObjects> scans;
+  formats::for_each_json_line(path, [&](const formats::JsonRow& row) {
+    TrueObjects& scan = scans.emplace_back();
+    scan.index = row.integer("index");
+    for (const formats::JsonRow::Json& value : row.list("objects")) {
+      const formats::JsonRow object = row.part("objects", value);
+      scan.objects.push_back({known_vector(object, "velocity_sensor"), known_vector(object, "center_sensor"),
+                              known_vector(object, "size"), static_cast<std::size_t>(object.integer("points"))});
+    }
+  });
+  return scans;
 }
 
 }  // namespace dynamic_icp::evaluation

@@ -70,8 +70,4 @@ ObjectError compare_objects(const std::vector<TrueObjects>& truth, const std::ve
 /// `center_sensor`, `size`, `points`}]. Throws DataError naming the file and the line.
 std::vector<TrueObjects> read_true_objects(const std::filesystem::path& path);
 
-/// objects.jsonl of a run: a line a scan with `index` and `objects` [{`velocity`, `centroid`}]. Throws DataError naming
-/// the file and the line.
-std::vector<ReportedObjects> read_reported_objects(const std::filesystem::path& path);
-
 }  // namespace dynamic_icp::evaluation

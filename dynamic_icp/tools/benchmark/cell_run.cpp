@@ -10,7 +10,10 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/evaluation/object_error.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/json_row.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/runs/frame_rows.hpp"
+#include "dynamic_icp/recording/runs/run_values.hpp"
 #include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
 
 namespace dynamic_icp::benchmark {
@@ -23,53 +26,41 @@ constexpr const char* kResultName = "cell.json";
 constexpr const char* kMessagesName = "messages.txt";
 constexpr std::size_t kLongestFailure = 1000;
 
-Json read_json(const fs::path& path) {
-  try {
-    return Json::parse(formats::read_text_file(path));
-  } catch (const Json::exception& error) {
-    throw DataError(fmt::format("{}: not a complete JSON document: {}", path.string(), error.what()));
-  }
-}
-
-std::optional<double> number_in(const Json& json, const char* key) {
-  const auto found = json.find(key);
-  return found == json.end() || found->is_null() ? std::nullopt : std::optional(found->get<double>());
-}
-
 void read_summary(const fs::path& path, CellResult& result) {
-  const Json summary = read_json(path);
-  try {
-    result.frames = summary.at("frames").get<std::size_t>();
-    result.rte_rmse_m = number_in(summary, "rte_rmse_m");
-    result.rre_rmse_deg = number_in(summary, "rre_rmse_deg");
-    result.ate_rmse_m = number_in(summary, "ate_rmse_m");
-    result.path_length_m = number_in(summary, "path_length_m");
-    result.mean_iterations = number_in(summary, "mean_iterations");
-    result.convergence_rate = number_in(summary, "convergence_rate");
-    result.ms_mean = number_in(summary, "ms_mean");
-    result.ms_median = number_in(summary, "ms_median");
-    result.ms_p95 = number_in(summary, "ms_p95");
-    result.fps = number_in(summary, "fps");
-    result.dynamic_ratio_max = number_in(summary, "dynamic_ratio_max");
-    result.dynamic_ratio_mean = number_in(summary, "dynamic_ratio_mean");
-    result.clustered_ratio_mean = number_in(summary, "clustered_ratio_mean");
-    result.refined_ratio_mean = number_in(summary, "refined_ratio_mean");
-  } catch (const Json::exception& error) {
-    throw DataError(fmt::format("{}: not the summary of a run: {}", path.string(), error.what()));
+  const runs::Settings summary = runs::read_summary(path);
+  const auto frames = runs::number_of(summary, "frames");
+  if (!frames) {
+    throw DataError(fmt::format("{}: not the summary of a run: the number of frames is missing", path.string()));
   }
+  result.frames = static_cast<std::size_t>(*frames);
+  for_each_number(result, [&](const char* key, std::optional<double>& value) {
+    if (const auto number = runs::number_of(summary, key)) {
+      value = number;
+    }
+  });
 }
 
 void read_notes(const fs::path& path, CellResult& result) {
-  const Json run = read_json(path);
-  for (const Json& assumption : run.value("assumptions", Json::array())) {
-    result.notes.push_back(assumption.is_string() ? assumption.get<std::string>() : assumption.dump());
+  runs::RunRecord record = runs::read_run_json(path);
+  result.notes = std::move(record.assumptions);
+  result.warnings = record.warnings.size();
+}
+
+std::vector<evaluation::ReportedObjects> reported_objects(const fs::path& path) {
+  std::vector<evaluation::ReportedObjects> scans;
+  for (const runs::ObjectsRow& row : runs::read_objects(path)) {
+    evaluation::ReportedObjects& scan = scans.emplace_back();
+    scan.index = static_cast<std::int64_t>(row.index);
+    for (const runs::ObjectRow& object : row.objects) {
+      scan.objects.push_back({object.velocity, object.centroid});
+    }
   }
-  result.warnings = run.value("warnings", Json::array()).size();
+  return scans;
 }
 
 ObjectScores score_objects(const fs::path& truth, const fs::path& reported) {
   const evaluation::ObjectError error =
-      evaluation::compare_objects(evaluation::read_true_objects(truth), evaluation::read_reported_objects(reported));
+      evaluation::compare_objects(evaluation::read_true_objects(truth), reported_objects(reported));
   return {error.along_mae_mps, error.lateral_mae_mps, error.median_relative_error, error.estimated_share,
           error.false_per_scan};
 }
@@ -109,7 +100,7 @@ std::optional<CellResult> saved_result(const fs::path& benchmark_folder, const C
     return std::nullopt;
   }
   try {
-    const Json saved = read_json(folder / kResultName);
+    const Json saved = formats::read_json_object(folder / kResultName);
     const CellResult result = cell_from_json(saved.at("result").dump(), folder / kResultName);
     const bool same = saved.at("fingerprint") == Json::parse(plan.fingerprint) && result.key == plan.key;
     return same && result.finished ? std::optional(result) : std::nullopt;

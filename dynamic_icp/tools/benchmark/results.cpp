@@ -12,31 +12,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-/// Calls visit(key, number) for each number of a result: one list for writing and reading.
-template <class Result, class Visit>
-void for_each_number(Result& result, const Visit& visit) {
-  visit("rte_rmse_m", result.rte_rmse_m);
-  visit("rre_rmse_deg", result.rre_rmse_deg);
-  visit("ate_rmse_m", result.ate_rmse_m);
-  visit("path_length_m", result.path_length_m);
-  visit("mean_iterations", result.mean_iterations);
-  visit("convergence_rate", result.convergence_rate);
-  visit("ms_mean", result.ms_mean);
-  visit("ms_median", result.ms_median);
-  visit("ms_p95", result.ms_p95);
-  visit("fps", result.fps);
-  visit("peak_memory_mib", result.peak_memory_mib);
-  visit("dynamic_ratio_max", result.dynamic_ratio_max);
-  visit("dynamic_ratio_mean", result.dynamic_ratio_mean);
-  visit("clustered_ratio_mean", result.clustered_ratio_mean);
-  visit("refined_ratio_mean", result.refined_ratio_mean);
-  visit("objects_along_mae_mps", result.objects.along_mae_mps);
-  visit("objects_lateral_mae_mps", result.objects.lateral_mae_mps);
-  visit("objects_median_relative_error", result.objects.median_relative_error);
-  visit("objects_estimated_share", result.objects.estimated_share);
-  visit("objects_false_per_scan", result.objects.false_per_scan);
-}
-
 Json cell_json(const CellResult& result) {
   Json json = {{"sequence", result.key.sequence},
                {"method", result.key.method},

@@ -18,7 +18,7 @@ constexpr std::size_t kMostNamed = 16;  // more labels would hide the scene
 
 /// An object with its place in the picture.
 struct Mark {
-  ObjectRow object;
+  runs::ObjectRow object;
   drawing::PixelBox box;
   drawing::Pixel middle;
   drawing::Pixel tip;  ///< where the middle will be after kArrowSeconds
@@ -28,7 +28,7 @@ struct Mark {
 std::vector<Mark> marks_of(const GroundView& ground, const ScanView& view, const std::vector<double>& compensated) {
   constexpr double kBorder = 3.0;  // px between points and box
   std::vector<Mark> marks;
-  for (const ObjectRow& object : view.objects) {
+  for (const runs::ObjectRow& object : view.objects) {
     const Region box = footprint(view, rows_on_object(view, compensated, object), object);
     const Eigen::Vector3d middle = box.middle();
     if (!middle.allFinite() || !ground.region.contains(middle.x(), middle.y())) {
@@ -52,7 +52,7 @@ std::string speed_text(const Eigen::Vector3d& velocity) {
   return std::isfinite(speed) ? fmt::format("{:.1f} m/s", speed) : "speed unknown";
 }
 
-std::string description_of(const ObjectRow& object) {
+std::string description_of(const runs::ObjectRow& object) {
   const Eigen::Vector3d& v = object.velocity;
   const std::string velocity = v.allFinite()
                                    ? fmt::format("({}, {}, {}) m/s over ground", drawing::compact_number(v.x()),

@@ -19,15 +19,15 @@ namespace {
 using formats::Trajectory;
 
 /// What was said about the recording when it was run.
-datasets::InputSettings input_settings(const RunFiles& run) {
+datasets::InputSettings input_settings(const runs::RunFiles& run) {
   constexpr std::string_view kOptions = "input.options.";
   datasets::InputSettings settings;
-  if (const std::string format = text_of(run.run, "input.format"); !format.empty()) {
+  if (const std::string format = runs::text_of(run.run, "input.format"); !format.empty()) {
     settings.open.format = format;
   }
   for (const auto& [key, value] : run.run) {
     if (key.starts_with(kOptions)) {
-      datasets::set(settings, key.substr(kOptions.size()), text_of(run.run, key));
+      datasets::set(settings, key.substr(kOptions.size()), runs::text_of(run.run, key));
     }
   }
   return settings;
@@ -57,7 +57,7 @@ std::vector<double> true_speeds(const evaluation::Association& matched, std::siz
   return speeds;
 }
 
-RunTruth compare(const RunFiles& run, const Trajectory& reference) {
+RunTruth compare(const runs::RunFiles& run, const Trajectory& reference) {
   const evaluation::Association matched = evaluation::associate(run.trajectory, reference);
   RunTruth truth;
   const Eigen::Isometry3d T_estimate_reference =
@@ -76,23 +76,23 @@ RunTruth compare(const RunFiles& run, const Trajectory& reference) {
   return truth;
 }
 
-ScanView view_scan(const RunFiles& run, const datasets::Dataset& recording, std::size_t frame) {
+ScanView view_scan(const runs::RunFiles& run, const datasets::Dataset& recording, std::size_t frame) {
   const RawScan raw = read_scan(run, recording, frame);
   ScanView view;
   view.title = fmt::format("Scan {}", run.frames[frame].index);
   view.scan = Scan::from_raw(raw);
   view.ego_velocity = run.frames[frame].ego_velocity;
   view.objects = run.objects[frame];
-  view.labels = read_labels(run, frame, raw.points.size()).value_or(std::vector<std::int32_t>());
+  view.labels = runs::read_labels(run, frame, raw.points.size()).value_or(std::vector<std::int32_t>());
   return view;
 }
 
 }  // namespace
 
-std::unique_ptr<datasets::Dataset> open_recording(const RunFiles& run, std::vector<std::string>& notes) {
+std::unique_ptr<datasets::Dataset> open_recording(const runs::RunFiles& run, std::vector<std::string>& notes) {
   constexpr const char* kNote = "No scans are shown: the recording cannot be opened. {}";
   try {
-    return datasets::open_input(text_of(run.run, "input.path"), input_settings(run));
+    return datasets::open_input(runs::text_of(run.run, "input.path"), input_settings(run));
   } catch (const std::runtime_error& error) {
     notes.push_back(fmt::format(kNote, error.what()));
   } catch (const UsageError& error) {
@@ -101,9 +101,9 @@ std::unique_ptr<datasets::Dataset> open_recording(const RunFiles& run, std::vect
   return nullptr;
 }
 
-std::optional<RunTruth> read_truth(const RunFiles& run, const datasets::Dataset* recording,
+std::optional<RunTruth> read_truth(const runs::RunFiles& run, const datasets::Dataset* recording,
                                    std::vector<std::string>& notes) {
-  const std::string path = text_of(run.run, "ground_truth");
+  const std::string path = runs::text_of(run.run, "ground_truth");
   if (path.empty()) {
     notes.emplace_back("No errors are shown: the run has no ground truth.");
     return std::nullopt;
@@ -116,8 +116,8 @@ std::optional<RunTruth> read_truth(const RunFiles& run, const datasets::Dataset*
   }
 }
 
-RawScan read_scan(const RunFiles& run, const datasets::Dataset& recording, std::size_t frame) {
-  const FrameRow& row = run.frames[frame];
+RawScan read_scan(const runs::RunFiles& run, const datasets::Dataset& recording, std::size_t frame) {
+  const runs::FrameRow& row = run.frames[frame];
   if (row.index >= recording.size()) {
     throw DataError(fmt::format("The recording holds {} scans, the run saw number {}.", recording.size(), row.index));
   }
@@ -129,12 +129,12 @@ RawScan read_scan(const RunFiles& run, const datasets::Dataset& recording, std::
   return raw;
 }
 
-std::size_t frame_with_most_object_points(const RunFiles& run) {
+std::size_t frame_with_most_object_points(const runs::RunFiles& run) {
   std::size_t best = 0;
   double most = -1.0;
   for (std::size_t k = 0; k < run.objects.size(); ++k) {
     double points = 0.0;
-    for (const ObjectRow& object : run.objects[k]) {
+    for (const runs::ObjectRow& object : run.objects[k]) {
       points += object.points;
     }
     if (points > most) {
@@ -145,7 +145,7 @@ std::size_t frame_with_most_object_points(const RunFiles& run) {
   return best;
 }
 
-RunContext read_context(const RunFiles& run, std::optional<std::size_t> frame) {
+RunContext read_context(const runs::RunFiles& run, std::optional<std::size_t> frame) {
   if (frame && *frame >= run.frames.size()) {
     throw UsageError(
         fmt::format("scan {} is asked for, expected 0 to {}", *frame, std::max<std::size_t>(run.frames.size(), 1) - 1));

@@ -11,7 +11,7 @@
 #include <Eigen/Geometry>
 
 #include "dynamic_icp/recording/datasets/dataset.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/figures/scan_view.hpp"
 
 namespace dynamic_icp::figures {
@@ -35,19 +35,19 @@ struct RunContext {
 /// Reads what it can; what is gone or broken is left out and stands in the notes. `frame` is the line of frames.jsonl,
 /// counted from 0, to show as a scan; without it the one with most points on objects. Throws UsageError when the run
 /// has no such frame.
-RunContext read_context(const RunFiles& run, std::optional<std::size_t> frame = std::nullopt);
+RunContext read_context(const runs::RunFiles& run, std::optional<std::size_t> frame = std::nullopt);
 
 /// The recording of the run, opened as the run opened it; null, with a note why, when that cannot be.
-std::unique_ptr<datasets::Dataset> open_recording(const RunFiles& run, std::vector<std::string>& notes);
+std::unique_ptr<datasets::Dataset> open_recording(const runs::RunFiles& run, std::vector<std::string>& notes);
 
 /// The ground truth of the run; empty, with a note why, when there is none that can be used. `recording` may be null.
-std::optional<RunTruth> read_truth(const RunFiles& run, const datasets::Dataset* recording,
+std::optional<RunTruth> read_truth(const runs::RunFiles& run, const datasets::Dataset* recording,
                                    std::vector<std::string>& notes);
 
 /// The scan of a frame. Throws DataError when the recording is not the one that the run saw.
-RawScan read_scan(const RunFiles& run, const datasets::Dataset& recording, std::size_t frame);
+RawScan read_scan(const runs::RunFiles& run, const datasets::Dataset& recording, std::size_t frame);
 
 /// The line of frames.jsonl with the most points on objects, the first of several; 0 when there are no objects.
-std::size_t frame_with_most_object_points(const RunFiles& run);
+std::size_t frame_with_most_object_points(const runs::RunFiles& run);
 
 }  // namespace dynamic_icp::figures

@@ -13,8 +13,11 @@
 namespace dynamic_icp::figures {
 namespace {
 
+using runs::SampleRun;
+using runs::TestFolder;
+
 RunContext context_of(const TestFolder& folder, std::optional<std::size_t> frame = std::nullopt) {
-  return read_context(read_run(folder.path() / "run"), frame);
+  return read_context(runs::read_run(folder.path() / "run"), frame);
 }
 
 TEST(RunContext, ComparesWithTheTruthPerFrame) {

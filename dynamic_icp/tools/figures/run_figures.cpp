@@ -26,7 +26,7 @@ constexpr struct {
                  {"convergence", {"iterations", "inlier_rmse"}},
                  {"timing", {"milliseconds"}}};
 
-std::vector<Eigen::Vector3d> positions_of(const RunFiles& run) {
+std::vector<Eigen::Vector3d> positions_of(const runs::RunFiles& run) {
   std::vector<Eigen::Vector3d> positions;
   for (const formats::StampedPose& pose : run.trajectory) {
     positions.push_back(pose.T_world_sensor.translation());
@@ -44,7 +44,7 @@ std::vector<Eigen::Vector3d> positions_of(const RunTruth& truth) {
   return positions;
 }
 
-PathMap path_map(const RunFiles& run, const RunContext& context) {
+PathMap path_map(const runs::RunFiles& run, const RunContext& context) {
   return {.estimates = {{"estimate", positions_of(run)}},
           .ground_truth = context.truth ? positions_of(*context.truth) : std::vector<Eigen::Vector3d>()};
 }
@@ -65,7 +65,7 @@ std::map<std::size_t, double> times_of(const std::vector<ComparedRun>& runs) {
 }
 
 /// The values of a run in their places among those of all runs.
-std::vector<double> placed(const std::vector<double>& values, const RunFiles& run,
+std::vector<double> placed(const std::vector<double>& values, const runs::RunFiles& run,
                            const std::map<std::size_t, double>& times) {
   std::map<std::size_t, double> of_scan;
   for (std::size_t k = 0; k < values.size(); ++k) {
@@ -136,7 +136,7 @@ std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const 
   return figures;
 }
 
-std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const drawing::Theme& theme) {
+std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& context, const drawing::Theme& theme) {
   std::vector<double> times;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {
     times.push_back(run.seconds(k));

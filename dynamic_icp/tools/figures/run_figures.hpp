@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/drawing/svg.hpp"
 #include "dynamic_icp/tools/drawing/theme.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
 
 namespace dynamic_icp::figures {
 
@@ -20,12 +20,12 @@ struct Figure {
 
 /// The figures of a run in the order of that list, without those that have nothing to show: no "scan" when the
 /// recording is gone, no "errors" without ground truth.
-std::vector<Figure> draw_figures(const RunFiles& run, const RunContext& context, const drawing::Theme& theme);
+std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& context, const drawing::Theme& theme);
 
 /// A run among others over the same recording.
 struct ComparedRun {
   std::string name;
-  RunFiles files;
+  runs::RunFiles files;
   std::optional<RunTruth> truth;
 };
 

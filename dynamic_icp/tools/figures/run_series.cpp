@@ -13,10 +13,10 @@ namespace {
 
 /// One value of each frame.
 template <class Value>
-std::vector<double> per_frame(const RunFiles& run, const Value& value) {
+std::vector<double> per_frame(const runs::RunFiles& run, const Value& value) {
   std::vector<double> values;
   values.reserve(run.frames.size());
-  for (const FrameRow& frame : run.frames) {
+  for (const runs::FrameRow& frame : run.frames) {
     values.push_back(value(frame));
   }
   return values;
@@ -47,30 +47,31 @@ RunSeries error_series(const Heading& heading, const std::vector<double>& errors
 
 /// A value of the registration; a gap where nothing was registered: at the first scan, and at those that are lost
 /// without a single step.
-std::vector<Series> registration(const RunFiles& run, double FrameRow::*value) {
-  return {{"per scan", per_frame(run, [&](const FrameRow& frame) {
+std::vector<Series> registration(const runs::RunFiles& run, double runs::FrameRow::*value) {
+  return {{"per scan", per_frame(run, [&](const runs::FrameRow& frame) {
              const bool registered = frame.reason != "first" && (frame.status != "lost" || frame.iterations > 0.0);
              return registered ? frame.*value : std::numeric_limits<double>::quiet_NaN();
            })}};
 }
 
 /// Percent of the points used; a gap where none was used.
-Series share(const RunFiles& run, const char* name, double FrameRow::*count) {
-  return {name, per_frame(run, [&](const FrameRow& frame) { return 100.0 * frame.*count / frame.points_used; })};
+Series share(const runs::RunFiles& run, const char* name, double runs::FrameRow::*count) {
+  return {name, per_frame(run, [&](const runs::FrameRow& frame) { return 100.0 * frame.*count / frame.points_used; })};
 }
 
-RunSeries ego_speed(const RunFiles& run, const std::optional<RunTruth>& truth) {
+RunSeries ego_speed(const runs::RunFiles& run, const std::optional<RunTruth>& truth) {
   std::vector<Series> series;
   if (truth) {
     series.push_back({"ground truth", truth->speed, true});
   }
-  series.push_back({"estimate", per_frame(run, [](const FrameRow& f) { return velocity_at_stamp(f).norm(); })});
+  series.push_back(
+      {"estimate", per_frame(run, [](const runs::FrameRow& f) { return runs::velocity_at_stamp(f).norm(); })});
   return make_series({"ego_speed", "Ego speed", "speed", "m/s"}, std::move(series));
 }
 
-RunSeries objects(const RunFiles& run) {
+RunSeries objects(const runs::RunFiles& run) {
   Series count{"objects with a velocity", {}};
-  for (const std::vector<ObjectRow>& list : run.objects) {
+  for (const std::vector<runs::ObjectRow>& list : run.objects) {
     count.values.push_back(static_cast<double>(list.size()));
   }
   RunSeries series = make_series({"objects", "Moving objects", "number", ""}, {count});
@@ -78,14 +79,14 @@ RunSeries objects(const RunFiles& run) {
   return series;
 }
 
-double stage_time(const FrameRow& frame, const std::string& stage) {
+double stage_time(const runs::FrameRow& frame, const std::string& stage) {
   const auto found = std::find_if(frame.milliseconds.begin(), frame.milliseconds.end(),
                                   [&](const auto& entry) { return entry.first == stage; });
   return found == frame.milliseconds.end() ? 0.0 : found->second;
 }
 
 /// The total first, then the stages as they stand in the first frame.
-RunSeries milliseconds(const RunFiles& run) {
+RunSeries milliseconds(const runs::RunFiles& run) {
   std::vector<std::string> stages = {"total"};
   if (!run.frames.empty()) {
     for (const auto& [stage, value] : run.frames.front().milliseconds) {
@@ -96,7 +97,7 @@ RunSeries milliseconds(const RunFiles& run) {
   }
   std::vector<Series> series;
   for (const std::string& stage : stages) {
-    series.push_back({stage, per_frame(run, [&](const FrameRow& frame) { return stage_time(frame, stage); })});
+    series.push_back({stage, per_frame(run, [&](const runs::FrameRow& frame) { return stage_time(frame, stage); })});
   }
   return make_series({"milliseconds", "Computing time", "time per scan", "ms"}, std::move(series));
 }
@@ -109,25 +110,26 @@ bool has_values(const RunSeries& series) {
 
 }  // namespace
 
-std::vector<RunSeries> run_series(const RunFiles& run, const std::optional<RunTruth>& truth) {
+std::vector<RunSeries> run_series(const runs::RunFiles& run, const std::optional<RunTruth>& truth) {
   std::vector<RunSeries> all = {ego_speed(run, truth)};
   if (truth) {
     all.push_back(error_series({"translation_error", "RTE per scan", "RTE", "m"}, truth->translation_error));
     all.push_back(error_series({"rotation_error", "RRE per scan", "RRE", "degrees"}, truth->rotation_error));
   }
-  all.push_back(make_series({"iterations", "Iterations", "number", ""}, registration(run, &FrameRow::iterations)));
+  all.push_back(
+      make_series({"iterations", "Iterations", "number", ""}, registration(run, &runs::FrameRow::iterations)));
   all.back().panel.whole_numbers = true;
+  all.push_back(make_series({"inlier_rmse", "Inlier RMSE", "inlier RMSE", "m"},
+                            registration(run, &runs::FrameRow::inlier_rmse)));
   all.push_back(
-      make_series({"inlier_rmse", "Inlier RMSE", "inlier RMSE", "m"}, registration(run, &FrameRow::inlier_rmse)));
-  all.push_back(
-      make_series({"fitness", "Fitness", "share of points matched", ""}, registration(run, &FrameRow::fitness)));
+      make_series({"fitness", "Fitness", "share of points matched", ""}, registration(run, &runs::FrameRow::fitness)));
   all.push_back(make_series({"degeneracy", "Degeneracy: information ratio (eigenvalues)", "information ratio", ""},
-                            registration(run, &FrameRow::information_ratio)));
+                            registration(run, &runs::FrameRow::information_ratio)));
   all.back().panel.logarithmic = true;
-  all.push_back(make_series(
-      {"dynamic_share", "Moving points", "share of points used", "%"},
-      {share(run, "flagged", &FrameRow::dynamic_candidates), share(run, "in a cluster", &FrameRow::dynamic_clustered),
-       share(run, "on an object", &FrameRow::dynamic_refined)}));
+  all.push_back(make_series({"dynamic_share", "Moving points", "share of points used", "%"},
+                            {share(run, "flagged", &runs::FrameRow::dynamic_candidates),
+                             share(run, "in a cluster", &runs::FrameRow::dynamic_clustered),
+                             share(run, "on an object", &runs::FrameRow::dynamic_refined)}));
   all.push_back(objects(run));
   all.push_back(milliseconds(run));
   std::erase_if(all, [](const RunSeries& series) { return !has_values(series); });

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
 #include "dynamic_icp/tools/figures/series_plot.hpp"
 
 namespace dynamic_icp::figures {
@@ -22,6 +22,6 @@ struct RunSeries {
 
 /// All that the run has values for, in this order: ego_speed, translation_error, rotation_error (with ground truth),
 /// iterations, inlier_rmse, fitness, degeneracy, dynamic_share, objects, milliseconds.
-std::vector<RunSeries> run_series(const RunFiles& run, const std::optional<RunTruth>& truth);
+std::vector<RunSeries> run_series(const runs::RunFiles& run, const std::optional<RunTruth>& truth);
 
 }  // namespace dynamic_icp::figures

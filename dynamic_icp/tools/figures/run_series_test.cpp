@@ -9,15 +9,15 @@
 namespace dynamic_icp::figures {
 namespace {
 
-RunFiles run_of(const std::vector<FrameRow>& frames) {
-  RunFiles run;
+runs::RunFiles run_of(const std::vector<runs::FrameRow>& frames) {
+  runs::RunFiles run;
   run.frames = frames;
   run.objects.resize(frames.size());
   return run;
 }
 
-FrameRow frame_row(const char* status, const char* reason, double iterations) {
-  FrameRow frame;
+runs::FrameRow frame_row(const char* status, const char* reason, double iterations) {
+  runs::FrameRow frame;
   frame.status = status;
   frame.reason = reason;
   frame.iterations = iterations;
@@ -26,7 +26,7 @@ FrameRow frame_row(const char* status, const char* reason, double iterations) {
 }
 
 /// The values of the first line of the series called `id`.
-std::vector<double> values_of(const RunFiles& run, const char* id) {
+std::vector<double> values_of(const runs::RunFiles& run, const char* id) {
   for (const RunSeries& series : run_series(run, std::nullopt)) {
     if (series.id == id) {
       return series.panel.series.front().values;
@@ -36,10 +36,10 @@ std::vector<double> values_of(const RunFiles& run, const char* id) {
 }
 
 TEST(RunSeries, SpeedIsThatAtTheStampWhereTheRunTellsIt) {
-  FrameRow swept = frame_row("ok", "converged", 5.0);
+  runs::FrameRow swept = frame_row("ok", "converged", 5.0);
   swept.ego_velocity = {3.0, 0.0, 0.0};  // of the whole sweep
-  swept.twist = TwistRow{.angular = Eigen::Vector3d::Zero(), .linear = {3.0, 4.0, 0.0}};
-  FrameRow instant = swept;
+  swept.twist = runs::TwistRow{.angular = Eigen::Vector3d::Zero(), .linear = {3.0, 4.0, 0.0}};
+  runs::FrameRow instant = swept;
   instant.twist.reset();
   EXPECT_EQ(values_of(run_of({swept, instant}), "ego_speed"), (std::vector<double>{5.0, 3.0}));
 }

@@ -77,7 +77,7 @@ TEST(ScanPlot, StaticSceneIsGreyOnceOwnMotionIsTakenOut) {
 TEST(ScanPlot, TakesValuesThatAreNotFinite) {
   ScanView view = random_view(100);
   for (const double bad : {kNaN, 1e300, -1e300}) {
-    ObjectRow object = view.objects.front();
+    runs::ObjectRow object = view.objects.front();
     object.velocity.setConstant(bad);
     view.objects.push_back(object);
     object.centroid.setConstant(bad);

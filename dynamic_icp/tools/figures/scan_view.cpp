@@ -61,13 +61,14 @@ std::vector<std::uint32_t> rows_per_cell(const Scan& scan, double cell_m) {
   return rows;
 }
 
-Region region_of_interest(const Scan& scan, std::span<const std::uint32_t> rows, std::span<const ObjectRow> objects) {
+Region region_of_interest(const Scan& scan, std::span<const std::uint32_t> rows,
+                          std::span<const runs::ObjectRow> objects) {
   const Coordinates ground = ground_coordinates(scan, rows);
   constexpr double kShownShare = 0.95;
   constexpr double kMarginM = 2.0;
   constexpr double kFarthestM = 150.0;  // beyond that a car is a few pixels
   Region region{middle_part(ground.x, kShownShare), middle_part(ground.y, kShownShare)};
-  for (const ObjectRow& object : objects) {
+  for (const runs::ObjectRow& object : objects) {
     const Eigen::Vector3d half = 0.5 * object.extent.cwiseAbs();
     const Eigen::Vector3d low = object.centroid - half;
     const Eigen::Vector3d high = object.centroid + half;
@@ -94,7 +95,7 @@ drawing::Range field_of_view(const Scan& scan) {
 }
 
 std::vector<std::uint32_t> rows_on_object(const ScanView& view, const std::vector<double>& compensated,
-                                          const ObjectRow& object) {
+                                          const runs::ObjectRow& object) {
   constexpr double kStillMps = 0.5;  // slower points count as standing still
   const double tolerance = std::max(kStillMps, 0.1 * object.velocity.norm());
   std::vector<std::uint32_t> rows;
@@ -116,7 +117,7 @@ std::vector<std::uint32_t> rows_on_object(const ScanView& view, const std::vecto
   return rows;
 }
 
-Region footprint(const ScanView& view, std::span<const std::uint32_t> rows, const ObjectRow& object) {
+Region footprint(const ScanView& view, std::span<const std::uint32_t> rows, const runs::ObjectRow& object) {
   constexpr std::size_t kEnough = 5;
   constexpr double kNearlyAll = 0.99;  // a few wrong rows must not blow up the box
   if (rows.size() < kEnough) {

@@ -10,8 +10,8 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/drawing/axes.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
 
 namespace dynamic_icp::figures {
 
@@ -20,8 +20,8 @@ struct ScanView {
   std::string title;  ///< e.g. "Scan 23"
   Scan scan;
   Eigen::Vector3d ego_velocity = Eigen::Vector3d::Zero();  ///< m/s, sensor frame; NaN when it is not known
-  std::vector<ObjectRow> objects;
-  std::vector<std::int32_t> labels;  ///< per record of the scan as read (see `read_labels`); empty: not known
+  std::vector<runs::ObjectRow> objects;
+  std::vector<std::int32_t> labels;  ///< per record of the scan as read (see `runs::read_labels`); empty: not known
 };
 
 /// Part of the ground plane of the sensor: m, x forward, y to the left.
@@ -43,7 +43,8 @@ std::vector<std::uint32_t> rows_per_cell(const Scan& scan, double cell_m);
 
 /// The part that shows the scene: most of what the scan saw, the sensor, and the objects, seen from above. A few far
 /// returns are left outside. `rows` are those of `rows_per_cell`, so that near and far count alike.
-Region region_of_interest(const Scan& scan, std::span<const std::uint32_t> rows, std::span<const ObjectRow> objects);
+Region region_of_interest(const Scan& scan, std::span<const std::uint32_t> rows,
+                          std::span<const runs::ObjectRow> objects);
 
 /// The horizontal field of view: the azimuths (rad, 0 forward, positive to the left) between which nearly all rows
 /// lie.
@@ -52,9 +53,9 @@ drawing::Range field_of_view(const Scan& scan);
 /// The rows of the scan on an object: by the labels or, without them, the points near its centroid that move, and
 /// whose Doppler without own motion (`compensated`) agrees with its velocity.
 std::vector<std::uint32_t> rows_on_object(const ScanView& view, const std::vector<double>& compensated,
-                                          const ObjectRow& object);
+                                          const runs::ObjectRow& object);
 
 /// The box of an object from above: around its rows, or where those are too few, its extent around its centroid.
-Region footprint(const ScanView& view, std::span<const std::uint32_t> rows, const ObjectRow& object);
+Region footprint(const ScanView& view, std::span<const std::uint32_t> rows, const runs::ObjectRow& object);
 
 }  // namespace dynamic_icp::figures

@@ -19,7 +19,7 @@ namespace {
 /// own.
 struct Scene {
   Eigen::Vector3d velocity{13.0, 0.4, -0.2};
-  ObjectRow car{
+  runs::ObjectRow car{
       .id = 2, .velocity = {-9.0, 1.0, 0.0}, .centroid = {30.0, 3.0, 0.5}, .extent = {4.0, 1.8, 1.4}, .points = 100};
   ScanView view;
 
@@ -84,10 +84,10 @@ TEST(ScanView, FindsTheRowsOfAnObjectWithAndWithoutLabels) {
   scene.view.labels.clear();
   EXPECT_EQ(rows_on_object(scene.view, compensated, scene.car), car);
   // The centroid of the points a sensor sees lies off the middle of the box.
-  ObjectRow near_side = scene.car;
+  runs::ObjectRow near_side = scene.car;
   near_side.centroid.x() -= 1.9;
   EXPECT_EQ(rows_on_object(scene.view, compensated, near_side), car);
-  ObjectRow other_way = scene.car;
+  runs::ObjectRow other_way = scene.car;
   other_way.velocity = -other_way.velocity;
   EXPECT_TRUE(rows_on_object(scene.view, compensated, other_way).empty());
 }
@@ -114,10 +114,10 @@ TEST(ScanView, RegionHoldsSensorAndObjects) {
 }
 
 TEST(ScanView, RegionIsFiniteWhateverTheObjectsSay) {
-  ObjectRow wild;
+  runs::ObjectRow wild;
   for (const double value : {std::nan(""), 1e300, -1e300}) {
     wild.centroid = {value, value, 0.0};
-    const Region region = region_of_interest(Scan(), {}, std::vector<ObjectRow>{wild});
+    const Region region = region_of_interest(Scan(), {}, std::vector<runs::ObjectRow>{wild});
     EXPECT_TRUE(region.contains(0.0, 0.0));
     EXPECT_LT(region.x.length() + region.y.length(), 1000.0);
   }

@@ -19,8 +19,8 @@ namespace dynamic_icp::report {
 namespace {
 
 namespace fs = std::filesystem;
-using figures::RunFiles;
-using figures::text_of;
+using runs::RunFiles;
+using runs::text_of;
 
 constexpr const char* kResults = "results.json";
 
@@ -140,7 +140,7 @@ std::string label_of(const benchmark::BenchmarkResults& results, const benchmark
 PageContent comparison_report(const std::vector<fs::path>& folders) {
   std::vector<RunFiles> runs;
   for (const fs::path& folder : folders) {
-    runs.push_back(figures::read_run(folder));
+    runs.push_back(runs::read_run(folder));
   }
   const std::vector<std::string> names = telling_names(runs);
   std::vector<std::string> notes = {
@@ -185,7 +185,7 @@ PageContent benchmark_report(const fs::path& folder) {
       continue;
     }
     try {
-      const RunFiles run = figures::read_run(folder / cell.folder / "run");
+      const RunFiles run = runs::read_run(folder / cell.folder / "run");
       group_called(groups, cell.key.sequence).runs.push_back(list.add(run, label, notes));
     } catch (const DataError& error) {
       notes.push_back(fmt::format("{}, {}: the run is not shown. {}", cell.key.sequence, label, error.what()));

@@ -18,7 +18,7 @@ using nlohmann::json;
 constexpr ViewerBundle kViewer{.script = "start();", .style = ""};
 
 /// A copy of run/ that says another method.
-void copy_run(const figures::TestFolder& folder, const std::string& name, const std::string& method) {
+void copy_run(const runs::TestFolder& folder, const std::string& name, const std::string& method) {
   std::filesystem::create_directories((folder.path() / name).parent_path());
   std::filesystem::copy(folder.path() / "run", folder.path() / name, std::filesystem::copy_options::recursive);
   std::string about = folder.read(name + "/run.json");
@@ -28,7 +28,7 @@ void copy_run(const figures::TestFolder& folder, const std::string& name, const 
 }
 
 TEST(ComparisonReport, GroupsRunsOverTheSameRecording) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   copy_run(folder, "b", "gicp");
   copy_run(folder, "c", "gicp");
@@ -51,7 +51,7 @@ TEST(ComparisonReport, GroupsRunsOverTheSameRecording) {
 }
 
 TEST(ComparisonReport, EqualRunsAreToldApartByTheirFolders) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   copy_run(folder, "b", "dynamic-icp");
   const PageContent page = comparison_report({folder.path() / "run", folder.path() / "b"});
@@ -60,7 +60,7 @@ TEST(ComparisonReport, EqualRunsAreToldApartByTheirFolders) {
 }
 
 TEST(ComparisonReport, NamesTheFolderThatIsNoRun) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   try {
     comparison_report({folder.path() / "run", folder.path() / "drive"});
@@ -71,7 +71,7 @@ TEST(ComparisonReport, NamesTheFolderThatIsNoRun) {
 }
 
 TEST(BenchmarkReport, HoldsTablesGroupsAndFailures) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   benchmark::BenchmarkResults results;
   results.info.version = "0.1.0";

@@ -14,9 +14,9 @@
 namespace dynamic_icp::report {
 namespace {
 
-using figures::FrameRow;
-using figures::ObjectRow;
-using figures::RunFiles;
+using runs::FrameRow;
+using runs::ObjectRow;
+using runs::RunFiles;
 
 // Decimals of numbers in the page: a tenth of what can be measured at best.
 constexpr int kMetre = 4;
@@ -93,7 +93,7 @@ Json frames_data(const RunFiles& run, const std::vector<std::size_t>& kept) {
     index.push_back(frame.index);
     seconds.push_back(rounded(run.seconds(k), kSecond));
     append(poses, run.trajectory[k].T_world_sensor);
-    append(velocity, figures::velocity_at_stamp(frame), kSpeed);
+    append(velocity, runs::velocity_at_stamp(frame), kSpeed);
     status.push_back(frame.reason == "first" ? frame.reason : frame.status);
     reason.push_back(frame.reason == "converged" || frame.reason == "first" ? "" : frame.reason);
     lost.push_back(directions(frame));
@@ -148,7 +148,7 @@ Json plots_data(const RunFiles& run, const std::optional<figures::RunTruth>& tru
 }
 
 Facts origin(const RunFiles& run) {
-  figures::Settings rest = run.run;
+  runs::Settings rest = run.run;
   std::erase_if(rest, [](const auto& entry) { return entry.first == "command"; });
   return texts_of(rest);
 }
@@ -160,7 +160,7 @@ Json run_data(const RunFiles& run, const std::optional<figures::RunTruth>& truth
   const std::vector<std::size_t> kept = spread_frames(run.frames.size(), most_frames);
   return {{"name", name},
           {"facts", pairs(facts_of(run))},
-          {"command", figures::text_of(run.run, "command")},
+          {"command", runs::text_of(run.run, "command")},
           {"warnings", warnings_of(run)},
           {"summary", summary(run)},
           {"origin", pairs(origin(run))},

@@ -15,8 +15,8 @@
 namespace dynamic_icp::report {
 namespace {
 
-using figures::RunFiles;
-using figures::text_of;
+using runs::RunFiles;
+using runs::text_of;
 
 const char* better_of(std::string_view key) {
   constexpr std::string_view kLower[] = {"rte_", "rre_", "ate_", "ms_", "mean_iterations"};
@@ -100,7 +100,7 @@ Facts facts_of(const RunFiles& run) {
 
 std::vector<std::string> warnings_of(const RunFiles& run) {
   std::map<std::string, std::vector<std::size_t>> by_reason;
-  for (const figures::FrameRow& frame : run.frames) {
+  for (const runs::FrameRow& frame : run.frames) {
     if (frame.reason != "converged" && frame.reason != "first") {
       by_reason[frame.reason].push_back(frame.index);
     }
@@ -126,7 +126,7 @@ std::vector<SummaryRow> summary_of(const RunFiles& run) {
   return rows;
 }
 
-Facts texts_of(const figures::Settings& settings) {
+Facts texts_of(const runs::Settings& settings) {
   Facts facts;
   for (const auto& [key, value] : settings) {
     const std::string text = text_of(settings, key);

@@ -44,7 +44,7 @@ Json map_data(std::size_t run, std::optional<KeptMap>& map, PageContent& content
 }  // namespace
 
 PageContent run_report(const std::filesystem::path& folder, const ScanChoice& choice, const Workers& workers) {
-  const figures::RunFiles run = figures::read_run(folder);
+  const runs::RunFiles run = runs::read_run(folder);
   std::vector<std::string> notes;
   RunScans kept;
   std::optional<figures::RunTruth> truth;

@@ -21,19 +21,18 @@ using nlohmann::json;
 
 constexpr ViewerBundle kViewer{.script = "start();", .style = "body{}"};
 
-std::string html_of(const figures::TestFolder& folder, const ScanChoice& choice = {}) {
+std::string html_of(const runs::TestFolder& folder, const ScanChoice& choice = {}) {
   return html_page(run_report(folder.path() / "run", choice, Workers(1)), kViewer);
 }
 
-void replace(const figures::TestFolder& folder, const std::string& file, const std::string& from,
-             const std::string& to) {
+void replace(const runs::TestFolder& folder, const std::string& file, const std::string& from, const std::string& to) {
   std::string content = folder.read(file);
   ASSERT_NE(content.find(from), std::string::npos) << from;
   content.replace(content.find(from), from.size(), to);
   folder.write(file, content);
 }
 
-std::string message_of(const figures::TestFolder& folder) {
+std::string message_of(const runs::TestFolder& folder) {
   try {
     html_of(folder);
   } catch (const DataError& error) {
@@ -43,7 +42,7 @@ std::string message_of(const figures::TestFolder& folder) {
 }
 
 TEST(RunReport, HoldsWhatTheContractNames) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   const WallDrive drive;
   drive.write(folder);
   const ReadPage page = read_page(html_of(folder));
@@ -107,7 +106,7 @@ TEST(RunReport, HoldsWhatTheContractNames) {
 }
 
 TEST(RunReport, NeedsNothingFromOutside) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   const std::string html = html_of(folder);
   for (const char* text : {"src=", "href=", "url(", "@import", "http:", "https:"}) {
@@ -117,7 +116,7 @@ TEST(RunReport, NeedsNothingFromOutside) {
 }
 
 TEST(RunReport, ShowsHostileTextAsText) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   const std::string hostile = R"(</script><script>alert(1)</script><!--<script> & \u2028 'x')";
   const std::string in_json = json(hostile).dump();
@@ -152,7 +151,7 @@ TEST(RunReport, TextsThatAreNoUtf8AreMended) {
 
 TEST(RunReport, TakesRunsWithNoneAndOneScan) {
   for (const std::size_t frames : {0u, 1u, 2u}) {
-    const figures::TestFolder folder;
+    const runs::TestFolder folder;
     WallDrive drive;
     drive.frames = frames;
     drive.write(folder);
@@ -165,7 +164,7 @@ TEST(RunReport, TakesRunsWithNoneAndOneScan) {
 }
 
 TEST(RunReport, WithoutRecordingThereAreNoScansButANote) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   std::filesystem::remove_all(folder.path() / "drive");
   const ReadPage page = read_page(html_of(folder));
@@ -178,7 +177,7 @@ TEST(RunReport, WithoutRecordingThereAreNoScansButANote) {
 }
 
 TEST(RunReport, RecordingThatChangedIsANote) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   folder.write("drive/point_clouds/00003.bin", std::string(64, '\0'));
   const ReadPage page = read_page(html_of(folder));
@@ -188,7 +187,7 @@ TEST(RunReport, RecordingThatChangedIsANote) {
 }
 
 TEST(RunReport, LabelsThatDoNotFitAreANote) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   std::filesystem::remove(folder.path() / "run/labels/00002.bin");
   const ReadPage without = read_page(html_of(folder));
@@ -201,7 +200,7 @@ TEST(RunReport, LabelsThatDoNotFitAreANote) {
 
 TEST(RunReport, NamesWhatIsMissingOrCutOff) {
   for (const char* file : {"trajectory.tum", "frames.jsonl", "objects.jsonl", "summary.json", "run.json"}) {
-    const figures::TestFolder folder;
+    const runs::TestFolder folder;
     WallDrive().write(folder);
     const std::string content = folder.read(std::string("run/") + file);
     folder.write(std::string("run/") + file, content.substr(0, content.size() - 12));
@@ -220,7 +219,7 @@ TEST(RunReport, NumbersThatNobodyMeasuredAreNoReasonToFail) {
   for (const bool save_labels : {true, false}) {
     for (const auto& [file, text] : faults) {
       for (const char* number : {"1e300", "-1e300", "null", "-1"}) {
-        const figures::TestFolder folder;
+        const runs::TestFolder folder;
         WallDrive drive;
         drive.sweep_s = 0.09;
         drive.save_labels = save_labels;
@@ -240,7 +239,7 @@ TEST(RunReport, NumbersThatNobodyMeasuredAreNoReasonToFail) {
 }
 
 TEST(RunReport, TakesRunsOfAVersionThatSaidLess) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   WallDrive().write(folder);
   std::string rows = folder.read("run/frames.jsonl");
   for (const std::string part :
@@ -257,9 +256,9 @@ TEST(RunReport, TakesRunsOfAVersionThatSaidLess) {
 }
 
 TEST(RunFacts, CountScansThatWentWrong) {
-  figures::RunFiles run;
+  runs::RunFiles run;
   for (std::size_t k = 0; k < 5; ++k) {
-    figures::FrameRow row;
+    runs::FrameRow row;
     row.index = k;
     row.reason = k == 0 ? "first" : k == 2 ? "time_gap" : "degenerate";
     run.frames.push_back(row);

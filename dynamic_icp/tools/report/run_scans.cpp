@@ -9,17 +9,16 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/tools/report/point_thinning.hpp"
+#include "dynamic_icp/tools/figures/point_thinning.hpp"
 #include "dynamic_icp/tools/report/scan_blob.hpp"
 #include "dynamic_icp/tools/report/scan_budget.hpp"
-#include "dynamic_icp/tools/report/shown_scan.hpp"
 #include "dynamic_icp/tools/report/static_map.hpp"
 #include "dynamic_icp/tools/report/surface_residual.hpp"
 
 namespace dynamic_icp::report {
 namespace {
 
-using figures::RunFiles;
+using runs::RunFiles;
 
 constexpr double kMapShare = 0.1;        // of the budget
 constexpr double kWholeShare = 0.25;     // of the budget, for scans that nobody asked for
@@ -33,7 +32,7 @@ class ScanReader {
       : run_(run), recording_(recording), workers_(workers) {}
 
   /// With residuals, at the poses of the run.
-  const ShownScan& read(std::size_t frame) {
+  const figures::ShownScan& read(std::size_t frame) {
     if (now_.frame == frame) {
       return now_.scan;
     }
@@ -53,11 +52,11 @@ class ScanReader {
  private:
   struct Prepared {
     std::optional<std::size_t> frame;
-    ShownScan scan;
+    figures::ShownScan scan;
   };
 
   Prepared prepared(std::size_t frame) const {
-    return {frame, show_scan(run_, frame, figures::read_scan(run_, recording_, frame), workers_)};
+    return {frame, figures::show_scan(run_, frame, figures::read_scan(run_, recording_, frame), workers_)};
   }
 
   const RunFiles& run_;
@@ -67,13 +66,13 @@ class ScanReader {
   Prepared now_;
 };
 
-void add_static_points(StaticMap& map, const RunFiles& run, std::size_t frame, const ShownScan& scan) {
+void add_static_points(StaticMap& map, const RunFiles& run, std::size_t frame, const figures::ShownScan& scan) {
   if (run.frames[frame].status == "lost") {
     return;  // where this scan stands is a guess
   }
   std::vector<Eigen::Vector3d> still;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.labels[i] == kStatic) {
+    if (scan.labels[i] == figures::kStatic) {
       still.push_back(scan.points[i]);
     }
   }
@@ -106,12 +105,12 @@ double seconds_to_next(const RunFiles& run, std::size_t frame) {
 }
 
 /// The number of points that a frame says it has; 0 for what is no number of points.
-std::size_t points_of(const figures::FrameRow& frame) {
+std::size_t points_of(const runs::FrameRow& frame) {
   constexpr double kMost = 1e9;
   return frame.points >= 0.0 && frame.points < kMost ? static_cast<std::size_t>(frame.points) : 0;
 }
 
-KeptScan keep(const RunFiles& run, std::size_t frame, const ShownScan& scan, std::size_t count) {
+KeptScan keep(const RunFiles& run, std::size_t frame, const figures::ShownScan& scan, std::size_t count) {
   const std::vector<std::uint32_t> rows = rows_to_keep(scan, count);
   return {.frame = frame,
           .dt_s = seconds_to_next(run, frame),
@@ -190,7 +189,7 @@ std::vector<std::string> notes_of(const RunFiles& run, const RunScans& kept, con
   std::vector<std::size_t> whole;
   std::size_t unlabelled = 0;
   for (const KeptScan& scan : kept.scans) {
-    unlabelled += figures::lacks_labels(run, scan.frame) ? 1 : 0;
+    unlabelled += runs::lacks_labels(run, scan.frame) ? 1 : 0;
     points += static_cast<double>(scan.points);
     of += static_cast<double>(scan.of);
     bytes += static_cast<double>(scan.blob.size());
@@ -228,28 +227,126 @@ std::vector<std::string> notes_of(const RunFiles& run, const RunScans& kept, con
   return notes;
 }
 
+/// Fills a page with scans and the map of their static points, within a budget.
+class PageScans {
+ public:
+  PageScans(const RunFiles& run, const datasets::Dataset& recording, double budget_bytes, const Workers& workers)
+      : run_(run),
+        reader_(run, recording, workers),
+        map_bytes_(kMapShare * budget_bytes),
+        scan_bytes_(budget_bytes - map_bytes_),
+        map_(static_cast<std::size_t>(map_bytes_ / kMapBytesPerPoint)) {
+    for (const runs::FrameRow& frame : run.frames) {
+      points_.push_back(points_of(frame));
+    }
+  }
+
+  void keep_whole(const std::vector<std::size_t>& frames) {
+    for (const std::size_t frame : frames) {
+      const figures::ShownScan& scan = reader_.read(frame);
+      on_whole_.add(kept_[frame] = keep(run_, frame, scan, scan.size()));
+    }
+  }
+
+  /// Thins the others to what is left, and adds the static points of all to the map.
+  void keep_thinned() {
+    const std::size_t usual_share = even_share(points_, static_cast<std::size_t>(scan_bytes_ / kBytesPerPoint));
+    bytes_per_point_ = bytes_per_point_at(usual_share, run_, reader_);
+    std::vector<std::size_t> whole;
+    for (const auto& [frame, scan] : kept_) {
+      whole.push_back(frame);
+    }
+    const KeptFrames plan = kept_frames(points_, whole, points_for(bytes_left()));
+    std::vector<std::size_t> to_come;  // points of the scans to be thinned
+    for (const std::size_t frame : plan.frames) {
+      if (!kept_.contains(frame)) {
+        to_come.push_back(points_[frame]);
+      }
+    }
+    constexpr std::size_t kScansPerShare = 32;
+    std::size_t done = 0;
+    std::size_t share = 0;
+    for (const std::size_t frame : plan.frames) {
+      const figures::ShownScan& scan = reader_.read(frame);
+      add_static_points(map_, run_, frame, scan);
+      if (kept_.contains(frame)) {
+        continue;
+      }
+      // What scans really take shows as they are made: the rest is divided anew every now and then, at the end each
+      // time.
+      if (done % kScansPerShare == 0 || to_come.size() - done < kScansPerShare) {
+        share = even_share(std::span(to_come).subspan(done), points_for(bytes_left()));
+      }
+      ++done;
+      keep_fitting(frame, scan, share);
+    }
+  }
+
+  RunScans take() {
+    RunScans result;
+    for (auto& [frame, scan] : kept_) {
+      result.scans.push_back(std::move(scan));
+    }
+    result.map = finish(map_, static_cast<std::size_t>(map_bytes_));
+    return result;
+  }
+
+ private:
+  [[nodiscard]] double bytes_left() const { return scan_bytes_ - on_whole_.bytes - on_thinned_.bytes; }
+
+  [[nodiscard]] std::size_t points_for(double bytes) const {
+    return static_cast<std::size_t>(std::max(0.0, bytes) / on_thinned_.bytes_per_point().value_or(bytes_per_point_));
+  }
+
+  /// At most `count` points of the scan; fewer where they take more than is left, none where not even few fit.
+  void keep_fitting(std::size_t frame, const figures::ShownScan& scan, std::size_t count) {
+    constexpr std::size_t kTooFew = 100;
+    KeptScan attempt = keep(run_, frame, scan, count);
+    while (static_cast<double>(attempt.blob.size()) > bytes_left() && count > kTooFew) {
+      count = std::min(count, attempt.points) * 3 / 4;
+      attempt = keep(run_, frame, scan, count);
+    }
+    if (static_cast<double>(attempt.blob.size()) <= bytes_left() && attempt.points > 0) {
+      on_thinned_.add(attempt);
+      kept_[frame] = std::move(attempt);
+    }
+  }
+
+  const RunFiles& run_;
+  ScanReader reader_;
+  double map_bytes_;
+  double scan_bytes_;
+  StaticMap map_;
+  std::vector<std::size_t> points_;  ///< of each scan in the recording
+  double bytes_per_point_ = kBytesPerPoint;
+  Spending on_whole_;
+  Spending on_thinned_;
+  std::map<std::size_t, KeptScan> kept_;
+};
+
 }  // namespace
 
-std::vector<std::uint32_t> rows_to_keep(const ShownScan& scan, std::size_t count) {
+std::vector<std::uint32_t> rows_to_keep(const figures::ShownScan& scan, std::size_t count) {
   if (scan.size() <= count) {
-    return spread_rows(scan.points, count);
+    return figures::spread_rows(scan.points, count);
   }
   std::vector<Eigen::Vector3d> on_objects;
   std::vector<Eigen::Vector3d> others;
   std::vector<std::uint32_t> rows_on_objects;
   std::vector<std::uint32_t> rows_of_others;
   for (std::uint32_t row = 0; row < scan.size(); ++row) {
-    const bool is_on_object = scan.labels[row] >= kFirstObject;  // single points that seem to move are mostly noise
+    const bool is_on_object =
+        scan.labels[row] >= figures::kFirstObject;  // single points that seem to move are mostly noise
     (is_on_object ? on_objects : others).push_back(scan.points[row]);
     (is_on_object ? rows_on_objects : rows_of_others).push_back(row);
   }
   const std::size_t of_objects = std::min(on_objects.size(), count / 2);
   const std::size_t of_others = std::min(others.size(), count - of_objects);
   std::vector<std::uint32_t> chosen;
-  for (const std::uint32_t k : spread_rows(on_objects, count - of_others)) {
+  for (const std::uint32_t k : figures::spread_rows(on_objects, count - of_others)) {
     chosen.push_back(rows_on_objects[k]);
   }
-  for (const std::uint32_t k : spread_rows(others, of_others)) {
+  for (const std::uint32_t k : figures::spread_rows(others, of_others)) {
     chosen.push_back(rows_of_others[k]);
   }
   std::vector<Eigen::Vector3d> points;
@@ -257,7 +354,7 @@ std::vector<std::uint32_t> rows_to_keep(const ShownScan& scan, std::size_t count
     points.push_back(scan.points[row]);
   }
   std::vector<std::uint32_t> rows;
-  for (const std::uint32_t k : spread_rows(points, points.size())) {
+  for (const std::uint32_t k : figures::spread_rows(points, points.size())) {
     rows.push_back(chosen[k]);
   }
   return rows;
@@ -267,70 +364,10 @@ RunScans keep_scans(const RunFiles& run, const std::optional<figures::RunTruth>&
                     const datasets::Dataset& recording, const ScanChoice& choice, const Workers& workers) {
   check_frames(run, choice.whole);
   const double budget_bytes = static_cast<double>(choice.budget_bytes);
-  const double map_bytes_given = kMapShare * budget_bytes;
-  ScanReader reader(run, recording, workers);
-  StaticMap map(static_cast<std::size_t>(map_bytes_given / kMapBytesPerPoint));
-  Spending on_whole;
-  Spending on_thinned;
-  std::map<std::size_t, KeptScan> kept;
-
-  for (const std::size_t frame : frames_kept_whole(run, truth, choice, budget_bytes)) {
-    const ShownScan& scan = reader.read(frame);
-    on_whole.add(kept[frame] = keep(run, frame, scan, scan.size()));
-  }
-  std::vector<std::size_t> points_of_scans;
-  for (const figures::FrameRow& frame : run.frames) {
-    points_of_scans.push_back(points_of(frame));
-  }
-  std::vector<std::size_t> whole;
-  for (const auto& [frame, scan] : kept) {
-    whole.push_back(frame);
-  }
-  const double for_all = budget_bytes - map_bytes_given;
-  const double bytes_per_point =
-      bytes_per_point_at(even_share(points_of_scans, static_cast<std::size_t>(for_all / kBytesPerPoint)), run, reader);
-  const auto points_for = [&](double bytes) {
-    return static_cast<std::size_t>(std::max(0.0, bytes) / on_thinned.bytes_per_point().value_or(bytes_per_point));
-  };
-  const KeptFrames plan = kept_frames(points_of_scans, whole, points_for(for_all - on_whole.bytes));
-  std::vector<std::size_t> points_left;  // of the scans still to come
-  for (const std::size_t frame : plan.frames) {
-    if (!kept.contains(frame)) {
-      points_left.push_back(points_of_scans[frame]);
-    }
-  }
-  constexpr std::size_t kScansPerShare = 32;
-  std::size_t done = 0;
-  std::size_t share = 0;
-  for (const std::size_t frame : plan.frames) {
-    const ShownScan& scan = reader.read(frame);
-    add_static_points(map, run, frame, scan);
-    if (kept.contains(frame)) {
-      continue;
-    }
-    // What scans really take shows as they are made: the rest is divided anew every now and then, at the end each time.
-    const double bytes_left = for_all - on_whole.bytes - on_thinned.bytes;
-    if (done % kScansPerShare == 0 || points_left.size() - done < kScansPerShare) {
-      share = even_share(std::span(points_left).subspan(done), points_for(bytes_left));
-    }
-    ++done;
-    std::size_t count = share;
-    KeptScan attempt = keep(run, frame, scan, count);
-    constexpr std::size_t kTooFew = 100;
-    while (static_cast<double>(attempt.blob.size()) > bytes_left && count > kTooFew) {
-      count = std::min(count, attempt.points) * 3 / 4;
-      attempt = keep(run, frame, scan, count);
-    }
-    if (static_cast<double>(attempt.blob.size()) <= bytes_left && attempt.points > 0) {
-      on_thinned.add(attempt);
-      kept[frame] = std::move(attempt);
-    }
-  }
-  RunScans result;
-  for (auto& [frame, scan] : kept) {
-    result.scans.push_back(std::move(scan));
-  }
-  result.map = finish(map, static_cast<std::size_t>(map_bytes_given));
+  PageScans page(run, recording, budget_bytes, workers);
+  page.keep_whole(frames_kept_whole(run, truth, choice, budget_bytes));
+  page.keep_thinned();
+  RunScans result = page.take();
   result.notes = notes_of(run, result, choice);
   return result;
 }

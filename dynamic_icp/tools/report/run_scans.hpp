@@ -9,12 +9,11 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/recording/datasets/dataset.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
+#include "dynamic_icp/tools/figures/shown_scan.hpp"
 
 namespace dynamic_icp::report {
-
-struct ShownScan;
 
 /// How much of a recording goes into a page.
 struct ScanChoice {
@@ -29,7 +28,7 @@ struct KeptScan {
   double dt_s = 0.0;       ///< to the next scan; of the last one to the one before
   std::size_t points = 0;  ///< in the page
   std::size_t of = 0;      ///< in the recording
-  bool whole = false;      ///< all that can be shown: finite, and not farther than kFarthestShown_m
+  bool whole = false;      ///< all that can be shown: finite, and not farther than figures::kFarthestShown_m
   std::string blob;        ///< see scan_blob.hpp
 };
 
@@ -49,11 +48,11 @@ struct RunScans {
 /// space, those on objects before others; where fewer than kFewestPoints are left to a scan, scans as well. The result
 /// does not depend on the number of threads. Throws UsageError when a frame of `choice.whole` does not exist, DataError
 /// when the recording is not the one of the run.
-RunScans keep_scans(const figures::RunFiles& run, const std::optional<figures::RunTruth>& truth,
+RunScans keep_scans(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth,
                     const datasets::Dataset& recording, const ScanChoice& choice, const Workers& workers);
 
 /// The rows of a scan to keep when there are too many: half of `count` may go to points on objects, kept before
 /// others; all rows, in an order that compresses well, when there are no more than `count`.
-std::vector<std::uint32_t> rows_to_keep(const ShownScan& scan, std::size_t count);
+std::vector<std::uint32_t> rows_to_keep(const figures::ShownScan& scan, std::size_t count);
 
 }  // namespace dynamic_icp::report

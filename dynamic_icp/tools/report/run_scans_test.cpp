@@ -8,8 +8,8 @@
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/tools/figures/shown_scan.hpp"
 #include "dynamic_icp/tools/report/scan_budget.hpp"
-#include "dynamic_icp/tools/report/shown_scan.hpp"
 
 #include "testing/read_blob.hpp"
 #include "testing/wall_drive.hpp"
@@ -18,9 +18,9 @@ namespace dynamic_icp::report {
 namespace {
 
 RunScans scans_of(const WallDrive& drive, const ScanChoice& choice, int threads = 1) {
-  const figures::TestFolder folder;
+  const runs::TestFolder folder;
   drive.write(folder);
-  const figures::RunFiles run = figures::read_run(folder.path() / "run");
+  const runs::RunFiles run = runs::read_run(folder.path() / "run");
   std::vector<std::string> notes;
   const auto recording = figures::open_recording(run, notes);
   return keep_scans(run, std::nullopt, *recording, choice, Workers(threads));
@@ -62,14 +62,14 @@ TEST(RunScans, ShowWhatWasMeasuredAndFound) {
       for (std::size_t i = 0; i < scan.points.size(); ++i) {
         const Eigen::Vector3d& p = scan.points[i];
         const double along = p.x() / p.norm();  // of the line of sight
-        if (scan.labels[i] == kFirstObject) {
+        if (scan.labels[i] == figures::kFirstObject) {
           ++on_car;
           const double t = WallDrive::seconds(k);
           EXPECT_NEAR(p.x(), WallDrive::car_x(t) - WallDrive::sensor(t).x(), scan.unit) << "at the stamp";
           EXPECT_NEAR(0.01 * scan.compensated[i], WallDrive::kCar_mps * along, tolerance_mps);
           EXPECT_NEAR(scan.doppler[i], (WallDrive::kCar_mps - WallDrive::kEgo_mps) * along, tolerance_mps);
         } else {
-          ASSERT_EQ(scan.labels[i], kStatic);
+          ASSERT_EQ(scan.labels[i], figures::kStatic);
           EXPECT_NEAR(0.01 * scan.compensated[i], 0.0, 0.011);
           EXPECT_NEAR(scan.doppler[i], -WallDrive::kEgo_mps * along, tolerance_mps);
         }
@@ -162,7 +162,7 @@ TEST(RunScans, MovingPointsAreKeptBeforeOthers) {
   choice.choose_whole = false;
   for (const KeptScan& kept : scans_of(drive, choice).scans) {
     const ReadScan scan = read_scan_blob(kept.blob);
-    const auto on_car = std::count(scan.labels.begin(), scan.labels.end(), kFirstObject);
+    const auto on_car = std::count(scan.labels.begin(), scan.labels.end(), figures::kFirstObject);
     EXPECT_EQ(static_cast<std::size_t>(on_car), std::min(drive.points / 10, scan.points.size() / 2));
     EXPECT_LT(kept.points, drive.points / 2);
   }

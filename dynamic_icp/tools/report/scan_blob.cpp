@@ -59,7 +59,7 @@ std::uint8_t residual_byte(double distance_m) {
 
 }  // namespace
 
-std::string scan_bytes(const ShownScan& scan) {
+std::string scan_bytes(const figures::ShownScan& scan) {
   std::string bytes;
   bytes.reserve(8 + 12 * scan.size());
   append_little_endian(bytes, static_cast<std::uint32_t>(scan.size()));

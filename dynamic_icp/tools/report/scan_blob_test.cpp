@@ -14,12 +14,12 @@ namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-ShownScan random_scan(std::size_t n, double reach_m) {
+figures::ShownScan random_scan(std::size_t n, double reach_m) {
   std::mt19937 random(3);
   const auto uniform = [&](double low, double high) {
     return low + (high - low) * (static_cast<double>(random()) / 4294967296.0);
   };
-  ShownScan scan;
+  figures::ShownScan scan;
   for (std::size_t i = 0; i < n; ++i) {
     scan.points.emplace_back(uniform(-reach_m, reach_m), uniform(-reach_m, reach_m), uniform(-3.0, 10.0));
     scan.doppler.push_back(uniform(-40.0, 40.0));
@@ -31,8 +31,8 @@ ShownScan random_scan(std::size_t n, double reach_m) {
 }
 
 TEST(ScanBlob, IsReadBackWithinHalfAUnit) {
-  for (const double reach_m : {0.5, 50.0, 300.0, kFarthestShown_m}) {
-    const ShownScan scan = random_scan(2000, reach_m);
+  for (const double reach_m : {0.5, 50.0, 300.0, figures::kFarthestShown_m}) {
+    const figures::ShownScan scan = random_scan(2000, reach_m);
     const ReadScan read = read_scan_blob(blob(scan_bytes(scan)));
     ASSERT_EQ(read.points.size(), scan.size());
     EXPECT_LT(read.unit, std::max(0.0021, reach_m / 32000.0)) << "as fine as 16 bits allow";
@@ -47,7 +47,7 @@ TEST(ScanBlob, IsReadBackWithinHalfAUnit) {
 }
 
 TEST(ScanBlob, LimitsWhatIsTooLargeAndMarksWhatIsUnknown) {
-  ShownScan scan = random_scan(4, 10.0);
+  figures::ShownScan scan = random_scan(4, 10.0);
   scan.doppler = {400.0, -400.0, 0.004, -0.006};
   scan.compensated = {kNaN, 400.0, -400.0, 0.0};
   scan.residual = {kNaN, 1.265, 1.27, 99.0};

@@ -50,7 +50,7 @@ std::vector<std::size_t> spread_frames(std::size_t n, std::size_t count) {
   return frames;
 }
 
-std::vector<std::size_t> telling_frames(const figures::RunFiles& run, const std::optional<figures::RunTruth>& truth) {
+std::vector<std::size_t> telling_frames(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth) {
   std::vector<std::size_t> frames;
   if (run.frames.empty()) {
     return frames;
@@ -65,7 +65,7 @@ std::vector<std::size_t> telling_frames(const figures::RunFiles& run, const std:
   }
   for (const char* status : {"degenerate", "lost"}) {
     const auto found = std::find_if(run.frames.begin(), run.frames.end(),
-                                    [&](const figures::FrameRow& row) { return row.status == status; });
+                                    [&](const runs::FrameRow& row) { return row.status == status; });
     if (found != run.frames.end()) {
       frames.push_back(static_cast<std::size_t>(found - run.frames.begin()));
     }

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
-#include "dynamic_icp/tools/figures/run_folder.hpp"
 
 namespace dynamic_icp::report {
 
@@ -23,7 +23,7 @@ std::vector<std::size_t> spread_frames(std::size_t n, std::size_t count);
 
 /// The frames worth a whole scan, ascending and at most a handful: most points on objects, largest errors, the first
 /// that was degenerate, the first that was lost, the first and the middle one.
-std::vector<std::size_t> telling_frames(const figures::RunFiles& run, const std::optional<figures::RunTruth>& truth);
+std::vector<std::size_t> telling_frames(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth);
 
 /// Which scans a page keeps.
 struct KeptFrames {

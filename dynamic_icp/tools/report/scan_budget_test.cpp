@@ -69,10 +69,10 @@ TEST(ScanBudget, WholeFramesAreAlwaysThere) {
 }
 
 TEST(ScanBudget, TellingFramesAreThoseThatWentWrong) {
-  figures::RunFiles run;
+  runs::RunFiles run;
   run.frames.resize(20);
   run.objects.resize(20);
-  for (figures::FrameRow& frame : run.frames) {
+  for (runs::FrameRow& frame : run.frames) {
     frame.status = "ok";
   }
   run.frames[15].status = "degenerate";

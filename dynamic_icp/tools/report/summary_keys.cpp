@@ -48,7 +48,7 @@ std::string rounded(double number) {
 
 }  // namespace
 
-std::string value_with_unit(const figures::Settings& summary, std::string_view key) {
+std::string value_with_unit(const runs::Settings& summary, std::string_view key) {
   for (const auto& [name, value] : summary) {
     const double* number = name == key ? std::get_if<double>(&value) : nullptr;
     if (number == nullptr) {
@@ -64,7 +64,7 @@ std::string value_with_unit(const figures::Settings& summary, std::string_view k
                                                            : "";
     return fmt::format("{}{}", rounded(*number), unit);
   }
-  const std::string text = figures::text_of(summary, key);
+  const std::string text = runs::text_of(summary, key);
   return text.empty() ? "-" : text;
 }
 

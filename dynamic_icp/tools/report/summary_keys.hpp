@@ -5,13 +5,13 @@
 #include <string>
 #include <string_view>
 
-#include "dynamic_icp/tools/figures/run_folder.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
 
 namespace dynamic_icp::report {
 
 /// The value of a key of summary.json as a reader wants it: rounded, with its unit, shares in percent; "-" where it is
 /// null or not there.
-std::string value_with_unit(const figures::Settings& summary, std::string_view key);
+std::string value_with_unit(const runs::Settings& summary, std::string_view key);
 
 /// What a key of summary.json says, in a few words; empty for keys that are not known.
 std::string_view meaning_of(std::string_view key);

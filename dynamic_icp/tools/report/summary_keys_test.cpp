@@ -8,7 +8,7 @@ namespace dynamic_icp::report {
 namespace {
 
 TEST(SummaryKeys, HaveUnits) {
-  const figures::Settings summary = {
+  const runs::Settings summary = {
       {"rte_rmse_m", 0.012345},     {"rre_rmse_deg", 0.5}, {"ms_p95", 1234.5}, {"fps", 12.0},
       {"convergence_rate", 0.9876}, {"frames", 123456.0},  {"method", "gicp"}, {"ate_rmse_m", {}}};
   EXPECT_EQ(value_with_unit(summary, "rte_rmse_m"), "0.01235 m");

@@ -46,7 +46,10 @@ constexpr const char* kVehicle = "vehicle: {route: main}\n";
 
 TEST_F(SceneFileErrors, ErrorsNameFileLineKeyAndWhatIsAllowed) {
   // Line 8 is the first after kHead's 6 lines and the list's own.
-  formats::write_whole_file(folder_ / "far.obj", "v 0 0 0\nv 2e5 0 0\nv 0 2 0\nf 1 2 3\n");
+  formats::write_whole_file(folder_ / "far.ply",
+                            "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                            "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                            "0 0 0\n2e5 0 0\n0 2 0\n3 0 1 2\n");
   const auto part = [](const char* text) { return kHead + "statics:\n- " + text + "\n"; };
   const auto body = [](const char* text) { return kHead + "bodies:\n- " + text + "\n"; };
   const auto lane = [](const char* text) { return kHead + "lanes:\n- " + text + "\n"; };
@@ -91,7 +94,7 @@ TEST_F(SceneFileErrors, ErrorsNameFileLineKeyAndWhatIsAllowed) {
       {part("height_field: {corner_m: [0, 0], cell_m: 1, heights_m: [[1, 2], [3]]}"), {"row 2 of", "2 numbers"}},
       {part("height_field: {corner_m: [0, 0], cell_m: 1, heights_m: [[1], [3]]}"), {"has 2 rows of 1", "at least 2"}},
       {part("mesh: {file: '', position_m: [0, 0, 0]}"), {"'statics.mesh.file' is ''", "a text"}},
-      {part("mesh: {file: far.obj, position_m: [0, 0, 0]}"), {"line 8", "scale' makes the mesh reach beyond 100000"}},
+      {part("mesh: {file: far.ply, position_m: [0, 0, 0]}"), {"line 8", "scale' makes the mesh reach beyond 100000"}},
       {body("bus: {route: main, speed_mps: 1}"), {"line 8", "'bus' is no body", "car, van, truck, pedestrian, object"}},
       {body("car: {route: main}"), {"line 8", "'speed_mps' is missing in 'bodies.car'", "0 to 100"}},
       {body("car: {route: main, speed_mps: 1, speed: [[1, 2]]}"), {"'bodies.car.speed' stands beside 'speed_mps'"}},

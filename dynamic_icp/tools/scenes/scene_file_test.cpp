@@ -198,12 +198,15 @@ TEST_F(SceneFile, RowsStandBesideTheRoute) {
 
 TEST_F(SceneFile, MeshesComeFromFilesBesideTheScene) {
   std::filesystem::create_directories(folder_ / "meshes");
-  formats::write_whole_file(folder_ / "meshes" / "roof.obj", "v 0 0 1\nv 2 0 1\nv 2 2 1\nv 0 2 1\nf 1 2 3 4\n");
+  formats::write_whole_file(folder_ / "meshes" / "roof.ply",
+                            "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                            "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                            "0 0 1\n2 0 1\n2 2 1\n0 2 1\n4 0 1 2 3\n");
   const Probe probe(
-      build("statics:\n- mesh: {file: meshes/roof.obj, scale: 3, position_m: [10, 0, 1], yaw_deg: 180}\n"));
+      build("statics:\n- mesh: {file: meshes/roof.ply, scale: 3, position_m: [10, 0, 1], yaw_deg: 180}\n"));
   EXPECT_NEAR(*probe.height(5.0, -5.0), 4.0, 1e-9);
   EXPECT_FALSE(probe.height(11.0, 1.0));
-  EXPECT_THROW(build("statics:\n- mesh: {file: meshes/none.obj, position_m: [0, 0, 0]}\n"), DataError);
+  EXPECT_THROW(build("statics:\n- mesh: {file: meshes/none.ply, position_m: [0, 0, 0]}\n"), DataError);
 }
 
 /// The twist must be the time derivative of the pose: central differences of position and rotation.

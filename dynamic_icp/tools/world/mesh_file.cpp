@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <limits>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -13,10 +12,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/method/base/parse_number.hpp"
 #include "dynamic_icp/recording/formats/ply.hpp"
-#include "dynamic_icp/recording/formats/text_lines.hpp"
-#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::world {
 namespace {
@@ -62,82 +58,6 @@ TriangleMesh finished(TriangleMesh mesh, const std::filesystem::path& path) {
   }
   mesh.vertices = std::move(vertices);
   return painted(std::move(mesh), reflectivity::kUsual);
-}
-
-/// Reads OBJ line by line.
-struct ObjReader {
-  const std::filesystem::path& path;
-  TriangleMesh mesh;
-  int line = 0;
-  std::vector<std::string_view> words;  ///< of the line
-
-  [[noreturn]] void fail(std::string_view message) const {
-    throw DataError(fmt::format("{}: line {}: {}", path.string(), line, message));
-  }
-
-  void read_line(std::string_view text) {
-    constexpr std::array<std::string_view, 10> kIgnored = {"vt", "vn", "vp", "g",      "o",
-                                                           "s",  "l",  "p",  "usemtl", "mtllib"};
-    ++line;
-    words = formats::words_of(text.substr(0, text.find('#')));
-    if (words.empty() || std::find(kIgnored.begin(), kIgnored.end(), words[0]) != kIgnored.end()) {
-      return;
-    }
-    if (words[0] == "v") {
-      read_vertex();
-    } else if (words[0] == "f") {
-      read_face();
-    } else {
-      fail(fmt::format("'{}', expected a line that begins with v, f or one of: {}", words[0],
-                       fmt::join(kIgnored, ", ")));
-    }
-  }
-
-  /// After x, y and z there may be a weight or a colour.
-  void read_vertex() {
-    Vector3d vertex;
-    for (std::size_t i = 0; i < 3; ++i) {
-      const std::optional<double> number = i + 1 < words.size() ? parse_number<double>(words[i + 1]) : std::nullopt;
-      if (!number) {
-        fail(fmt::format("'{}', expected 'v <x> <y> <z>'", fmt::join(words, " ")));
-      }
-      vertex[static_cast<Eigen::Index>(i)] = *number;
-    }
-    if (!is_usable(vertex)) {
-      fail(fmt::format("'{}', expected finite coordinates up to {:g}", fmt::join(words, " "), kGreatestCoordinate));
-    }
-    mesh.vertices.push_back(vertex);
-  }
-
-  void read_face() {
-    std::vector<std::uint32_t> corners;
-    for (std::size_t i = 1; i < words.size(); ++i) {
-      corners.push_back(read_corner(words[i]));
-    }
-    if (corners.size() < 3) {
-      fail(fmt::format("a face of {} corners, expected at least 3", corners.size()));
-    }
-    add_polygon(mesh, corners);
-  }
-
-  [[nodiscard]] std::uint32_t read_corner(std::string_view word) const {
-    const std::optional<std::int64_t> index = parse_number<std::int64_t>(word.substr(0, word.find('/')));
-    const auto count = static_cast<std::int64_t>(mesh.vertices.size());
-    if (!index || *index == 0 || *index > count || *index < -count) {
-      fail(fmt::format("a face has the corner '{}', expected the number of one of the {} vertices above", word, count));
-    }
-    return static_cast<std::uint32_t>(*index > 0 ? *index - 1 : count + *index);
-  }
-};
-
-TriangleMesh load_obj(const std::filesystem::path& path) {
-  const std::string content = formats::read_text_file(path);
-  ObjReader reader{path, {}, 0, {}};
-  std::string_view rest = content;
-  while (const std::optional<std::string_view> line = formats::take_line(rest)) {
-    reader.read_line(*line);
-  }
-  return finished(std::move(reader.mesh), path);
 }
 
 const formats::PlyElement& find_element(const formats::PlyFile& file, std::string_view name,
@@ -206,14 +126,10 @@ TriangleMesh load_mesh(const std::filesystem::path& path) {
   std::string ending = path.extension().string();
   std::transform(ending.begin(), ending.end(), ending.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (ending == ".obj") {
-    return load_obj(path);
+  if (ending != ".ply") {
+    throw DataError(fmt::format("{}: is no mesh that can be read, expected a name that ends with .ply", path.string()));
   }
-  if (ending == ".ply") {
-    return load_ply(path);
-  }
-  throw DataError(
-      fmt::format("{}: is no mesh that can be read, expected a name that ends with .obj or .ply", path.string()));
+  return load_ply(path);
 }
 
 }  // namespace dynamic_icp::world

@@ -8,15 +8,12 @@
 
 namespace dynamic_icp::world {
 
-/// Reads a surface from a file that ends with .obj or .ply, with the usual reflectivity everywhere.
+/// Reads a surface from a PLY file, with the usual reflectivity everywhere. The elements `vertex` (x, y, z) and `face`
+/// (vertex_indices or vertex_index) count. Polygons become fans about their first corner. Faces without area and
+/// vertices without a face are left out.
 ///
-/// Of OBJ files the lines v and f count; faces may have the forms v, v/vt, v//vn and v/vt/vn, and negative indices,
-/// which count back from the last vertex. Of PLY files the elements `vertex` (x, y, z) and `face` (vertex_indices or
-/// vertex_index) count. Polygons become fans about their first corner. Faces without area and vertices without a face
-/// are left out.
-///
-/// Throws DataError naming file, line (record in PLY files) and what was expected: for coordinates that are not finite
-/// or beyond 1e12, indices of no vertex, faces with fewer than three corners and files without any surface.
+/// Throws DataError naming file, record and what was expected: for coordinates that are not finite or beyond 1e12,
+/// indices of no vertex, faces with fewer than three corners and files without any surface.
 TriangleMesh load_mesh(const std::filesystem::path& path);
 
 }  // namespace dynamic_icp::world

@@ -1,0 +1,114 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/runs/frame_rows.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "dynamic_icp/recording/formats/json_row.hpp"
+
+namespace dynamic_icp::runs {
+namespace {
+
+using formats::JsonRow;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// The ego velocity, NaN where it could not be estimated and zeros stand in the file.
+Eigen::Vector3d ego_velocity(const JsonRow& row) {
+  const std::string status = row.has("ego_velocity_status") ? row.text("ego_velocity_status") : "converged";
+  const bool estimated = status == "converged" || status == "iteration_limit" || status == "from_motion";
+  return estimated ? row.vector("ego_velocity") : Eigen::Vector3d::Constant(kNaN);
+}
+
+/// What runs of earlier versions do not hold is unknown.
+double number_if_any(const JsonRow& row, const char* key) { return row.has(key) ? row.number(key) : kNaN; }
+
+std::optional<TwistRow> twist(const JsonRow& row) {
+  if (!row.has("twist") || row.get("twist").is_null()) {
+    return std::nullopt;
+  }
+  const JsonRow twist = row.object("twist");
+  return TwistRow{.angular = twist.vector("angular"), .linear = twist.vector("linear")};
+}
+
+std::vector<Vector6d> unknown_directions(const JsonRow& row) {
+  std::vector<Vector6d> directions;
+  if (row.has("degenerate")) {
+    for (const JsonRow::Json& entry : row.list("degenerate")) {
+      directions.push_back(row.part("degenerate", entry).numbers<6>("direction"));
+    }
+  }
+  return directions;
+}
+
+FrameRow frame_row(const JsonRow& row) {
+  FrameRow frame;
+  frame.index = static_cast<std::size_t>(row.integer("index"));
+  frame.points = row.number("points");
+  frame.points_used = row.number("points_used");
+  frame.ego_velocity = ego_velocity(row);
+  frame.dynamic_candidates = row.number("dynamic_candidates");
+  frame.dynamic_clustered = row.number("dynamic_clustered");
+  frame.dynamic_refined = row.number("dynamic_refined");
+  frame.iterations = row.number("iterations");
+  frame.converged = row.truth("converged");
+  frame.status = row.text("status");
+  frame.reason = row.text(row.has("reason") ? "reason" : "status");
+  frame.fitness = row.number("fitness");
+  frame.inlier_rmse = row.number("inlier_rmse");
+  frame.information_ratio = number_if_any(row, "information_ratio");
+  frame.unknown_directions = unknown_directions(row);
+  frame.twist = twist(row);
+  frame.doppler_bias = row.has("doppler_bias") ? row.number("doppler_bias") : 0.0;
+  const JsonRow::Json& stages = row.get("ms");
+  if (!stages.is_object()) {
+    row.fail("ms", "an object of milliseconds per stage");
+  }
+  for (const auto& [stage, value] : stages.items()) {
+    frame.milliseconds.emplace_back(stage, row.number(value, "ms"));
+  }
+  return frame;
+}
+
+/// The yaw of boxes that stand upright: their quaternion turns about z alone.
+std::optional<ObjectRow::Box> box(const JsonRow& row) {
+  if (!row.has("box")) {
+    return std::nullopt;
+  }
+  const JsonRow box = row.object("box");
+  const Eigen::Vector4d xyzw = box.numbers<4>("orientation_xyzw");
+  return ObjectRow::Box{
+      .centre = box.vector("center"), .size = box.vector("size"), .yaw_rad = 2.0 * std::atan2(xyzw.z(), xyzw.w())};
+}
+
+ObjectRow object_row(const JsonRow& row) {
+  return {.id = row.integer("id"),
+          .velocity = row.vector("velocity"),
+          .centroid = row.vector("centroid"),
+          .extent = row.vector("extent"),
+          .points = row.number("points"),
+          .box = box(row)};
+}
+
+}  // namespace
+
+std::vector<FrameRow> read_frames(const std::filesystem::path& path) {
+  std::vector<FrameRow> frames;
+  formats::for_each_json_line(path, [&](const JsonRow& row) { frames.push_back(frame_row(row)); });
+  return frames;
+}
+
+std::vector<ObjectsRow> read_objects(const std::filesystem::path& path) {
+  std::vector<ObjectsRow> scans;
+  formats::for_each_json_line(path, [&](const JsonRow& row) {
+    ObjectsRow& scan = scans.emplace_back();
+    scan.index = static_cast<std::size_t>(row.integer("index"));
+    for (const JsonRow::Json& object : row.list("objects")) {
+      scan.objects.push_back(object_row(row.part("objects", object)));
+    }
+  });
+  return scans;
+}
+
+}  // namespace dynamic_icp::runs

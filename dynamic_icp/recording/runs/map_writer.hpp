@@ -1,0 +1,49 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+
+#include "dynamic_icp/method/odometry/frame.hpp"
+#include "dynamic_icp/method/spatial/voxel_hash_map.hpp"
+
+namespace dynamic_icp::runs {
+
+/// Throws UsageError unless the file's name ends in .ply or .pcd: a map is written as one of them.
+void check_map_file(const std::filesystem::path& path);
+
+/// Where to write the map at `path` of a run whose folder `output` is put together in `staging` (see
+/// formats/output_folder): a map within `output` goes to its place in `staging`, any other one to `path`. Throws
+/// UsageError when both are the same, and DataError when the map's folder is not there and is no part of the run's, or
+/// there is a folder of the map's name.
+std::filesystem::path map_destination(const std::filesystem::path& path, const std::filesystem::path& output,
+                                      const std::filesystem::path& staging);
+
+/// Collects the static points of a run in world axes: of each voxel the first point that falls into it. The memory it
+/// takes (about 90 bytes a voxel) grows with the scene and not with the time spent in it; the points and their order
+/// depend on the frames alone.
+class MapWriter {
+ public:
+  static constexpr double kMinVoxelSize_m = 0.01;
+  static constexpr double kMaxVoxelSize_m = 100.0;
+
+  /// Throws UsageError unless the edge of a voxel lies between these two.
+  explicit MapWriter(double voxel_size_m);
+
+  /// Adds the static points of a frame at its pose. Throws DataError naming the time of the scan when a point lies too
+  /// far out for voxels to be counted (2^30 of them) or nowhere; nothing of the frame is added then.
+  void add(const odometry::Frame& frame);
+
+  [[nodiscard]] std::size_t size() const { return voxels_.size(); }
+
+  /// Writes one point cloud of float32 x, y, z (m), by the age of the points, as the ending of the file says: whole or
+  /// not at all. Throws as `check_map_file` does, and DataError naming file and reason when the machine fails.
+  void write(const std::filesystem::path& path) const;
+
+ private:
+  double voxel_size_m_;
+  spatial::VoxelHashMap voxels_;
+};
+
+}  // namespace dynamic_icp::runs

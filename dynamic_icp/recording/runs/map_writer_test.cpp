@@ -1,0 +1,185 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/runs/map_writer.hpp"
+
+#include <array>
+#include <cmath>
+#include <fstream>
+#include <iterator>
+#include <limits>
+#include <random>
+#include <set>
+#include <vector>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/pcd.hpp"
+#include "dynamic_icp/recording/formats/ply.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+namespace dynamic_icp::runs {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::Vector3d;
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+odometry::Frame frame_with(const std::vector<Vector3d>& points,
+                           const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity()) {
+  odometry::Frame frame;
+  frame.static_points = points;
+  frame.T_world_sensor = T_world_sensor;
+  return frame;
+}
+
+class MapWriterTest : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  /// The points in a map, as the reader of PLY files finds them.
+  [[nodiscard]] std::vector<Vector3d> points_of(const MapWriter& map) const {
+    map.write(folder_ / "map.ply");
+    const formats::PlyFile file = formats::read_ply(folder_ / "map.ply");
+    const formats::PlyElement& vertex = *file.find("vertex");
+    std::vector<Vector3d> points;
+    for (std::size_t i = 0; i < vertex.count; ++i) {
+      points.emplace_back(vertex.find("x")->values[i], vertex.find("y")->values[i], vertex.find("z")->values[i]);
+    }
+    return points;
+  }
+
+  [[nodiscard]] std::ptrdiff_t files() const {
+    return std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  }
+
+  fs::path folder_ = fs::temp_directory_path() / ("map_writer_test-" + std::to_string(::getpid()));
+};
+
+TEST_F(MapWriterTest, NothingMakesAnEmptyMap) {
+  MapWriter map(0.1);
+  map.add(frame_with({}));
+  EXPECT_EQ(map.size(), 0u);
+  EXPECT_TRUE(points_of(map).empty());
+  map.write(folder_ / "map.pcd");
+  EXPECT_EQ(formats::read_whole_file(folder_ / "map.pcd"), formats::pcd_bytes({}));
+}
+
+// A quarter turn to the left and ten metres ahead, all numbers exact in float32.
+TEST_F(MapWriterTest, PointsLieInTheWorld) {
+  Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
+  T_world_sensor.linear() << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+  T_world_sensor.translation() = Vector3d(10.0, 0.0, 0.5);
+  MapWriter map(0.1);
+  map.add(frame_with({{2.0, 3.0, 4.0}}, T_world_sensor));
+  EXPECT_EQ(points_of(map), (std::vector<Vector3d>{{7.0, 2.0, 4.5}}));
+}
+
+TEST_F(MapWriterTest, EachVoxelKeepsItsFirstPoint) {
+  MapWriter map(1.0);
+  map.add(frame_with({{0.25, 0.5, 0.5}, {0.75, 0.5, 0.5}}));
+  map.add(frame_with({{0.5, 0.5, 0.5}, {-0.25, 0.5, 0.5}, {1.0, 0.5, 0.5}}));
+  EXPECT_EQ(map.size(), 3u);
+  EXPECT_EQ(points_of(map), (std::vector<Vector3d>{{0.25, 0.5, 0.5}, {-0.25, 0.5, 0.5}, {1.0, 0.5, 0.5}}));
+}
+
+TEST_F(MapWriterTest, EqualsTheDirectDefinitionAndDoesNotGrowInAKnownScene) {
+  constexpr double kEdge_m = 0.3;
+  std::mt19937 bits(3);
+  const auto coordinate = [&] { return (static_cast<double>(bits()) / 4294967296.0 - 0.5) * 6.0; };
+  std::vector<Vector3d> points(4000);
+  for (Vector3d& point : points) {
+    point = {coordinate(), coordinate(), coordinate()};
+  }
+  std::set<std::array<double, 3>> taken;
+  std::vector<Vector3d> expected;
+  for (const Vector3d& point : points) {
+    if (taken
+            .insert({std::floor(point.x() / kEdge_m), std::floor(point.y() / kEdge_m), std::floor(point.z() / kEdge_m)})
+            .second) {
+      expected.push_back(point.cast<float>().cast<double>());
+    }
+  }
+  MapWriter map(kEdge_m);
+  for (int round = 0; round < 3; ++round) {
+    map.add(frame_with(points));
+    EXPECT_EQ(map.size(), expected.size());
+  }
+  EXPECT_EQ(points_of(map), expected);
+}
+
+TEST_F(MapWriterTest, TheEndingChoosesTheFormat) {
+  const std::vector<Vector3d> points = {{1.0, 2.0, 3.0}, {-4.0, 5.0, 0.5}};
+  MapWriter map(0.1);
+  map.add(frame_with(points));
+  map.write(folder_ / "map.ply");
+  map.write(folder_ / "map.pcd");
+  EXPECT_EQ(formats::read_whole_file(folder_ / "map.ply"), formats::ply_bytes(points));
+  EXPECT_EQ(formats::read_whole_file(folder_ / "map.pcd"), formats::pcd_bytes(points));
+  for (const char* name : {"map", "map.txt", "map.ply.gz", ".ply", "map.PLY", ""}) {
+    EXPECT_THROW(check_map_file(name), UsageError) << name;
+    EXPECT_THROW(map.write(folder_ / name), UsageError) << name;
+  }
+  EXPECT_EQ(files(), 2);
+}
+
+TEST_F(MapWriterTest, RefusesVoxelsOutOfRange) {
+  for (const double edge_m : {0.0, -0.1, 0.009, 101.0, kNan}) {
+    EXPECT_THROW(MapWriter{edge_m}, UsageError) << edge_m;
+  }
+  EXPECT_NO_THROW(MapWriter{MapWriter::kMinVoxelSize_m});
+  EXPECT_NO_THROW(MapWriter{MapWriter::kMaxVoxelSize_m});
+}
+
+TEST_F(MapWriterTest, RefusesPointsThatNoVoxelHolds) {
+  MapWriter map(0.01);
+  for (const double bad : {kNan, std::numeric_limits<double>::infinity(), 1.1e7}) {
+    odometry::Frame frame = frame_with({{1.0, 1.0, 1.0}, {0.0, bad, 0.0}});
+    frame.stamp = Stamp{12'500'000'000};
+    try {
+      map.add(frame);
+      FAIL() << bad;
+    } catch (const DataError& error) {
+      EXPECT_NE(std::string(error.what()).find("12.500000000 s"), std::string::npos) << error.what();
+    }
+  }
+  EXPECT_EQ(map.size(), 0u);
+  EXPECT_NO_THROW(map.add(frame_with({{0.0, 1.0e7, 0.0}}))) << "10,000 km";
+}
+
+TEST_F(MapWriterTest, AFailureLeavesTheEarlierFileAndNothingElse) {
+  MapWriter map(0.1);
+  map.add(frame_with({{1.0, 2.0, 3.0}}));
+  fs::create_directories(folder_ / "folder.ply" / "full");
+  EXPECT_THROW(map.write(folder_ / "folder.ply"), DataError);
+  EXPECT_THROW(map.write(folder_ / "missing" / "map.ply"), DataError);
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(MapWriterTest, AMapWithinTheRunWaitsInItsStaging) {
+  const fs::path output = folder_ / "out";
+  const fs::path staging = folder_ / ".out.partial";
+  fs::create_directories(staging);
+  EXPECT_EQ(map_destination(output / "map.ply", output, staging), staging / "map.ply");
+  EXPECT_EQ(map_destination(output / "map.ply", output / "", staging), staging / "map.ply");
+  EXPECT_EQ(map_destination(folder_ / "x" / ".." / "out" / "a" / "map.ply", output, staging),
+            staging / "a" / "map.ply");
+  EXPECT_TRUE(fs::is_directory(staging / "a"));
+  EXPECT_EQ(map_destination(folder_ / "map.ply", output, staging), folder_ / "map.ply");
+  EXPECT_EQ(map_destination(folder_ / "out.ply", output, staging), folder_ / "out.ply");
+  EXPECT_EQ(map_destination("map.ply", output, staging), "map.ply") << "of the working directory";
+  EXPECT_THROW(map_destination(folder_ / "no" / "map.ply", output, staging), DataError);
+  fs::create_directory(folder_ / "folder.ply");
+  EXPECT_THROW(map_destination(folder_ / "folder.ply", output, staging), DataError);
+  EXPECT_THROW(map_destination(output, output, staging), UsageError);
+  EXPECT_THROW(map_destination(output / "", output, staging), UsageError);
+  fs::create_directory_symlink(output, folder_ / "link");
+  fs::create_directories(output);
+  EXPECT_EQ(map_destination(folder_ / "link" / "map.ply", output, staging), staging / "map.ply");
+}
+
+}  // namespace
+}  // namespace dynamic_icp::runs

@@ -1,0 +1,119 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/runs/run_folder.hpp"
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+namespace dynamic_icp::runs {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path file_of_run(const fs::path& folder, const char* name) {
+  fs::path path = folder / name;
+  if (!fs::exists(path)) {
+    throw DataError(fmt::format("{}: no such file; expected the folder of a finished run", path.string()));
+  }
+  return path;
+}
+
+void check_count(const fs::path& file, const char* what, std::size_t count, std::size_t frames) {
+  if (count != frames) {
+    throw DataError(fmt::format("{}: {} {}, but frames.jsonl holds {} scans; was the run interrupted?", file.string(),
+                                count, what, frames));
+  }
+}
+
+constexpr const char* kPictures[] = {"convergence", "dynamics", "errors", "scan",
+                                     "speed",       "steps",    "timing", "trajectory"};
+
+/// The map that lies in the folder of a run; empty when there is none, or when its run.json cannot be read.
+std::string map_in(const fs::path& run_json) {
+  try {
+    return text_of(read_run_json(run_json).about, "map.file_in_run");
+  } catch (const std::exception&) {
+    return {};
+  }
+}
+
+std::vector<std::string> run_files(const fs::path& folder) {
+  std::vector<std::string> files = {"run.json",      "summary.json", "trajectory.tum", "frames.jsonl",
+                                    "objects.jsonl", "labels/#.bin", "report.html"};
+  for (const std::string picture : kPictures) {
+    files.push_back("plots/" + picture + ".svg");
+    files.push_back("plots/" + picture + ".png");
+  }
+  if (const std::string map = map_in(folder / "run.json"); !map.empty()) {
+    files.push_back(map);
+  }
+  return files;
+}
+
+}  // namespace
+
+double RunFiles::seconds(std::size_t frame) const {
+  return seconds_between(trajectory.front().stamp, trajectory[frame].stamp);
+}
+
+RunFiles read_run(const fs::path& folder) {
+  if (!fs::is_directory(folder)) {
+    throw DataError(fmt::format("{}: no such folder; expected the folder of a run", folder.string()));
+  }
+  RunFiles run;
+  run.folder = folder;
+  RunRecord record = read_run_json(file_of_run(folder, "run.json"));
+  run.run = std::move(record.about);
+  run.configuration = std::move(record.configuration);
+  run.warnings = std::move(record.assumptions);
+  run.warnings.insert(run.warnings.end(), record.warnings.begin(), record.warnings.end());
+  run.summary = read_summary(file_of_run(folder, "summary.json"));
+  run.frames = read_frames(file_of_run(folder, "frames.jsonl"));
+  const fs::path objects = file_of_run(folder, "objects.jsonl");
+  for (ObjectsRow& row : read_objects(objects)) {
+    run.objects.push_back(std::move(row.objects));
+  }
+  check_count(objects, "lines", run.objects.size(), run.frames.size());
+  const fs::path trajectory = file_of_run(folder, "trajectory.tum");
+  if (!run.frames.empty() || fs::file_size(trajectory) > 0) {
+    run.trajectory = formats::read_tum(trajectory).trajectory;
+  }
+  check_count(trajectory, "poses", run.trajectory.size(), run.frames.size());
+  return run;
+}
+
+fs::path labels_file(const fs::path& run_folder, std::size_t index) {
+  return run_folder / "labels" / fmt::format("{:05}.bin", index + 1);
+}
+
+bool lacks_labels(const RunFiles& run, std::size_t frame) {
+  return fs::exists(run.folder / "labels") && !fs::exists(labels_file(run.folder, run.frames[frame].index));
+}
+
+std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::size_t frame, std::size_t points) {
+  const fs::path path = labels_file(run.folder, run.frames[frame].index);
+  if (!fs::exists(path)) {
+    return std::nullopt;
+  }
+  const std::string bytes = formats::read_whole_file(path);
+  if (bytes.size() != 4 * points) {
+    throw DataError(fmt::format("{}: {} bytes, expected {}: int32 for each of the {} points of the scan", path.string(),
+                                bytes.size(), 4 * points, points));
+  }
+  std::vector<std::int32_t> labels(points);
+  for (std::size_t k = 0; k < points; ++k) {
+    std::uint32_t bits = 0;  // little-endian in the file, whatever the machine
+    for (std::size_t b = 0; b < 4; ++b) {
+      bits |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[4 * k + b])) << (8 * b);
+    }
+    labels[k] = static_cast<std::int32_t>(bits);
+  }
+  return labels;
+}
+
+formats::ResultKind run_result() { return {"run.json", run_files}; }
+
+}  // namespace dynamic_icp::runs

@@ -1,0 +1,87 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/runs/run_json.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "dynamic_icp/method/base/version.hpp"
+
+namespace dynamic_icp::runs {
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json sweep_json(const SweepRecord& sweep) {
+  Json json = {{"times", sweep.times()}, {"duration_s", nullptr}, {"undone", sweep.undone()}};
+  if (sweep.duration_s()) {
+    json["duration_s"] = *sweep.duration_s();
+  }
+  return json;
+}
+
+Json map_json(const RunSettings& settings, const RunResult& result, const fs::path& map_in_run) {
+  if (!result.map_points) {
+    return nullptr;
+  }
+  Json json = {{"path", fs::absolute(*settings.map_file).string()},
+               {"file_in_run", nullptr},
+               {"points", *result.map_points},
+               {"voxel_size_m", settings.map_voxel_m}};
+  if (!map_in_run.empty()) {
+    json["file_in_run"] = map_in_run.generic_string();
+  }
+  return json;
+}
+
+Json input_json(const datasets::InputSettings& settings) {
+  Json json = Json::object();
+  for (const auto& [name, text] : datasets::texts(settings)) {
+    json[name] = text;
+  }
+  return json;
+}
+
+Json configuration_json(odometry::Config config) {
+  Json json;
+  for (const ConfigField& field : odometry::fields(config)) {
+    std::visit([&](const auto* value) { json[field.key] = *value; }, field.value);
+  }
+  return json;
+}
+
+}  // namespace
+
+std::string run_json(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
+                     const fs::path& ground_truth, const RunResult& result, const fs::path& map_in_run) {
+  Json json = {{"version", version()},
+               {"command", settings.command},
+               {"input",
+                {{"path", fs::absolute(recording.path).string()},
+                 {"format", dataset.format()},
+                 {"options", input_json(recording.settings)},
+                 {"scans", dataset.size()}}},
+               {"method", settings.method},
+               {"preset", settings.preset},
+               {"ablation", settings.ablation},
+               {"start", settings.start},
+               {"threads", settings.threads}};
+  json["max_frames"] = nullptr;
+  if (settings.max_frames) {
+    json["max_frames"] = *settings.max_frames;
+  }
+  json["ground_truth"] = nullptr;
+  if (!ground_truth.empty()) {
+    json["ground_truth"] = fs::absolute(ground_truth).string();
+  }
+  json["sweep"] = sweep_json(result.sweep);
+  json["doppler"] = result.doppler;
+  json["map"] = map_json(settings, result, map_in_run);
+  json["assumptions"] = result.summary.assumptions;
+  json["warnings"] = result.warnings;
+  json["configuration"] = configuration_json(settings.config);
+  // File names need not be UTF-8.
+  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace dynamic_icp::runs

@@ -1,0 +1,239 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/runs/run_recording.hpp"
+
+#include <memory>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/recording/datasets/read_ahead.hpp"
+#include "dynamic_icp/recording/datasets/scan_range.hpp"
+#include "dynamic_icp/recording/formats/output_folder.hpp"
+#include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/runs/map_writer.hpp"
+#include "dynamic_icp/recording/runs/recording_check.hpp"
+#include "dynamic_icp/recording/runs/run_folder.hpp"
+#include "dynamic_icp/recording/runs/run_json.hpp"
+#include "dynamic_icp/recording/runs/run_writer.hpp"
+
+namespace dynamic_icp::runs {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The map to be made, if one is asked for. What cannot be is refused before anything is computed.
+std::optional<MapWriter> make_map(const RunSettings& settings) {
+  if (!settings.map_file) {
+    return std::nullopt;
+  }
+  check_map_file(*settings.map_file);
+  if (settings.method != "dynamic-icp") {
+    throw UsageError(fmt::format("only dynamic-icp tells static points from moving ones, {} does not: it makes no map",
+                                 settings.method));
+  }
+  return MapWriter(settings.map_voxel_m);
+}
+
+/// What became of the points of a run, to tell why nothing came of it.
+struct Usability {
+  std::size_t frames = 0;
+  std::size_t unusable = 0;  ///< frames with too few points to work with
+  std::size_t points = 0;
+  std::size_t points_used = 0;
+  Scan::Dropped dropped;
+
+  void add(const odometry::Frame& frame) {
+    ++frames;
+    unusable += frame.status == odometry::FrameStatus::kTooFewPoints ? 1 : 0;
+    points += frame.points;
+    points_used += frame.points_used;
+    dropped += frame.dropped;
+  }
+};
+
+/// A trajectory of poses that nobody saw is no result. Throws DataError when not one scan could be used.
+void refuse_without_points(const Usability& seen, const fs::path& input) {
+  if (seen.unusable < seen.frames) {
+    return;
+  }
+  throw DataError(
+      fmt::format("{}: none of the {} scans has enough points to work with: of {} points {} have numbers that are not "
+                  "finite, {} have numbers that no sensor measures, {} are at the origin, {} out of range, {} remain "
+                  "after thinning. The diagnosis of the recording says more",
+                  input.string(), seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.implausible,
+                  seen.dropped.zero_range, seen.dropped.out_of_range, seen.points_used));
+}
+
+/// A run while it goes on.
+class Run {
+ public:
+  Run(const Recording& recording, const RunSettings& settings, const RunCallbacks& callbacks)
+      : recording_(recording),
+        settings_(settings),
+        callbacks_(callbacks),
+        map_(make_map(settings)),
+        dataset_(datasets::open_input(recording.path, recording.settings)),
+        scans_(datasets::select_scans(*dataset_, settings.start, settings.max_frames)),
+        truth_file_(settings.ground_truth.empty() ? dataset_->ground_truth_file() : settings.ground_truth),
+        truth_(settings.ground_truth.empty() ? dataset_->ground_truth()
+                                             : formats::read_tum(settings.ground_truth).trajectory),
+        check_(check_recording(*dataset_, recording.settings, {scans_.begin, scans_.end, settings.threads},
+                               odometry::needs_doppler(settings.method), callbacks.fix_in_words)) {
+    result_.period_s = check_.period_s;
+    result_.doppler = check_.doppler;
+  }
+
+  /// Whether it came to its end.
+  bool write() {
+    std::vector<fs::path> inputs = {recording_.path, dataset_->scan_file(scans_.begin), truth_file_};
+    inputs.insert(inputs.end(), settings_.inputs.begin(), settings_.inputs.end());
+    formats::OutputFolder output(settings_.output, run_result(), settings_.replace, inputs);
+    if (!output.fill([&] { return write_files(output); })) {
+      return false;
+    }
+    output.commit();
+    return true;
+  }
+
+  RunResult take_result() { return std::move(result_); }
+
+ private:
+  void warn(const std::string& text) {
+    result_.warnings.push_back(text);
+    if (callbacks_.warning) {
+      callbacks_.warning(text);
+    }
+  }
+
+  /// The caller tells it at the end.
+  void fail(const std::string& text) {
+    result_.failures.push_back(text);
+    result_.warnings.push_back(text);
+  }
+
+  /// All files of the run into the folder where it is put together; false when cancelled.
+  bool write_files(const formats::OutputFolder& output) {
+    const fs::path map_file = map_ ? map_destination(*settings_.map_file, settings_.output, output.path()) : fs::path();
+    const fs::path map_in_run =
+        formats::lies_in(map_file, output.path()) ? map_file.lexically_relative(output.path()) : "";
+    const std::unique_ptr<odometry::Odometry> odometry =
+        odometry::make_odometry(settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind()},
+                                settings_.threads);
+    std::vector<std::string> assumptions = dataset_->assumptions();
+    for (const std::string& assumption : odometry->assumptions()) {
+      assumptions.push_back(assumption);
+    }
+    for (const std::vector<std::string>* texts : {&assumptions, &check_.warnings}) {
+      for (const std::string& text : *texts) {
+        warn(text);
+      }
+    }
+    RunWriter writer(output.path(), settings_.save_labels);
+    if (!process_scans(*odometry, writer)) {
+      return false;
+    }
+    result_.map_points = map_ ? std::optional(map_->size()) : std::nullopt;
+    result_.summary = writer.finish(settings_.method, truth_, assumptions);
+    const auto write_run_json = [&] {
+      formats::write_whole_file(output.path() / "run.json",
+                                run_json(recording_, settings_, *dataset_, truth_file_, result_, map_in_run));
+    };
+    write_run_json();
+    // Last, for an earlier map is only replaced by that of a run that is whole.
+    if (!try_to_write_map(map_file, output)) {
+      write_run_json();
+    }
+    try_to_add_files(output);
+    return true;
+  }
+
+  bool process_scans(odometry::Odometry& odometry, RunWriter& writer) {
+    datasets::ReadAhead reader(*dataset_, scans_.begin, scans_.end);
+    Usability usability;
+    report_progress(0);
+    for (std::size_t i = scans_.begin; i < scans_.end; ++i) {
+      if (callbacks_.cancelled && callbacks_.cancelled()) {
+        return false;
+      }
+      const RawScan scan = reader.next();
+      if (!scan.warning.empty()) {
+        warn(scan.warning);
+      }
+      const odometry::Frame frame = odometry.process(scan);
+      writer.add(i, frame);
+      usability.add(frame);
+      result_.sweep.add(frame, scan);
+      add_to_map(frame);
+      report_progress(i + 1 - scans_.begin);
+    }
+    refuse_without_points(usability, recording_.path);
+    return true;
+  }
+
+  void report_progress(std::size_t done) const {
+    if (callbacks_.progress) {
+      callbacks_.progress(done, scans_.size());
+    }
+  }
+
+  /// A map that cannot be is no reason to lose the run.
+  void add_to_map(const odometry::Frame& frame) {
+    if (!map_) {
+      return;
+    }
+    try {
+      map_->add(frame);
+    } catch (const std::exception& error) {
+      fail(fmt::format("no map: {}", error.what()));
+      map_.reset();
+    }
+  }
+
+  bool try_to_write_map(const fs::path& path, const formats::OutputFolder& output) {
+    try {
+      if (map_) {
+        map_->write(path);
+      }
+      return true;
+    } catch (const std::exception& error) {
+      fail("no map: " + output.in_final_names(error.what()));
+      result_.map_points.reset();
+      return false;
+    }
+  }
+
+  /// What belongs beside the files of a run and cannot be made is no reason to lose the run.
+  void try_to_add_files(const formats::OutputFolder& output) {
+    try {
+      if (callbacks_.add_files) {
+        callbacks_.add_files(output.path());
+      }
+    } catch (const std::exception& error) {
+      fail(output.in_final_names(error.what()));
+    }
+  }
+
+  const Recording& recording_;
+  const RunSettings& settings_;
+  const RunCallbacks& callbacks_;
+  std::optional<MapWriter> map_;
+  std::unique_ptr<datasets::Dataset> dataset_;
+  datasets::ScanRange scans_;
+  fs::path truth_file_;
+  formats::Trajectory truth_;
+  RecordingCheck check_;
+  RunResult result_;
+};
+
+}  // namespace
+
+std::optional<RunResult> run_recording(const Recording& recording, const RunSettings& settings,
+                                       const RunCallbacks& callbacks) {
+  Run run(recording, settings, callbacks);
+  return run.write() ? std::optional(run.take_result()) : std::nullopt;
+}
+
+}  // namespace dynamic_icp::runs

@@ -1,0 +1,80 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamic_icp/method/odometry/config.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/runs/recording_check.hpp"
+#include "dynamic_icp/recording/runs/run_summary.hpp"
+#include "dynamic_icp/recording/runs/sweep_record.hpp"
+
+namespace dynamic_icp::runs {
+
+/// A recording, and what the user says about it.
+struct Recording {
+  std::filesystem::path path;
+  datasets::InputSettings settings;
+};
+
+struct RunSettings {
+  std::filesystem::path output;  ///< folder of the run: new or empty, or an earlier run where `replace` is set
+  bool replace = false;
+  std::string method = "dynamic-icp";
+  std::string preset = "default";  ///< for run.json: what it means is in `config`
+  std::string ablation = "none";   ///< likewise
+  odometry::Config config;
+  int threads = 0;                        ///< 0: as many as the machine has; results do not depend on it
+  std::size_t start = 0;                  ///< first scan, counted from 0
+  std::optional<std::size_t> max_frames;  ///< most scans to process; all where empty
+  std::filesystem::path ground_truth;     ///< TUM file to compare with; empty: what the recording brings along
+  bool save_labels = false;
+  std::optional<std::filesystem::path> map_file;  ///< static points of all scans, .ply or .pcd; dynamic-icp only
+  double map_voxel_m = 0.1;
+  std::vector<std::filesystem::path> inputs;  ///< further files that were read and must not be replaced
+  std::string command;                        ///< how the run was asked for, for run.json
+};
+
+/// What the caller of a run may want to hear and do while it goes on. All are called by the calling thread; each may be
+/// empty.
+struct RunCallbacks {
+  /// Before the first scan and after each one.
+  std::function<void(std::size_t done, std::size_t total)> progress;
+  /// What the user should know, as soon as it is known.
+  std::function<void(const std::string& text)> warning;
+  /// See check_recording: how messages word the corrections of what the diagnosis finds.
+  FixInWords fix_in_words;
+  /// Asked before each scan whether the run is to be given up.
+  std::function<bool()> cancelled;
+  /// Adds files to a run whose own files are written, before its folder appears. What it throws is one of the run's
+  /// failures.
+  std::function<void(const std::filesystem::path& folder)> add_files;
+};
+
+/// What came of a run beside its files.
+struct RunResult {
+  RunSummary summary;
+  double period_s = 0.0;  ///< from scan to scan, median; 0 of one scan
+  std::string doppler;    ///< kind and sign, in words
+  SweepRecord sweep;
+  std::vector<std::string> warnings;
+  std::optional<std::size_t> map_points;  ///< empty without a map
+  std::vector<std::string> failures;      ///< what was asked for beside the run and could not be made, and why
+};
+
+/// Odometry over a recording: opens it, diagnoses its first scans, processes all that are selected, and writes the
+/// files of a run (run_writer.hpp) with run.json and the map into a folder that appears whole or not at all. Nothing
+/// when it was cancelled: then nothing is written, and an earlier run in the folder stays as it was.
+///
+/// Throws UsageError when the settings cannot be meant, DataError when the recording cannot be read, is wrong beyond
+/// doubt (check_recording) or has no scan with enough points, or when the machine fails.
+std::optional<RunResult> run_recording(const Recording& recording, const RunSettings& settings,
+                                       const RunCallbacks& callbacks = {});
+
+}  // namespace dynamic_icp::runs

@@ -1,0 +1,46 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "dynamic_icp/method/odometry/frame.hpp"
+#include "dynamic_icp/recording/formats/trajectory.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/runs/run_summary.hpp"
+
+namespace dynamic_icp::runs {
+
+/// Writes the files of a run while it goes on, in bounded memory: trajectory.tum, frames.jsonl, objects.jsonl,
+/// labels/*.bin (if asked for), summary.json; all but run.json. The folder exists already; see formats/output_folder
+/// for how a run appears whole or not at all. Throws DataError naming the file that could not be written.
+class RunWriter {
+ public:
+  RunWriter(const std::filesystem::path& folder, bool save_labels);
+
+  void add(std::size_t index, const odometry::Frame& frame);
+
+  /// Writes what is left. `ground_truth` may be empty.
+  RunSummary finish(const std::string& method, const formats::Trajectory& ground_truth,
+                    const std::vector<std::string>& assumptions);
+
+ private:
+  std::filesystem::path folder_;
+  bool save_labels_;
+  formats::OutputFile frames_file_;
+  formats::OutputFile objects_file_;
+  formats::Trajectory trajectory_;
+  std::vector<double> total_ms_;
+  std::vector<double> iterations_;
+  std::vector<double> dynamic_ratio_;
+  std::vector<double> clustered_ratio_;
+  std::vector<double> refined_ratio_;
+  std::size_t pairs_ = 0;
+  std::size_t converged_ = 0;
+  std::vector<std::pair<std::string, std::size_t>> status_counts_;
+};
+
+}  // namespace dynamic_icp::runs

@@ -1,0 +1,128 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/runs/run_writer.hpp"
+
+#include <cmath>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+#include <unistd.h>
+
+#include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/runs/frame_json.hpp"
+
+namespace dynamic_icp::runs {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+odometry::Frame frame_at(std::int64_t ns, double x, odometry::FrameStatus status) {
+  odometry::Frame frame;
+  frame.stamp = Stamp{ns};
+  frame.status = status;
+  frame.T_world_sensor.translation().x() = x;
+  frame.points = 4;
+  frame.points_used = 3;
+  frame.labels = {-1, 0, 0, 1};
+  frame.dynamic_candidates = 1;
+  frame.times.total_ms = 10.0;
+  return frame;
+}
+
+class RunWriterTest : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::create_directories(folder_); }
+  void TearDown() override { fs::remove_all(folder_); }
+  [[nodiscard]] std::vector<json> lines(const std::string& name) const {
+    std::istringstream in(formats::read_whole_file(folder_ / name));
+    std::vector<json> rows;
+    for (std::string line; std::getline(in, line);) {
+      rows.push_back(json::parse(line));
+    }
+    return rows;
+  }
+  fs::path folder_ = fs::temp_directory_path() / ("run_writer_test-" + std::to_string(::getpid()));
+};
+
+TEST_F(RunWriterTest, WritesTheFilesOfTheContract) {
+  RunWriter writer(folder_, true);
+  odometry::Frame first = frame_at(1724479779384729506, 0.0, odometry::FrameStatus::kFirst);
+  dynamics::ObjectEstimate rejected;
+  rejected.verdict = dynamics::ClusterVerdict::kIllConditioned;
+  dynamics::ObjectEstimate object;
+  object.verdict = dynamics::ClusterVerdict::kAccepted;
+  object.velocity_sensor = {9.0, 0.5, 0.0};
+  object.members = {2};
+  first.clusters = {rejected, object};
+  first.dynamic_clustered = 1;
+  first.dynamic_refined = 1;
+  writer.add(0, first);
+  odometry::Frame second = frame_at(1724479779484729507, 1.0, odometry::FrameStatus::kConverged);
+  second.alignment.status = registration::AlignStatus::kConverged;
+  second.alignment.iterations = 7;
+  second.times.total_ms = 20.0;
+  writer.add(1, second);
+  const formats::Trajectory truth = {{first.stamp, Eigen::Isometry3d::Identity()},
+                                     {second.stamp, Eigen::Isometry3d(Eigen::Translation3d(1.1, 0.0, 0.0))}};
+  const RunSummary summary = writer.finish("dynamic-icp", truth, {"taken for granted"});
+
+  EXPECT_NEAR(*summary.accuracy.rte_rmse_m, 0.1, 1e-12);
+  EXPECT_EQ(*summary.mean_iterations, 7.0);
+  EXPECT_EQ(*summary.convergence_rate, 1.0);
+  EXPECT_EQ(*summary.ms_mean, 15.0);
+  EXPECT_NEAR(*summary.dynamic_ratio_max, 1.0 / 3.0, 1e-15);
+  EXPECT_EQ(*summary.refined_ratio_mean, 1.0);
+
+  const formats::Trajectory trajectory = formats::read_tum(folder_ / "trajectory.tum").trajectory;
+  ASSERT_EQ(trajectory.size(), 2u);
+  EXPECT_EQ(trajectory[1].stamp.ns, 1724479779484729507);
+  const std::vector<json> frames = lines("frames.jsonl");
+  ASSERT_EQ(frames.size(), 2u);
+  for (const char* key :
+       {"index", "timestamp", "points", "points_used", "ego_velocity", "dynamic_candidates", "dynamic_clustered",
+        "dynamic_refined", "iterations", "converged", "status", "fitness", "inlier_rmse", "ms"}) {
+    EXPECT_TRUE(frames[1].contains(key)) << key;
+  }
+  EXPECT_EQ(frames[1]["ms"]["total"], 20.0);
+  EXPECT_EQ(frames[0]["clusters_rejected"]["ill_conditioned"], 1);
+  EXPECT_NE(formats::read_whole_file(folder_ / "frames.jsonl").find("\"timestamp\":1724479779.384729506,"),
+            std::string::npos)
+      << "all nine decimals";
+  const std::vector<json> objects = lines("objects.jsonl");
+  ASSERT_EQ(objects[0]["objects"].size(), 1u);
+  EXPECT_EQ(objects[0]["objects"][0]["id"], 1);
+  EXPECT_EQ(objects[0]["objects"][0]["velocity"], (std::vector<double>{9.0, 0.5, 0.0}));
+  EXPECT_EQ(formats::read_whole_file(folder_ / "labels" / "00001.bin"),
+            std::string("\xff\xff\xff\xff\0\0\0\0\0\0\0\0\1\0\0\0", 16));
+  const json stored = json::parse(formats::read_whole_file(folder_ / "summary.json"));
+  EXPECT_EQ(stored["frames"], 2);
+  EXPECT_EQ(stored["statuses"]["first"], 1);
+}
+
+TEST_F(RunWriterTest, WithoutTruthOrFramesNumbersAreNull) {
+  RunWriter writer(folder_, false);
+  writer.add(0, frame_at(0, 0.0, odometry::FrameStatus::kFirst));
+  const json stored = json::parse(summary_json(writer.finish("dynamic-icp", {}, {})));
+  for (const char* key : {"rte_rmse_m", "rre_rmse_deg", "ate_rmse_m", "path_length_m", "mean_iterations",
+                          "convergence_rate", "refined_ratio_mean"}) {
+    EXPECT_TRUE(stored[key].is_null()) << key;
+  }
+  EXPECT_FALSE(fs::exists(folder_ / "labels"));
+}
+
+TEST_F(RunWriterTest, PairDocumentHoldsTransformAndCovariance) {
+  odometry::Frame target = frame_at(200'000'000, 1.0, odometry::FrameStatus::kConverged);
+  target.T_target_source.translation() = Eigen::Vector3d(-1.0, 0.0, 0.0);
+  target.alignment.covariance = Matrix6d::Identity();
+  const json document = json::parse(pair_document(frame_at(100'000'000, 0.0, odometry::FrameStatus::kFirst), target));
+  EXPECT_EQ(document["T_target_source"][0], (std::vector<double>{1.0, 0.0, 0.0, -1.0}));
+  EXPECT_EQ(document["covariance"].size(), 6u);
+  EXPECT_NEAR(document["dt"].get<double>(), 0.1, 1e-15);
+  target.alignment.covariance.reset();
+  EXPECT_TRUE(json::parse(pair_document(target, target))["covariance"].is_null());
+}
+
+}  // namespace
+}  // namespace dynamic_icp::runs

@@ -1,0 +1,32 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/runs/sweep_record.hpp"
+
+namespace dynamic_icp::runs {
+
+void SweepRecord::add(const odometry::Frame& frame, const RawScan& scan) {
+  if (frame.status == odometry::FrameStatus::kTooFewPoints) {
+    return;
+  }
+  const motion::SweepReport report = frame.sweep.value_or(motion::sweep_in_data(scan));
+  first = first.value_or(report);
+  same_times = same_times && report.times == first->times;
+  all_undone = all_undone && report.undone;
+}
+
+std::string SweepRecord::times() const {
+  if (!same_times) {
+    return "mixed";
+  }
+  switch (first.value_or(motion::SweepReport{}).times) {
+    case motion::SweepTimes::kInData:
+      return "in the data";
+    case motion::SweepTimes::kDeclared:
+      return "declared";
+    case motion::SweepTimes::kNone:
+      break;
+  }
+  return "none";
+}
+
+}  // namespace dynamic_icp::runs

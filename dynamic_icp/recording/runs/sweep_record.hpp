@@ -1,0 +1,26 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "dynamic_icp/method/odometry/frame.hpp"
+#include "dynamic_icp/method/motion/sweep_times.hpp"
+
+namespace dynamic_icp::runs {
+
+/// What was found and done about the time that scans take: as in the first usable scan, and whether the others agree.
+struct SweepRecord {
+  std::optional<motion::SweepReport> first;
+  bool same_times = true;
+  bool all_undone = true;
+
+  void add(const odometry::Frame& frame, const RawScan& scan);
+  [[nodiscard]] bool undone() const { return first && all_undone; }
+  /// "in the data", "declared", "none" or "mixed".
+  [[nodiscard]] std::string times() const;
+  [[nodiscard]] std::optional<double> duration_s() const { return first ? first->duration_s : std::nullopt; }
+};
+
+}  // namespace dynamic_icp::runs
