@@ -139,7 +139,7 @@ void print_points(const PointsSeen& seen) {
   if (seen.scans == 0) {
     return;
   }
-  fmt::print("points       {} to {} a scan, median {} (of {} scans looked at)\n", seen.sizes.front(), seen.sizes.back(),
+  fmt::print("points       {} to {} a scan, median {} ({} scans sampled)\n", seen.sizes.front(), seen.sizes.back(),
              seen.sizes[seen.sizes.size() / 2], seen.scans);
   fmt::print("unusable     {} not finite, {} implausible, {} at the origin\n", seen.dropped.non_finite,
              seen.dropped.implausible, seen.dropped.zero_range);

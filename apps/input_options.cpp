@@ -74,7 +74,7 @@ void add_correction_options(CLI::App& command, datasets::InputSettings& settings
   add(command, settings, "doppler-sign", "SIGN",
       "What a positive Doppler means: away or towards (the sensor) (default away)");
   add(command, settings, "doppler-kind", "KIND",
-      "Whether the sensor's own motion is in the Doppler: relative, or compensated (default: what the layout says)");
+      "relative (raw) or compensated (ego motion removed) Doppler (default: what the layout says)");
   add(command, settings, "doppler-scale", "F", "Factor that makes the Doppler m/s, e.g. 0.001 for mm/s (default 1)");
   add(command, settings, "point-scale", "F", "Factor that makes coordinates m, e.g. 0.001 for mm (default 1)");
   add(command, settings, "columns", "LIST",

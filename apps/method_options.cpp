@@ -14,6 +14,7 @@
 #include "dynamic_icp/method/base/nearest_key.hpp"
 #include "dynamic_icp/recording/formats/config_file.hpp"
 
+#include "apps/messages.hpp"
 #include "apps/settings.hpp"
 
 namespace dynamic_icp::apps {
@@ -86,6 +87,13 @@ std::vector<std::string> read_settings(const MethodOptions& options, odometry::C
     std::ranges::copy_if(odometry::fields(other), std::back_inserter(all),
                          [&](const ConfigField& field) { return !has_key(all, field.key); });
   }
+  for (const auto& [former, now] : odometry::renamed_keys()) {
+    if (const auto field = std::ranges::find(all, now, &ConfigField::key); field != all.end()) {
+      ConfigField renamed = *field;
+      renamed.key = former;
+      all.push_back(std::move(renamed));
+    }
+  }
   bool scan_to_scan = options.preset == "paper";
   all.push_back({kScanToScan, &scan_to_scan, 0, 0, "", ""});
 
@@ -96,6 +104,11 @@ std::vector<std::string> read_settings(const MethodOptions& options, odometry::C
   apply_settings(all, options.settings);
   for (const std::string& setting : options.settings) {
     given.push_back(setting.substr(0, setting.find('=')));
+  }
+  for (std::string& key : given) {
+    const auto renamed =
+        std::ranges::find(odometry::renamed_keys(), key, [](const auto& names) { return names.first; });
+    key = renamed == odometry::renamed_keys().end() ? key : std::string(renamed->second);
   }
   std::erase_if(given, [&](const std::string& key) { return has_key(std::span(all).first(own), key); });
   return given;
@@ -147,8 +160,21 @@ ResolvedConfig resolve_config(const MethodOptions& options) {
   return resolved;
 }
 
+void note_renamed_keys(const MethodOptions& options) {
+  for (const std::string& setting : options.settings) {
+    const std::string key = setting.substr(0, setting.find('='));
+    for (const auto& [former, now] : odometry::renamed_keys()) {
+      if (key == former) {
+        tell("dynamic-icp: note: configuration key '{}' is now '{}'; the former name goes with the next release\n",
+             former, now);
+      }
+    }
+  }
+}
+
 void refuse_unread_keys(const MethodOptions& options, const std::vector<std::string>& methods,
                         const std::vector<ResolvedConfig>& resolved) {
+  note_renamed_keys(options);
   for (const std::string& key : resolved.front().unread) {
     const bool is_read = !std::ranges::all_of(
         resolved, [&](const ResolvedConfig& one) { return std::ranges::find(one.unread, key) != one.unread.end(); });

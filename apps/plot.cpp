@@ -26,8 +26,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kLeastScale = 0.25;
-constexpr double kMostScale = 8.0;
+constexpr double kMinScale = 0.25;
+constexpr double kMaxScale = 8.0;
 
 struct PlotOptions {
   std::vector<std::string> folders;
@@ -103,7 +103,7 @@ Pictures pictures_of_runs(const PlotOptions& options, const drawing::Theme& them
     runs.push_back(runs::read_run(folder));
   }
   check_comparable(runs);
-  const std::vector<std::string> names = report::telling_names(runs);
+  const std::vector<std::string> names = report::distinguishing_names(runs);
   Pictures pictures;
   std::vector<figures::ComparedRun> compared;
   for (std::size_t k = 0; k < runs.size(); ++k) {
@@ -118,8 +118,8 @@ Pictures pictures_of_runs(const PlotOptions& options, const drawing::Theme& them
 
 int plot(const PlotOptions& options) {
   const drawing::Theme theme = theme_of(options.theme);
-  if (!(options.scale >= kLeastScale && options.scale <= kMostScale)) {
-    throw UsageError(fmt::format("--scale is {}, expected {} to {}", options.scale, kLeastScale, kMostScale));
+  if (!(options.scale >= kMinScale && options.scale <= kMaxScale)) {
+    throw UsageError(fmt::format("--scale is {}, expected {} to {}", options.scale, kMinScale, kMaxScale));
   }
   const bool with_png = options.format != "svg";
   if (with_png) {
@@ -177,8 +177,8 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
       ->check(CLI::IsMember({"svg", "png", "both"}).description(""));
   command
       ->add_option("--scale", options->scale,
-                   fmt::format("Pixels of a PNG file for each px of the SVG one, {} to {} (default {})", kLeastScale,
-                               kMostScale, options->scale))
+                   fmt::format("Pixels of a PNG file for each px of the SVG one, {} to {} (default {})", kMinScale,
+                               kMaxScale, options->scale))
       ->type_name("F");
   command->callback([options, &selected] { selected = [options] { return plot(*options); }; });
 }

@@ -141,9 +141,9 @@ void add_report_command(CLI::App& app, std::function<int()>& selected) {
       ->add_option(
           "--frames", options->frames,
           "Scans to keep whole whatever the budget, as lines of frames.jsonl counted from 0: 10,20-25 (default: "
-          "a few telling ones as the budget allows)")
+          "a few informative ones as the budget allows)")
       ->type_name("LIST");
-  command->add_option("--threads", options->threads, "Most threads to use, 0: all processors (default 0)")
+  command->add_option("--threads", options->threads, "Maximum number of threads, 0: all processors (default 0)")
       ->type_name("N")
       ->check(CLI::Range(0, 1024));
   command->callback([options, &selected] { selected = [options] { return write_page(*options); }; });

@@ -80,7 +80,7 @@ std::string sweep_text(const runs::SweepRecord& sweep) {
   if (sweep.times() == "none") {
     return "none: the points have no times";
   }
-  return fmt::format("{}, {} s, times {}", sweep.undone() ? "undone" : "not undone", cell(sweep.duration_s(), 3),
+  return fmt::format("{}, {} s, times {}", sweep.deskewed() ? "deskewed" : "not deskewed", cell(sweep.duration_s(), 3),
                      sweep.times());
 }
 

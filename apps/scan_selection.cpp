@@ -32,7 +32,7 @@ void add_selection_options(CLI::App& command, const char* what, std::size_t& sta
   command
       .add_option_function<std::string>(
           "--max-frames", [&max_frames](const std::string& text) { max_frames = count_of("--max-frames", text, 1); },
-          fmt::format("Most scans to {}, 1 or more (default: all)", what))
+          fmt::format("Maximum number of scans to {} (default: all)", what))
       ->type_name("N");
 }
 

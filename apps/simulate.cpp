@@ -23,6 +23,7 @@
 #include "dynamic_icp/tools/simulation/simulation.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/messages.hpp"
 #include "apps/progress.hpp"
 #include "apps/result_kinds.hpp"
 #include "apps/settings.hpp"
@@ -220,6 +221,10 @@ int simulate(const SimulateOptions& options) {
     throw UsageError("simulate: name a scene (--list shows them)");
   }
   const SceneKind kind = find_scene(options.scene);
+  if (kind.former_name == options.scene && !options.quiet) {
+    tell("dynamic-icp: note: scene '{}' is now '{}'; the former name goes with the next release\n", options.scene,
+         kind.name);
+  }
   const SimulationConfig config = make_config(kind, options);
   const simulation::SequenceOptions written{simulation::find_layout(options.layout), options.point_truth,
                                             options.calibration};

@@ -7,14 +7,14 @@ set -euo pipefail
 program=$(cd "$(dirname "$0")/.." && pwd)/build/dynamic-icp
 folder=$1
 scans=${2:-40}
-scenes=(street city highway tunnel curved-walls bridge jam roundabout car-park off-road standing)
+scenes=(street city highway tunnel curved-walls bridge traffic-jam roundabout parking off-road stationary)
 sensor=(--set lidar.doppler_noise_mps=0.05 --set lidar.doppler_outlier_rate=0.005 --set lidar.dropout_rate=0.03)
 
 for mode in instant swept biased; do
   options=(--calibration --quiet --frames "$scans" "${sensor[@]}")
   [[ $mode == swept ]] || options+=(--instant)
   [[ $mode == biased ]] && options+=(--set lidar.doppler_bias_mps=0.2)
-  [[ $mode == biased ]] && scenes=(street city car-park off-road standing)
+  [[ $mode == biased ]] && scenes=(street city parking off-road stationary)
   for scene in "${scenes[@]}"; do
     for seed in 31 32 33; do
       drive=$folder/drives/$mode/$scene-$seed

@@ -12,14 +12,14 @@ cd "$(dirname "$0")/.."
 [[ $# -ge 1 && $1 != -* ]] || { echo "usage: scripts/benchmark_speed.sh DIR [--quick] [--long]" >&2; exit 2; }
 folder=$(cd "$start" && mkdir -p "$1" && cd "$1" && pwd)
 shift
-scenes=(city street highway tunnel curved-walls bridge jam roundabout car-park off-road standing)
+scenes=(city street highway tunnel curved-walls bridge traffic-jam roundabout parking off-road stationary)
 sizes=(10k:450x24 30k:800x40 70k:1200x64 200k:2000x110 500k:3450x160 1M:4950x226)
 scans=40 size_scans=12 long_scans=1000 repeat=3 kernel_repetitions=5 kernel_seconds=0.1
 long=no
 for option in "$@"; do
   case $option in
     --quick)
-      scenes=(city jam) sizes=(10k:450x24 30k:800x40 70k:1200x64)
+      scenes=(city traffic-jam) sizes=(10k:450x24 30k:800x40 70k:1200x64)
       scans=8 size_scans=5 long_scans=60 repeat=1 kernel_repetitions=1 kernel_seconds=0.01 ;;
     --long) long=yes ;;
     *) echo "unknown option '$option'; known are: --quick, --long" >&2; exit 2 ;;

@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-SCENES = "street,city,highway,tunnel,jam,roundabout"
+SCENES = "street,city,highway,tunnel,traffic-jam,roundabout"
 PERIOD_S = 0.1
 
 

@@ -21,12 +21,12 @@ build/dynamic-icp run "$work/street" --preset paper --set preprocess.voxel.voxel
 build/dynamic-icp plot "$work/street-paper" --pair 37 --format "$format" --output "$work/steps" >/dev/null
 cp "$work"/steps/steps.* "$out/"
 
-echo "== Trajectories: a jam, where most of what is seen moves"
-build/dynamic-icp simulate jam --frames 100 --quiet --output "$work/jam"
+echo "== Trajectories: a traffic jam, where most of what is seen moves"
+build/dynamic-icp simulate traffic-jam --frames 100 --quiet --output "$work/traffic-jam"
 runs=()
 for method in dynamic-icp doppler-icp gicp kiss-icp point-to-plane; do
-  build/dynamic-icp run "$work/jam" --method "$method" --quiet --output "$work/jam-$method"
-  runs+=("$work/jam-$method")
+  build/dynamic-icp run "$work/traffic-jam" --method "$method" --quiet --output "$work/traffic-jam-$method"
+  runs+=("$work/traffic-jam-$method")
 done
 build/dynamic-icp plot "${runs[@]}" --format "$format" --output "$work/compared" >/dev/null
 cp "$work"/compared/trajectory.* "$work"/compared/errors.* "$out/"

@@ -28,13 +28,13 @@ inline constexpr std::size_t kScans = 25;
 class Recording final : public datasets::Dataset {
  public:
   synthetic::World world = synthetic::street_with_cars();
-  synthetic::Path path = synthetic::lively(9.0);
+  synthetic::Path path = synthetic::agile(9.0);
   synthetic::Sensor sensor;
   bool has_truth = true;
   double truth_scale = 1.0;
   double stamp_factor = 1.0;
   DopplerKind kind = DopplerKind::kRelative;
-  std::function<void(RawScan&, const Vector3d& velocity)> spoil = [](RawScan&, const Vector3d&) {};
+  std::function<void(RawScan&, const Vector3d& velocity)> perturb = [](RawScan&, const Vector3d&) {};
 
   /// Once all is set.
   Recording& ready() {
@@ -55,7 +55,7 @@ class Recording final : public datasets::Dataset {
     const double time_s = static_cast<double>(index) * kPeriod_s;
     RawScan raw = synthetic::scan_at(world, path, sensor, time_s).raw;
     raw.stamp = stamp(index);
-    spoil(raw, synthetic::velocity_sensor(path, time_s));
+    perturb(raw, synthetic::velocity_sensor(path, time_s));
     return raw;
   }
   [[nodiscard]] DopplerKind doppler_kind() const override { return kind; }
@@ -69,7 +69,7 @@ class Recording final : public datasets::Dataset {
 };
 
 inline Diagnosis diagnosis_of(Recording& recording, int threads = 1) {
-  DoctorConfig config;
+  DiagnosisConfig config;
   config.probes = 4;
   return diagnose(recording.ready(), config, Workers(threads));
 }
@@ -77,7 +77,7 @@ inline Diagnosis diagnosis_of(Recording& recording, int threads = 1) {
 /// With what was applied to the recording.
 inline Diagnosis diagnosis_of(std::unique_ptr<Recording> recording, const Correction& applied) {
   recording->ready();
-  DoctorConfig config;
+  DiagnosisConfig config;
   config.probes = 4;
   config.applied = applied;
   return diagnose(*datasets::corrected(std::move(recording), applied), config, Workers(1));

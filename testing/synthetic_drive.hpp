@@ -89,7 +89,7 @@ inline Vector6d twist_error(const Drive& drive, const Frame& frame, int k) {
 }
 
 /// Squared error over its stated variance: about the number of unknowns where the covariance is right.
-inline double surprise(const Vector6d& error, const Matrix6d& covariance) {
+inline double nis(const Vector6d& error, const Matrix6d& covariance) {
   return error.dot(covariance.ldlt().solve(error));
 }
 

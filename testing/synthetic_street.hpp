@@ -143,7 +143,7 @@ inline Path circle(double speed_mps, double turn_radps) {
 
 /// A vehicle that changes its speed (by 20 % and 2 m/s^2 or so) and its direction (0.25 rad/s), rolls, pitches and
 /// heaves; the sensor sits ahead of and beside the point that follows the path, tilted by some degrees.
-inline Path lively(double speed_mps) {
+inline Path agile(double speed_mps) {
   return [=](double t) {
     constexpr double kBend = 0.9;  // rad/s
     const double x = speed_mps * (t + 0.2 * std::sin(t));

@@ -115,7 +115,7 @@ struct WallDrive {
     folder.write("run/run.json",
                  fmt::format(R"({{"version":"0.1.0","command":"dynamic-icp run drive","input":{{"path":"{}",)"
                              R"("format":"dicp"}},"method":"dynamic-icp","preset":"default","configuration":{{}},)"
-                             R"("sweep":{{"undone":{}}},"ground_truth":"{}"}})",
+                             R"("sweep":{{"deskewed":{}}},"ground_truth":"{}"}})",
                              (folder.path() / "drive").string(), sweep_s > 0.0,
                              (folder.path() / "drive/ref_poses.txt").string()));
   }

@@ -164,8 +164,8 @@ TEST_F(BadInput, AColumnOfZerosIsNoDoppler) {
     write_file(entry.path(), first);
   }
   fs::remove(recording / "ref_poses.txt");
-  const Outcome standing = run(recording, "--force");
-  EXPECT_EQ(standing.status, kDone) << standing.text;
+  const Outcome stationary = run(recording, "--force");
+  EXPECT_EQ(stationary.status, kDone) << stationary.text;
 }
 
 TEST_F(BadInput, WhatIsNeitherFileNorFolderIsNamed) {
@@ -281,7 +281,7 @@ TEST_F(BadInput, AMapThatCannotBe) {
   }
   for (const std::string method : {"doppler-icp", "point-to-point", "point-to-plane", "gicp", "kiss-icp"}) {
     const std::string more = map(folder_ / "map.ply") + " --method " + method;
-    expect_failure(run(recording, more), kWrongUsage, "only dynamic-icp tells static points from moving ones");
+    expect_failure(run(recording, more), kWrongUsage, "only dynamic-icp separates static from moving points");
     expect_failure(run(folder_ / "nowhere", more), kWrongUsage, method);
   }
   for (const char* voxel : {"0", "-0.1", "nan", "1e9"}) {

@@ -210,7 +210,7 @@ const std::vector<Expected>& expectations() {
       {"unsorted stamps", "hercules helipr", Left::kNothingRead, "Aeva_gt.txt", "line 4: the time stamp "},
       {"unsorted stamps", "boreas", Left::kNothingRead, "aeva_poses.csv", "line 5: the time stamp "},
       {"unsorted stamps", "aevascenes", Left::kAll, "", ""},  // put in order
-      {"unsorted stamps", kColumns, Left::kAll, "not taken for ground truth: ", "line 4: the time stamp "},
+      {"unsorted stamps", kColumns, Left::kAll, "not used as ground truth: ", "line 4: the time stamp "},
 
       {"missing truth", "dicp", Left::kAll, "no ref_poses.txt: ", "a scan period of 0.1 s is assumed"},
       {"missing truth", "hercules helipr boreas " + kColumns, Left::kAll, "", ""},
@@ -219,7 +219,7 @@ const std::vector<Expected>& expectations() {
       {"spoiled truth", "dicp", Left::kNothingRead, "ref_poses.txt", "line 4: qw is '"},
       {"spoiled truth", "hercules helipr", Left::kNothingRead, "Aeva_gt.txt", "line 4: qw is '"},
       {"spoiled truth", "boreas", Left::kNothingRead, "aeva_poses.csv", "line 5: '"},
-      {"spoiled truth", kColumns, Left::kAll, "not taken for ground truth: ", "line 4: qw is '"},
+      {"spoiled truth", kColumns, Left::kAll, "not used as ground truth: ", "line 4: qw is '"},
 
       {"missing metadata", "aevascenes", Left::kNothingRead, "missing metadata", "expected sequence.json beside"},
       {"missing metadata", "npy-pair", Left::kNoScan, "FILE", "1 of the *.npy have no *_dop.npy beside them"},

@@ -275,6 +275,19 @@ TEST_F(EndToEnd, AFileMayListWhatThePipelineDoesNotRead) {
   EXPECT_FALSE(configuration.contains("kiss_icp.voxel_size_m"));
 }
 
+TEST_F(EndToEnd, KeysOfTheLastReleaseAreReadWithANote) {
+  write_file(folder_ / "old.yaml", "turn:\n  alpha_rad_s2: 0.25\n");
+  const Outcome run =
+      run_program("run " + street().string() + " --quiet --max-frames 2 --config " + (folder_ / "old.yaml").string() +
+                  " --set odometry.unknown_deviation_m=0.2 --output " + (folder_ / "out").string());
+  EXPECT_EQ(run.status, 0) << run.text;
+  EXPECT_NE(run.text.find("'odometry.unknown_deviation_m' is now 'odometry.unobservable_sigma_m'"), std::string::npos)
+      << run.text;
+  const json configuration = json::parse(read_file(folder_ / "out" / "run.json"))["configuration"];
+  EXPECT_EQ(configuration["rotation.alpha_rad_s2"], 0.25);
+  EXPECT_EQ(configuration["odometry.unobservable_sigma_m"], 0.2);
+}
+
 TEST_F(EndToEnd, ASwitchMayBringInKeys) {
   const std::string key = "ego_motion.regression.max_iterations";
   run_and_summarise("--max-frames 2 --ablation no-consensus --set " + key + "=7 " + street().string());
@@ -396,17 +409,17 @@ TEST_F(EndToEnd, RunSaysWhatItFoundAndDidAboutTheSweep) {
   const fs::path swept = folder_ / "swept";
   ASSERT_EQ(run_program("simulate street --frames 3 --quiet --output " + swept.string()).status, 0);
   const auto expect_sweep = [&](const std::string& arguments, const std::string& times, double duration_s,
-                                bool undone) {
+                                bool deskewed) {
     run_and_summarise(arguments);
     const json sweep = json::parse(read_file(folder_ / "out" / "run.json"))["sweep"];
     EXPECT_EQ(sweep["times"], times) << arguments;
-    EXPECT_EQ(sweep["undone"], undone) << arguments;
+    EXPECT_EQ(sweep["deskewed"], deskewed) << arguments;
     const json seconds = sweep.at("duration_s");
     EXPECT_EQ(seconds.is_null(), duration_s == 0.0) << arguments;
     EXPECT_NEAR(seconds.is_null() ? 0.0 : seconds.get<double>(), duration_s, 0.002) << arguments;
   };
   expect_sweep(swept.string(), "in the data", 0.1, true);
-  expect_sweep(swept.string() + " --set sweep.undo=false", "in the data", 0.1, false);
+  expect_sweep(swept.string() + " --set sweep.deskew=false", "in the data", 0.1, false);
   expect_sweep(swept.string() + " --preset paper", "in the data", 0.1, false);
   expect_sweep(swept.string() + " --method gicp", "in the data", 0.1, false);
   expect_sweep(swept.string() + " --method kiss-icp --set kiss_icp.deskew=true", "in the data", 0.1, true);
@@ -414,7 +427,7 @@ TEST_F(EndToEnd, RunSaysWhatItFoundAndDidAboutTheSweep) {
   const std::string instant = street().string() + " --max-frames 3";
   expect_sweep(instant, "none", 0.0, false);
   expect_sweep(instant + " --set sweep.declared_duration_s=0.05", "declared", 0.05, true);
-  expect_sweep(instant + " --set sweep.declared_duration_s=0.05 --set sweep.undo=false", "declared", 0.05, false);
+  expect_sweep(instant + " --set sweep.declared_duration_s=0.05 --set sweep.deskew=false", "declared", 0.05, false);
   expect_sweep(instant + " --method kiss-icp", "none", 0.0, false);
   const Outcome printed = run_program("run " + swept.string() + " --output " + (folder_ / "told").string());
   EXPECT_NE(printed.text.find("sweep        undone, 0.100 s, times in the data"), std::string::npos) << printed.text;

@@ -90,7 +90,7 @@ def theirs(method, source, target):
 def main():
     program, failures, compared = sys.argv[1], 0, 0
     with tempfile.TemporaryDirectory() as folder:
-        for scene, speed in (("car-park", 1.5), ("roundabout", 1.5), ("city", 1.5), ("street", 1.0)):
+        for scene, speed in (("parking", 1.5), ("roundabout", 1.5), ("city", 1.5), ("street", 1.0)):
             source, target = simulate(program, Path(folder) / scene, scene, speed)
             for method in ("point-to-point", "point-to-plane", "gicp"):
                 T, converged, fitness = ours(program, method, source, target)

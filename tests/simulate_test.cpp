@@ -127,7 +127,7 @@ TEST_F(Simulate, NothingIsLeftWhereNothingCanBeWritten) {
 TEST_F(Simulate, ListNamesScenesAndSensors) {
   const Outcome outcome = run_program("simulate --list");
   EXPECT_EQ(outcome.status, 0);
-  for (const char* name : {"street", "standing", "aeries-ii", "radar-4d"}) {
+  for (const char* name : {"street", "stationary", "aeries-ii", "radar-4d"}) {
     EXPECT_NE(outcome.text.find(name), std::string::npos) << name;
   }
 }

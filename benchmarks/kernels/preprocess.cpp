@@ -10,7 +10,7 @@ namespace {
 
 Sensor sensor_of(const benchmark::State& state) { return static_cast<Sensor>(state.range(0)); }
 
-void take_over(benchmark::State& state) {
+void assign(benchmark::State& state) {
   const RawScan& raw = known_scan(sensor_of(state)).raw;
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(Scan::from_raw(raw));
@@ -18,7 +18,7 @@ void take_over(benchmark::State& state) {
   // The length of each point and its direction.
   count_each(state, raw.points.size(), {.bytes = kPointBytes + 8 + kRowBytes, .operations = 12});
 }
-BENCHMARK(take_over)->Apply(all_sensors);
+BENCHMARK(assign)->Apply(all_sensors);
 
 void crop_range(benchmark::State& state) {
   const Scan scan = Scan::from_raw(known_scan(sensor_of(state)).raw);

@@ -42,7 +42,7 @@ def velocity_section():
 
 
 def rotation_section():
-    print("## Rotation: deviation in degrees; nothing is said of the turn about the direction of travel")
+    print("## Rotation: deviation in degrees; nothing is said of the rotation about the direction of travel")
     C = np.linalg.inv(information(view(120)[0]))
     v = np.array([SPEED, 0.0, 0.0])
     cross = np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])

@@ -48,11 +48,11 @@ class Workers {
   }
 
   /// The sum of block_sum(begin, end) over blocks of at least `block_size` indices, added to `zero` in the order of the
-  /// blocks. There are at most `kMostParts` blocks, so that their sums fit on the stack.
+  /// blocks. There are at most `kMaxParts` blocks, so that their sums fit on the stack.
   template <class Sum, class BlockSum>
   [[nodiscard]] Sum sum_blocks(std::size_t n, std::size_t block_size, Sum zero, const BlockSum& block_sum) const {
-    const std::size_t size = std::max(block_size, block_count(n, kMostParts));
-    std::array<Sum, kMostParts> parts;
+    const std::size_t size = std::max(block_size, block_count(n, kMaxParts));
+    std::array<Sum, kMaxParts> parts;
     for_blocks(n, size,
                [&](std::size_t block, std::size_t begin, std::size_t end) { parts[block] = block_sum(begin, end); });
     for (std::size_t block = 0; block < block_count(n, size); ++block) {
@@ -80,7 +80,7 @@ class Workers {
   }
 
  private:
-  static constexpr std::size_t kMostParts = 64;
+  static constexpr std::size_t kMaxParts = 64;
 
   /// A reference to something that is called with the number of a block.
   struct BlockCall {

@@ -10,7 +10,7 @@
 namespace dynamic_icp {
 
 /// Standard deviation of normal errors over the median of their absolute values.
-inline constexpr double kDeviationPerMad = 1.4826;
+inline constexpr double kSigmaPerMad = 1.4826;
 
 /// The value in place round(share * (n - 1)) of the ascending values, share from 0 to 1; 0 of none. Unlike
 /// evaluation::percentile it does not interpolate: what it gives was measured.

@@ -50,7 +50,7 @@ Verdict beyond_limits(const RawScan& raw, std::size_t i, double length) {
   return finite ? Verdict::kImplausible : Verdict::kNonFinite;
 }
 
-Record judge(const RawScan& raw, std::size_t i, const Scan::RangeLimits& limits, const TimeWindow& window) {
+Record evaluate(const RawScan& raw, std::size_t i, const Scan::RangeLimits& limits, const TimeWindow& window) {
   const Eigen::Vector3d& point = raw.points[i];
   const Eigen::Vector3d& line_of_sight = raw.directions.empty() ? point : raw.directions[i];
   const double length = length_of(line_of_sight);
@@ -74,11 +74,11 @@ Scan Scan::from_raw(const RawScan& raw, Dropped* dropped) { return from_raw(raw,
 
 Scan Scan::from_raw(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
   Scan scan;
-  scan.take_over(raw, limits, workers, dropped);
+  scan.assign(raw, limits, workers, dropped);
   return scan;
 }
 
-void Scan::take_over(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
+void Scan::assign(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
   check_lengths(raw);
   const TimeWindow window = plausible_times(raw.times);
   const std::size_t n = raw.points.size();
@@ -91,7 +91,7 @@ void Scan::take_over(const RawScan& raw, const RangeLimits& limits, const Worker
     Dropped& count = counts[block];
     std::size_t row = begin;
     for (std::size_t i = begin; i < end; ++i) {
-      const Record record = judge(raw, i, limits, window);
+      const Record record = evaluate(raw, i, limits, window);
       if (record.verdict != Verdict::kKept) {
         count.non_finite += record.verdict == Verdict::kNonFinite ? 1 : 0;
         count.implausible += record.verdict == Verdict::kImplausible ? 1 : 0;

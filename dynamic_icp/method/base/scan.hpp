@@ -74,7 +74,7 @@ class Scan {
                        Dropped* dropped = nullptr);
 
   /// The same in the place of what this scan was, whose memory is used again.
-  void take_over(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped = nullptr);
+  void assign(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped = nullptr);
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] bool empty() const { return points_.empty(); }

@@ -154,7 +154,7 @@ TEST(Scan, TakesOverAnotherInItsPlace) {
     ASSERT_NEAR((reused.directions()[row] * reused.points()[row].norm() - reused.points()[row]).norm(), 0.0, 1e-12);
   }
   Scan::Dropped dropped;
-  reused.take_over(second, limits, workers, &dropped);
+  reused.assign(second, limits, workers, &dropped);
   EXPECT_EQ(reused.records(), (std::vector<std::uint32_t>{0, 3}));
   EXPECT_FALSE(reused.has_times());
   EXPECT_EQ(reused.doppler(), (std::vector<double>{1.0, 4.0}));

@@ -40,7 +40,7 @@ double density(const ReachabilityEdge& edge) {
 }
 
 /// Where a node of the single linkage tree stands when it is opened from above.
-struct Standing {
+struct Placement {
   std::uint32_t cluster = 0;
   bool left = false;    // its points have left the cluster
   double lambda = 0.0;  // at which they left
@@ -70,18 +70,18 @@ CondensedTree condense(std::span<const ReachabilityEdge> edges, std::uint32_t mi
   const auto size = [&](std::uint32_t node) { return node < n ? 1 : merges[node - n].size; };
   CondensedTree tree;
   tree.clusters.push_back({.size = n});
-  std::vector<Standing> standings(n + merges.size());
+  std::vector<Placement> placements(n + merges.size());
   // Downwards from the root, the last merge: a merge has a greater number than those it is made of.
   for (std::size_t i = merges.size(); i-- > 0;) {
-    const Standing here = standings[n + i];
+    const Placement here = placements[n + i];
     const double lambda = here.left ? here.lambda : density(edges[i]);
     const bool dissolves = here.left || std::isinf(lambda);
     const auto [a, b] = merges[i].children;
     const bool breaks = !dissolves && size(a) >= min_cluster_size && size(b) >= min_cluster_size;
     for (const std::uint32_t child : {a, b}) {
-      standings[child] = {here.cluster, dissolves || size(child) < min_cluster_size, lambda};
+      placements[child] = {here.cluster, dissolves || size(child) < min_cluster_size, lambda};
       if (breaks) {
-        standings[child].cluster = static_cast<std::uint32_t>(tree.clusters.size());
+        placements[child].cluster = static_cast<std::uint32_t>(tree.clusters.size());
         tree.clusters.push_back({.parent = here.cluster, .size = size(child), .birth = lambda});
       }
     }
@@ -89,8 +89,8 @@ CondensedTree condense(std::span<const ReachabilityEdge> edges, std::uint32_t mi
   tree.point_cluster.reserve(n);
   tree.point_lambda.reserve(n);
   for (std::uint32_t point = 0; point < n; ++point) {
-    tree.point_cluster.push_back(standings[point].cluster);
-    tree.point_lambda.push_back(standings[point].lambda);
+    tree.point_cluster.push_back(placements[point].cluster);
+    tree.point_lambda.push_back(placements[point].lambda);
   }
   sum_up(tree);
   return tree;

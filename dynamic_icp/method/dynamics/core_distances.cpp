@@ -16,7 +16,7 @@ using spatial::KdTree;
 using spatial::Neighbour;
 
 constexpr std::size_t kLeavesPerBlock = 32;
-constexpr std::size_t kMostNeighbours = 16;
+constexpr std::size_t kMaxNeighbours = 16;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// What was found around one point: positions and squared distances, the point itself among them.
@@ -26,16 +26,16 @@ struct Found {
 };
 
 /// Up to so many found points are ordered by their ranks.
-constexpr std::size_t kMostRanked = 20;
-static_assert(kMostRanked % simd::kLanes == 0 && kMostRanked > kMostNeighbours);
-using Places = std::array<std::uint32_t, kMostRanked>;
+constexpr std::size_t kMaxRanked = 20;
+static_assert(kMaxRanked % simd::kLanes == 0 && kMaxRanked > kMaxNeighbours);
+using Places = std::array<std::uint32_t, kMaxRanked>;
 
 /// Orders found points by distance: places[rank] is where the one of that rank stands. Counting for each how many are
 /// nearer takes more comparisons than sorting, but no branch that is hard to predict. False where distances are equal:
 /// then ranks do not tell the order.
 DYNAMIC_ICP_INLINE bool order_by_rank(std::span<const double> squared, Places& places) {
   const std::size_t n = squared.size();
-  std::array<double, kMostRanked> values;
+  std::array<double, kMaxRanked> values;
   values.fill(kInfinity);
   std::copy_n(squared.data(), n, values.begin());
   std::size_t sum_of_ranks = 0;
@@ -119,7 +119,7 @@ CoreDistances core_distances(const KdTree& tree, std::span<const Eigen::Vector3d
   CoreDistances cores;
   cores.squared.assign(tree.leaf_count() * KdTree::kLeafSize, kInfinity);
   std::fill_n(cores.squared.begin(), tree.size(), 0.0);
-  cores.neighbours_each = std::min(min_samples, kMostNeighbours);
+  cores.neighbours_each = std::min(min_samples, kMaxNeighbours);
   cores.neighbours.resize(points.size() * cores.neighbours_each);
   workers.for_blocks(tree.leaf_count(), kLeavesPerBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     spatial::Neighbourhoods found(tree, min_samples + 1, kInfinity);
@@ -130,7 +130,7 @@ CoreDistances core_distances(const KdTree& tree, std::span<const Eigen::Vector3d
           const auto self = static_cast<std::uint32_t>(leaf * KdTree::kLeafSize + row);
           const Found around{found.positions(row), found.squared_distances(row)};
           Places places;
-          if (min_samples < kMostRanked && order_by_rank(around.squared, places)) {
+          if (min_samples < kMaxRanked && order_by_rank(around.squared, places)) {
             keep_others(cores, self, around, places);
           } else {
             keep_others(cores, self, ordered_others(tree, around, self, cores.neighbours_each));

@@ -144,8 +144,8 @@ ConfigFields fields(ObjectVelocityConfig& config) {
       {"max_condition_number", &config.max_condition_number, 1.0, 1e9, "",
        "largest allowed condition number of a cluster's lines of sight"},
       {"huber_delta_mps", &config.huber_delta_mps, 0.0, 100.0, "m/s",
-       "threshold of Huber regression of an object's velocity; 0 is ordinary least squares, the paper's way"},
-      {"max_deviation_mps", &config.max_deviation_mps, 0.0, 1000.0, "m/s",
+       "threshold of Huber regression of an object's velocity; 0 is ordinary least squares, as in the paper"},
+      {"max_sigma_mps", &config.max_deviation_mps, 0.0, 1000.0, "m/s",
        "objects whose velocity has a larger standard deviation in some direction are rejected; 0 switches this off"},
   };
 }

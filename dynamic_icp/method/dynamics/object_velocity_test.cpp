@@ -138,8 +138,8 @@ TEST(ObjectVelocity, DegenerateClustersSayWhy) {
   const ObjectEstimate one_ray = only_object(cluster(7, 50, kNear, Vector3d::Zero(), {1, 0, 0}));
   EXPECT_EQ(one_ray.verdict, ClusterVerdict::kIllConditioned);
   EXPECT_TRUE(std::isfinite(one_ray.condition_number));
-  const ObjectEstimate at_rest = only_object(cluster(8, 50, kNear, kCarSize, Vector3d::Zero()));
-  EXPECT_EQ(at_rest.verdict, ClusterVerdict::kAccepted);
+  const ObjectEstimate static_frame = only_object(cluster(8, 50, kNear, kCarSize, Vector3d::Zero()));
+  EXPECT_EQ(static_frame.verdict, ClusterVerdict::kAccepted);
   EXPECT_EQ(to_string(ObjectEstimate{}.verdict), "not_run");
 }
 

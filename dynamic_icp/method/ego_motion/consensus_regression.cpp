@@ -16,31 +16,32 @@
 namespace dynamic_icp::ego_motion {
 namespace {
 
-constexpr std::size_t kLeastPoints = 3;
-constexpr std::size_t kVotesOnHypotheses = 600;  // a share of 0.3 is then known to 0.02
-constexpr std::size_t kVotesOnModes = 2500;      // and the few modes that remain are told apart by twice that
-constexpr int kMostSteps = 20;
+constexpr std::size_t kMinPoints = 3;
+constexpr std::size_t kRowsForHypotheses = 600;  // a share of 0.3 is then known to 0.02
+constexpr std::size_t kRowsForModes = 2500;      // and the few modes that remain are told apart by twice that
+constexpr int kMaxSteps = 20;
 constexpr double kStepToleranceMps = 3e-4;  // a tenth of the deviation of a good estimate
-constexpr double kOpenDeviationMps = 2.0;   // who knows a component no better than this knows it better by any prior
-constexpr double kFloorMps = 1e-3;          // errors of all lines of sight together: 0.003 degrees at 20 m/s
-constexpr double kLeastSlope = 0.6;         // of psi' to the weights; 0.8 for normal noise at the default cutoff
-constexpr double kWider = 1.4;              // of the scale, in one step: twice the variance
-constexpr double kLeastVariance = 1e-12;    // a prior without any doubt must not divide by zero
-constexpr double kUnknownMps = 30.0;        // of a velocity of which nothing is known
-constexpr double kBonusDeviationMps = 0.3;  // a velocity this near to the expected one still earns most of its bonus
-constexpr double kJerk = 10.0;              // m/s^3, of hard braking and steering
+constexpr double kUnobservableSigma_mps =
+    2.0;                                 // who knows a component no better than this knows it better by any prior
+constexpr double kFloorMps = 1e-3;       // errors of all lines of sight together: 0.003 degrees at 20 m/s
+constexpr double kMinSlope = 0.6;        // of psi' to the weights; 0.8 for normal noise at the default cutoff
+constexpr double kWider = 1.4;           // of the scale, in one step: twice the variance
+constexpr double kMinVariance = 1e-12;   // a prior without any doubt must not divide by zero
+constexpr double kUnknown_mps = 30.0;    // of a velocity of which nothing is known
+constexpr double kBonusSigma_mps = 0.3;  // a velocity this near to the expected one still earns most of its bonus
+constexpr double kJerk = 10.0;           // m/s^3, of hard braking and steering
 
 // Refining a mode: the first steps look farther than the cutoff, because a mode begins away from its best velocity.
 constexpr double kFirstStepsWider = 1.5;
 constexpr int kCoarseSteps = 3;              // bring a sample of three points to within the noise
 constexpr int kFineSteps = 4;                // and one more where acceleration and bias follow
 constexpr double kFixed = 1e9;               // information of an unknown that is not estimated
-constexpr double kCoarseNoise = 0.5;         // of vote_width_mps, as long as the noise of the scan is unknown,
+constexpr double kCoarseNoise = 0.5;         // of inlier_threshold_mps, as long as the noise of the scan is unknown,
 constexpr double kCoarseCutoff = 2.0;        // and the cutoff that goes with it
 constexpr double kMinShareOfBest = 0.5;      // dynamic outliers may gather half of the support, but hardly more
 constexpr std::size_t kFineHypotheses = 63;  // with the mode itself a multiple of the lanes of find_modes
 constexpr std::size_t kMaxParts = 3;         // the static scene and slow movers on either side of it
-constexpr double kFineReach = 2.0;           // of vote_width_mps: what is farther belongs to another mode
+constexpr double kFineReach = 2.0;           // of inlier_threshold_mps: what is farther belongs to another mode
 constexpr double kFineWidth = 3.0;           // sigmas of the noise: nearly all static points support the static scene
 constexpr double kFineResolution = 2.0;      // sigmas of the noise: nearer velocities cannot be distinguished
 // Rows of one object err together, so a row counts for a ninth: acceleration and bias must not bend a mode through the
@@ -52,12 +53,12 @@ constexpr double kFreeSigmas2 = 4.0;
 constexpr double kPriorDecay = 0.125;
 
 /// The priors of acceleration and bias alone: the search for the static scene must not lean on an earlier velocity.
-DopplerModel voting_model(const EgoPrior& prior, const ConsensusRegressionConfig& config) {
+DopplerModel consensus_model(const EgoPrior& prior, const ConsensusRegressionConfig& config) {
   DopplerModel model;
   model.has_bias = config.estimate_bias;
   model.prior.tail<4>() = prior.mean.tail<4>();
   for (Eigen::Index k = 3; k < 7; ++k) {
-    model.information(k, k) = 1.0 / std::max(prior.covariance(k, k), kLeastVariance);
+    model.information(k, k) = 1.0 / std::max(prior.covariance(k, k), kMinVariance);
   }
   if (!config.estimate_bias) {
     model.prior[6] = 0.0;
@@ -67,7 +68,7 @@ DopplerModel voting_model(const EgoPrior& prior, const ConsensusRegressionConfig
 }
 
 /// The same after a velocity that nobody expected: neither is the acceleration what it was.
-EgoPrior surprised(const EgoPrior& prior) {
+EgoPrior inflated(const EgoPrior& prior) {
   EgoPrior open = prior;
   const Matrix7d start = EgoPrior::default_covariance();
   for (Eigen::Index k = 3; k < 6; ++k) {
@@ -78,11 +79,11 @@ EgoPrior surprised(const EgoPrior& prior) {
 
 /// Whether the prior velocity may take part: one far from what the scan shows is wrong, not informative.
 bool agrees(const EgoPrior& prior, const Vector7d& x) {
-  constexpr double kDeviations2 = 16.0;
+  constexpr double kSigmas2 = 16.0;
   const Eigen::Vector3d difference = x.head<3>() - prior.mean.head<3>();
   const Eigen::Matrix3d covariance =
-      prior.covariance.topLeftCorner<3, 3>() + kLeastVariance * Eigen::Matrix3d::Identity();
-  return prior.has_velocity && difference.dot(covariance.ldlt().solve(difference)) < kDeviations2;
+      prior.covariance.topLeftCorner<3, 3>() + kMinVariance * Eigen::Matrix3d::Identity();
+  return prior.has_velocity && difference.dot(covariance.ldlt().solve(difference)) < kSigmas2;
 }
 
 /// The whole prior, for the fit to all points of the static scene.
@@ -97,26 +98,26 @@ DopplerModel fitting_model(const EgoPrior& prior, const ConsensusRegressionConfi
     covariance.col(6).setZero();
     covariance(6, 6) = 1.0;
   }
-  covariance.diagonal().array() += kLeastVariance;
+  covariance.diagonal().array() += kMinVariance;
   model.information = covariance.ldlt().solve(Matrix7d::Identity());
   return model;
 }
 
 /// A few steps on the rows that vote, the last with the cutoff, those before with a wider one.
-void refine(const DopplerRows& voters, const DopplerModel& model, const RobustScale& scale, int steps,
+void refine(const DopplerRows& consensus_set, const DopplerModel& model, const RobustScale& scale, int steps,
             const Workers& workers, Vector7d& x) {
   RobustScale wide = scale;
   wide.cutoff_mps *= kFirstStepsWider;
   for (int k = 0; k < steps; ++k) {
-    const FitSums sums = sum_fit(voters, x, k + 1 < steps ? wide : scale, model.has_bias, workers);
-    x += solve_fit(sums, x, model, kOpenDeviationMps).step;
+    const FitSums sums = sum_fit(consensus_set, x, k + 1 < steps ? wide : scale, model.has_bias, workers);
+    x += solve_fit(sums, x, model, kUnobservableSigma_mps).step;
   }
 }
 
 /// Keeps the first of those that look the same.
-void remove_duplicates(const DopplerRows& voters, double width_mps, std::vector<VelocityMode>& modes) {
-  std::ranges::stable_sort(modes, [](const auto& a, const auto& b) { return a.votes > b.votes; });
-  const StateDistance distance(voters);
+void remove_duplicates(const DopplerRows& consensus_set, double width_mps, std::vector<VelocityMode>& modes) {
+  std::ranges::stable_sort(modes, [](const auto& a, const auto& b) { return a.inlier_weight > b.inlier_weight; });
+  const StateDistance distance(consensus_set);
   std::vector<VelocityMode> kept;
   for (const VelocityMode& mode : modes) {
     const bool is_new =
@@ -130,47 +131,48 @@ void remove_duplicates(const DopplerRows& voters, double width_mps, std::vector<
 
 /// Modes that differ by more than the width of a vote, refined for the velocity alone: as long as half of what counts
 /// may be a crowd, a free acceleration and bias would bend towards it.
-std::vector<VelocityMode> coarse_modes(const Electorate& voters, const EgoPrior& prior, const DopplerModel& model,
-                                       const ConsensusRegressionConfig& config, const Workers& workers) {
+std::vector<VelocityMode> coarse_modes(const ConsensusSet& consensus_set, const EgoPrior& prior,
+                                       const DopplerModel& model, const ConsensusRegressionConfig& config,
+                                       const Workers& workers) {
   Vector7d start = model.prior;
   start.head<3>() = prior.has_velocity ? Eigen::Vector3d(prior.mean.head<3>()) : Eigen::Vector3d::Zero();
   ModeSearch search;
   search.hypotheses = static_cast<std::size_t>(config.hypotheses);
-  search.width_mps = config.vote_width_mps;
-  search.acceleration_deviation =
-      voters.rows.takes_time ? std::sqrt(prior.covariance.diagonal().segment<3>(3).mean()) : 0.0;
-  std::vector<VelocityMode> modes = find_modes(voters, start, search, workers);
+  search.width_mps = config.inlier_threshold_mps;
+  search.acceleration_sigma =
+      consensus_set.rows.takes_time ? std::sqrt(prior.covariance.diagonal().segment<3>(3).mean()) : 0.0;
+  std::vector<VelocityMode> modes = find_modes(consensus_set, start, search, workers);
   DopplerModel velocity_only = model;
   velocity_only.information.diagonal().tail<4>().setConstant(kFixed);
-  const RobustScale scale{kCoarseNoise * config.vote_width_mps, kCoarseCutoff * config.vote_width_mps, 0.0};
+  const RobustScale scale{kCoarseNoise * config.inlier_threshold_mps, kCoarseCutoff * config.inlier_threshold_mps, 0.0};
   workers.for_each(modes.size(), 1, [&](std::size_t k) {
     VelocityMode& mode = modes[k];
-    refine(voters.rows, velocity_only, scale, kCoarseSteps, workers, mode.x);
-    mode.votes = votes(voters, mode.x, config.vote_width_mps);
+    refine(consensus_set.rows, velocity_only, scale, kCoarseSteps, workers, mode.x);
+    mode.inlier_weight = inlier_weight(consensus_set, mode.x, config.inlier_threshold_mps);
   });
-  remove_duplicates(voters.rows, config.vote_width_mps, modes);
-  const double enough = kMinShareOfBest * modes.front().votes;
-  std::erase_if(modes, [&](const VelocityMode& mode) { return mode.votes < enough; });
+  remove_duplicates(consensus_set.rows, config.inlier_threshold_mps, modes);
+  const double enough = kMinShareOfBest * modes.front().inlier_weight;
+  std::erase_if(modes, [&](const VelocityMode& mode) { return mode.inlier_weight < enough; });
   return modes;
 }
 
 /// Splits a mode into what the noise can tell apart, such as the static scene and a crowd that creeps.
-std::vector<VelocityMode> split_mode(const Electorate& voters, const VelocityMode& mode, const DopplerModel& model,
-                                     const ConsensusRegressionConfig& config, double noise_mps,
-                                     const Workers& workers) {
+std::vector<VelocityMode> split_mode(const ConsensusSet& consensus_set, const VelocityMode& mode,
+                                     const DopplerModel& model, const ConsensusRegressionConfig& config,
+                                     double noise_mps, const Workers& workers) {
   ModeSearch search;
   search.hypotheses = kFineHypotheses;
-  search.most_modes = kMaxParts;
-  search.width_mps = std::min(config.vote_width_mps, config.tukey_cutoff * noise_mps);
-  search.within_mps = kFineReach * config.vote_width_mps;
+  search.max_modes = kMaxParts;
+  search.width_mps = std::min(config.inlier_threshold_mps, config.tukey_cutoff * noise_mps);
+  search.within_mps = kFineReach * config.inlier_threshold_mps;
   search.seed = 1;
-  std::vector<VelocityMode> parts = find_modes(voters, mode.x, search, workers);
+  std::vector<VelocityMode> parts = find_modes(consensus_set, mode.x, search, workers);
   for (VelocityMode& part : parts) {
-    refine(voters.rows, model, {kCorrelatedNoise * noise_mps, config.tukey_cutoff * noise_mps, 0.0}, kFineSteps,
+    refine(consensus_set.rows, model, {kCorrelatedNoise * noise_mps, config.tukey_cutoff * noise_mps, 0.0}, kFineSteps,
            workers, part.x);
-    part.votes = votes(voters, part.x, kFineWidth * noise_mps);
+    part.inlier_weight = inlier_weight(consensus_set, part.x, kFineWidth * noise_mps);
   }
-  remove_duplicates(voters.rows, kFineResolution * noise_mps, parts);
+  remove_duplicates(consensus_set.rows, kFineResolution * noise_mps, parts);
   return parts;
 }
 
@@ -185,34 +187,34 @@ double prior_factor(const EgoPrior& prior, const DopplerModel& model, const Vect
   }
   const Eigen::Vector3d difference = x.head<3>() - prior.mean.head<3>();
   const Eigen::Matrix3d covariance =
-      prior.covariance.topLeftCorner<3, 3>() + kBonusDeviationMps * kBonusDeviationMps * Eigen::Matrix3d::Identity();
+      prior.covariance.topLeftCorner<3, 3>() + kBonusSigma_mps * kBonusSigma_mps * Eigen::Matrix3d::Identity();
   return plausible * (1.0 + weight * std::exp(-0.5 * difference.dot(covariance.ldlt().solve(difference))));
 }
 
 /// The static scene, as far as votes can tell.
-struct Choice {
+struct ModeHypothesis {
   Vector7d x = Vector7d::Zero();
   double noise_mps = 0.0;
   double support = 0.0;
   bool ambiguous = false;
 };
 
-Choice choose_mode(const DopplerRows& rows, const EgoPrior& prior, const DopplerModel& model,
-                   const ConsensusRegressionConfig& config, const Workers& workers) {
-  Electorate few;
-  Electorate many;
-  workers.both([&] { few = elect(rows, kVotesOnHypotheses); }, [&] { many = elect(rows, kVotesOnModes); });
+ModeHypothesis choose_mode(const DopplerRows& rows, const EgoPrior& prior, const DopplerModel& model,
+                           const ConsensusRegressionConfig& config, const Workers& workers) {
+  ConsensusSet few;
+  ConsensusSet many;
+  workers.both([&] { few = sample(rows, kRowsForHypotheses); }, [&] { many = sample(rows, kRowsForModes); });
   const std::vector<VelocityMode> coarse = coarse_modes(few, prior, model, config, workers);
   // A wrong velocity turns differences of direction into noise, so the smallest estimate is the right one.
-  Choice choice;
-  choice.noise_mps = config.max_noise_mps;
+  ModeHypothesis hypothesis;
+  hypothesis.noise_mps = config.max_noise_mps;
   for (const VelocityMode& mode : coarse) {
-    choice.noise_mps =
-        std::min(choice.noise_mps, noise_from_neighbours(rows, mode.x, config.min_noise_mps, config.max_noise_mps));
+    hypothesis.noise_mps =
+        std::min(hypothesis.noise_mps, noise_from_neighbours(rows, mode.x, config.min_noise_mps, config.max_noise_mps));
   }
   std::vector<std::vector<VelocityMode>> parts(coarse.size());
   workers.for_each(coarse.size(), 1, [&](std::size_t k) {
-    parts[k] = split_mode(few, coarse[k], model, config, choice.noise_mps, workers);
+    parts[k] = split_mode(few, coarse[k], model, config, hypothesis.noise_mps, workers);
   });
   std::vector<VelocityMode> modes;
   for (const std::vector<VelocityMode>& of_one : parts) {
@@ -220,14 +222,14 @@ Choice choose_mode(const DopplerRows& rows, const EgoPrior& prior, const Doppler
   }
   workers.for_each(modes.size(), 1, [&](std::size_t k) {
     VelocityMode& mode = modes[k];
-    mode.votes =
-        votes(many, mode.x, kFineWidth * choice.noise_mps) * prior_factor(prior, model, mode.x, config.prior_weight);
+    mode.inlier_weight = inlier_weight(many, mode.x, kFineWidth * hypothesis.noise_mps) *
+                         prior_factor(prior, model, mode.x, config.prior_weight);
   });
-  remove_duplicates(few.rows, config.tukey_cutoff * choice.noise_mps, modes);
-  choice.x = modes.front().x;
-  choice.support = modes.front().votes;
-  choice.ambiguous = modes.size() > 1 && modes[1].votes > config.ambiguity_ratio * modes[0].votes;
-  return choice;
+  remove_duplicates(few.rows, config.tukey_cutoff * hypothesis.noise_mps, modes);
+  hypothesis.x = modes.front().x;
+  hypothesis.support = modes.front().inlier_weight;
+  hypothesis.ambiguous = modes.size() > 1 && modes[1].inlier_weight > config.ambiguity_ratio * modes[0].inlier_weight;
+  return hypothesis;
 }
 
 /// All points near the winner.
@@ -240,21 +242,21 @@ struct Fit {
   bool converged = false;
 };
 
-Fit fit_all(const DopplerRows& rows, const Choice& choice, const EgoPrior& prior,
+Fit fit_all(const DopplerRows& rows, const ModeHypothesis& hypothesis, const EgoPrior& prior,
             const ConsensusRegressionConfig& config, const Workers& workers) {
-  const bool as_expected = agrees(prior, choice.x);
+  const bool as_expected = agrees(prior, hypothesis.x);
   const DopplerModel without_velocity =
-      voting_model(prior.has_velocity && !as_expected ? surprised(prior) : prior, config);
+      consensus_model(prior.has_velocity && !as_expected ? inflated(prior) : prior, config);
   const DopplerModel model = as_expected ? fitting_model(prior, config) : without_velocity;
-  RobustScale scale{choice.noise_mps, config.tukey_cutoff * choice.noise_mps, config.surface_noise_mps};
+  RobustScale scale{hypothesis.noise_mps, config.tukey_cutoff * hypothesis.noise_mps, config.surface_noise_mps};
   Fit fit;
-  fit.x = choice.x;
-  while (!fit.converged && fit.iterations < kMostSteps) {
+  fit.x = hypothesis.x;
+  while (!fit.converged && fit.iterations < kMaxSteps) {
     const FitSums sums = sum_fit(rows, fit.x, scale, model.has_bias, workers);
     // Neighbours that err together, as where the Doppler has coarse steps, make the noise look small. The cutoff then
     // lies where residuals are still dense, and their pull falls as they grow: the scale must widen.
-    const bool too_narrow = sums.slopes < kLeastSlope * sums.weights && scale.noise_mps < config.max_noise_mps;
-    const FitStep step = solve_fit(sums, fit.x, model, kOpenDeviationMps);
+    const bool too_narrow = sums.slopes < kMinSlope * sums.weights && scale.noise_mps < config.max_noise_mps;
+    const FitStep step = solve_fit(sums, fit.x, model, kUnobservableSigma_mps);
     fit.x += step.step;
     ++fit.iterations;
     fit.converged = !too_narrow && step.step.head<3>().norm() < kStepToleranceMps;
@@ -267,7 +269,7 @@ Fit fit_all(const DopplerRows& rows, const Choice& choice, const EgoPrior& prior
   std::vector<Vector7d> gradients;
   fit.sums = sum_fit(rows, fit.x, scale, model.has_bias, workers, &gradients);
   // What the lines of sight leave open is open even where the prior fills the gap.
-  fit.open = solve_fit(fit.sums, fit.x, without_velocity, kOpenDeviationMps).open;
+  fit.open = solve_fit(fit.sums, fit.x, without_velocity, kUnobservableSigma_mps).open;
   fit.covariance = sandwich_covariance(rows, fit.sums, fit.open, model, gradients);
   return fit;
 }
@@ -279,8 +281,8 @@ double floor_variance(const DopplerRows& rows) {
   return kFloorMps * kFloorMps + unexplained * unexplained;
 }
 
-EgoVelocityStatus status_of(const Fit& fit, const Choice& choice) {
-  if (choice.ambiguous) {
+EgoVelocityStatus status_of(const Fit& fit, const ModeHypothesis& hypothesis) {
+  if (hypothesis.ambiguous) {
     return EgoVelocityStatus::kAmbiguous;
   }
   if (!fit.open.isZero(0.0)) {
@@ -299,7 +301,7 @@ EgoVelocity nothing_but_prior(std::size_t points, const EgoPrior& prior, const C
   if (prior.has_velocity) {
     result.velocity_sensor = prior.mean.head<3>();
   } else {
-    result.joint_covariance.topLeftCorner<3, 3>() = kUnknownMps * kUnknownMps * Eigen::Matrix3d::Identity();
+    result.joint_covariance.topLeftCorner<3, 3>() = kUnknown_mps * kUnknown_mps * Eigen::Matrix3d::Identity();
   }
   result.covariance = result.joint_covariance.topLeftCorner<3, 3>();
   result.acceleration_sensor = prior.mean.segment<3>(3);
@@ -319,20 +321,20 @@ bool is_plausible(const EgoVelocity& ego) {
 ConfigFields fields(ConsensusRegressionConfig& config) {
   return {
       {"estimate_bias", &config.estimate_bias, 0, 0, "", "estimate a constant error of the Doppler"},
-      {"cell_size_m", &config.cell_size_m, 0.01, 100.0, "m", "edge of the cubes that vote on what stands still"},
+      {"cell_size_m", &config.cell_size_m, 0.01, 100.0, "m",
+       "edge of the cubes over which the consensus on the static scene is weighted"},
       {"hypotheses", &config.hypotheses, 8, 100'000, "", "velocities tried, each from three points"},
-      {"vote_width_mps", &config.vote_width_mps, 0.01, 10.0, "m/s", "residuals below this agree with a velocity"},
-      {"tukey_cutoff", &config.tukey_cutoff, 2.0, 20.0, "",
-       "residuals beyond this many deviations of the noise have no weight"},
-      {"min_noise_mps", &config.min_noise_mps, 1e-4, 1.0, "m/s", "smallest deviation of static Doppler"},
-      {"max_noise_mps", &config.max_noise_mps, 1e-3, 10.0, "m/s", "largest deviation of static Doppler"},
+      {"inlier_threshold_mps", &config.inlier_threshold_mps, 0.01, 10.0, "m/s", "inlier threshold of a velocity hypothesis"},
+      {"tukey_cutoff", &config.tukey_cutoff, 2.0, 20.0, "", "Tukey cutoff in standard deviations of the noise"},
+      {"min_noise_mps", &config.min_noise_mps, 1e-4, 1.0, "m/s", "smallest standard deviation of static Doppler"},
+      {"max_noise_mps", &config.max_noise_mps, 1e-3, 10.0, "m/s", "largest standard deviation of static Doppler"},
       {"surface_noise_mps", &config.surface_noise_mps, 1e-4, 1.0, "m/s",
-       "deviation of what the Doppler of all points of one cell has in common"},
+       "standard deviation of the error that all Doppler values of one cell have in common"},
       {"prior_weight", &config.prior_weight, 0.0, 10.0, "",
-       "a velocity gains up to this share of its votes by agreeing with the prior"},
+       "a hypothesis gains up to this share of its support by agreeing with the prior"},
       {"ambiguity_ratio", &config.ambiguity_ratio, 0.0, 1.0, "",
-       "the scan is ambiguous when a second velocity has this share of the votes of the first"},
-      {"min_support", &config.min_support, 0.0, 1.0, "", "a velocity needs this share of all votes"},
+       "the scan is ambiguous when a second hypothesis has this share of the support of the first"},
+      {"min_support", &config.min_support, 0.0, 1.0, "", "smallest support of a velocity hypothesis"},
   };
 }
 
@@ -345,17 +347,17 @@ EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, co
                               const Workers& workers) {
   const EgoVelocity expected = nothing_but_prior(rows.size(), prior, config);
   EgoVelocity result = expected;
-  if (rows.size() < kLeastPoints) {
+  if (rows.size() < kMinPoints) {
     return result;
   }
   result.reference_time_s = rows.reference_time_s;
-  const Choice choice = choose_mode(rows, prior, voting_model(prior, config), config, workers);
-  if (choice.support < config.min_support) {
+  const ModeHypothesis hypothesis = choose_mode(rows, prior, consensus_model(prior, config), config, workers);
+  if (hypothesis.support < config.min_support) {
     result.status = EgoVelocityStatus::kAmbiguous;
     return result;
   }
-  const Fit fit = fit_all(rows, choice, prior, config, workers);
-  result.status = status_of(fit, choice);
+  const Fit fit = fit_all(rows, hypothesis, prior, config, workers);
+  result.status = status_of(fit, hypothesis);
   result.iterations = fit.iterations;
   result.unobservable = fit.open;
   result.velocity_sensor = fit.x.head<3>() + fit.open * (result.velocity_sensor - fit.x.head<3>());

@@ -13,16 +13,17 @@
 namespace dynamic_icp::ego_motion {
 
 struct ConsensusRegressionConfig {
-  bool estimate_bias = true;         ///< a constant Doppler error as a fourth unknown (ablation "no-bias")
-  double cell_size_m = 2.0;          ///< edge of the cubes that vote
-  int hypotheses = 256;              ///< velocities tried, each from three points
-  double vote_width_mps = 0.35;      ///< residuals below this agree with a hypothesis
-  double tukey_cutoff = 4.0;         ///< residuals beyond this many deviations of the noise have no weight
-  double min_noise_mps = 0.01;       ///< bounds of the deviation of the Doppler of one static point,
-  double max_noise_mps = 0.25;       ///< which is estimated from each scan
-  double surface_noise_mps = 0.015;  ///< deviation of what the Doppler of all points of one cell has in common
-  double prior_weight = 0.5;         ///< a velocity gains up to this share of its votes by agreeing with the prior
-  double ambiguity_ratio = 0.85;     ///< ambiguous: a second velocity has this share of the votes of the first
+  bool estimate_bias = true;           ///< a constant Doppler error as a fourth unknown (ablation "no-bias")
+  double cell_size_m = 2.0;            ///< edge of the cubes that vote
+  int hypotheses = 256;                ///< velocities tried, each from three points
+  double inlier_threshold_mps = 0.35;  ///< residuals below this agree with a hypothesis
+  double tukey_cutoff = 4.0;           ///< Tukey cutoff in standard deviations of the noise
+  double min_noise_mps = 0.01;         ///< bounds of the deviation of the Doppler of one static point,
+  double max_noise_mps = 0.25;         ///< which is estimated from each scan
+  double surface_noise_mps =
+      0.015;                  ///< standard deviation of the error that all Doppler values of one cell have in common
+  double prior_weight = 0.5;  ///< a hypothesis gains up to this share of its support by agreeing with the prior
+  double ambiguity_ratio = 0.85;  ///< ambiguous: a second velocity has this share of the votes of the first
   double min_support = 0.1;  ///< no velocity: the best one has a smaller share of all votes, weighed with the priors
 };
 

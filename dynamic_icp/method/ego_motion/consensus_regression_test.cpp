@@ -19,10 +19,10 @@ using Eigen::Vector3d;
 
 /// A scene from equations: a road between far walls, and boxes around the sensor that move with one velocity.
 struct Scene {
-  Vector3d v{8.0, 0.3, -0.2};     // of the sensor
-  Vector3d a = Vector3d::Zero();  // its change, m/s^2
-  Vector3d crowd{3.0, 0.0, 0.0};  // velocity of the boxes over ground
-  double crowd_share = 0.0;       // of the points
+  Vector3d v{8.0, 0.3, -0.2};                // of the sensor
+  Vector3d a = Vector3d::Zero();             // its change, m/s^2
+  Vector3d dynamic_outliers{3.0, 0.0, 0.0};  // velocity of the boxes over ground
+  double dynamic_share = 0.0;                // of the points
   double bias = 0.0;
   double noise = 0.05;
   double outlier_share = 0.005;
@@ -38,9 +38,9 @@ class Caster {
 
   Scan scan() {
     RawScan raw;
-    const auto crowd = static_cast<std::size_t>(scene_.crowd_share * static_cast<double>(scene_.points));
+    const auto dynamic_outliers = static_cast<std::size_t>(scene_.dynamic_share * static_cast<double>(scene_.points));
     for (std::size_t i = 0; i < scene_.points; ++i) {
-      add(raw, i < crowd ? box_point() : world_point(), i < crowd);
+      add(raw, i < dynamic_outliers ? box_point() : world_point(), i < dynamic_outliers);
     }
     return Scan::from_raw(raw);
   }
@@ -79,7 +79,8 @@ class Caster {
     const Vector3d u = point.normalized();
     const double azimuth = std::atan2(u.y(), u.x());
     const double time = scene_.sweep_s * 0.5 * (1.0 + azimuth / 1.6);
-    const Vector3d v = scene_.v + scene_.a * (time - 0.5 * scene_.sweep_s) - (moves ? scene_.crowd : Vector3d::Zero());
+    const Vector3d v =
+        scene_.v + scene_.a * (time - 0.5 * scene_.sweep_s) - (moves ? scene_.dynamic_outliers : Vector3d::Zero());
     const bool gross = uniform(0.0, 1.0) < scene_.outlier_share;
     raw.points.push_back(point);
     raw.doppler.push_back(gross ? uniform(-30.0, 30.0) : -u.dot(v) + scene_.bias + scene_.noise * normal_(random_));
@@ -101,11 +102,11 @@ EgoVelocity estimate(const Scan& scan, const EgoPrior& prior = {}, const Consens
   return estimate_velocity(scan, prior, config, Workers(threads));
 }
 
-EgoPrior prior_at(const Vector3d& velocity, double deviation = 0.5) {
+EgoPrior prior_at(const Vector3d& velocity, double sigma = 0.5) {
   EgoPrior prior;
   prior.has_velocity = true;
   prior.mean.head<3>() = velocity;
-  prior.covariance.topLeftCorner<3, 3>() = deviation * deviation * Eigen::Matrix3d::Identity();
+  prior.covariance.topLeftCorner<3, 3>() = sigma * sigma * Eigen::Matrix3d::Identity();
   return prior;
 }
 
@@ -167,16 +168,16 @@ TEST(ConsensusRegression, IsCloseToLeastSquaresInAStaticScene) {
 }
 
 TEST(ConsensusRegression, FindsTheStaticSceneBehindACrowdOnTheFirstScan) {
-  for (const Vector3d& crowd :
+  for (const Vector3d& dynamic_outliers :
        {Vector3d(3.0, 0.0, 0.0), Vector3d(-2.0, 0.5, 0.0), Vector3d(8.0, 0.3, -0.2), Vector3d(0.0, 1.5, 0.0)}) {
     for (unsigned seed = 0; seed < 10; ++seed) {
       Scene scene;
-      scene.crowd = crowd;
-      scene.crowd_share = 0.7;
+      scene.dynamic_outliers = dynamic_outliers;
+      scene.dynamic_share = 0.7;
       const Scan scan = cast(scene, 100 + seed);
       const EgoVelocity ego = estimate(scan);
-      EXPECT_EQ(ego.status, EgoVelocityStatus::kConverged) << crowd.transpose();
-      EXPECT_LT((ego.velocity_sensor - scene.v).norm(), 0.05) << crowd.transpose();
+      EXPECT_EQ(ego.status, EgoVelocityStatus::kConverged) << dynamic_outliers.transpose();
+      EXPECT_LT((ego.velocity_sensor - scene.v).norm(), 0.05) << dynamic_outliers.transpose();
       const EgoVelocity huber = estimate_velocity(scan, Vector3d::Zero(), DopplerRegressionConfig{}, Workers(1));
       EXPECT_GT((huber.velocity_sensor - scene.v).norm(), 0.3) << "the scene must be a hard one";
     }
@@ -185,8 +186,8 @@ TEST(ConsensusRegression, FindsTheStaticSceneBehindACrowdOnTheFirstScan) {
 
 TEST(ConsensusRegression, CrowdsThatCreepBendItLittle) {
   Scene scene;
-  scene.crowd = Vector3d(0.3, 0.0, 0.0);
-  scene.crowd_share = 0.7;
+  scene.dynamic_outliers = Vector3d(0.3, 0.0, 0.0);
+  scene.dynamic_share = 0.7;
   double squared = 0.0;
   for (unsigned seed = 0; seed < 10; ++seed) {
     squared += (estimate(cast(scene, 200 + seed)).velocity_sensor - scene.v).squaredNorm() / 10.0;
@@ -216,11 +217,11 @@ TEST(ConsensusRegression, TwoHalvesOfTheSceneAreAmbiguousUntilThePriorDecides) {
 
 TEST(ConsensusRegression, AWrongPriorDoesNotHold) {
   Scene scene;
-  scene.crowd_share = 0.5;
-  const EgoVelocity ego = estimate(cast(scene, 5), prior_at(scene.v - scene.crowd));
+  scene.dynamic_share = 0.5;
+  const EgoVelocity ego = estimate(cast(scene, 5), prior_at(scene.v - scene.dynamic_outliers));
   EXPECT_LT((ego.velocity_sensor - scene.v).norm(), 0.03);
   // And where one velocity alone explains the scan, the prior leaves no trace in it.
-  scene.crowd_share = 0.0;
+  scene.dynamic_share = 0.0;
   const Scan scan = cast(scene, 5);
   EXPECT_LT((estimate(scan, prior_at({-20.0, 3.0, 1.0})).velocity_sensor - estimate(scan).velocity_sensor).norm(),
             1e-3);
@@ -343,7 +344,7 @@ TEST(ConsensusRegression, CovarianceCoversTheTrueError) {
   Scene plain;
   plain.points = 3000;
   Scene crowded = plain;
-  crowded.crowd_share = 0.4;
+  crowded.dynamic_share = 0.4;
   Scene swept = plain;
   swept.sweep_s = 0.1;
   for (const Case& test : {Case{"static", plain}, Case{"crowd", crowded}, Case{"sweep", swept}}) {
@@ -368,7 +369,7 @@ TEST(ConsensusRegression, CovarianceCoversTheTrueError) {
 
 TEST(ConsensusRegression, TurnsWithTheSensor) {
   Scene scene;
-  scene.crowd_share = 0.5;
+  scene.dynamic_share = 0.5;
   const Scan scan = cast(scene, 12);
   const Eigen::Matrix3d R = Eigen::AngleAxisd(1.3, Vector3d(1, 2, -1).normalized()).toRotationMatrix();
   RawScan turned;
@@ -382,7 +383,7 @@ TEST(ConsensusRegression, TurnsWithTheSensor) {
 
 TEST(ConsensusRegression, SameBitsForAnyNumberOfThreads) {
   Scene scene;
-  scene.crowd_share = 0.6;
+  scene.dynamic_share = 0.6;
   scene.sweep_s = 0.1;
   scene.points = 20'000;
   const Scan scan = cast(scene, 13);

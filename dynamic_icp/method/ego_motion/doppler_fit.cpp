@@ -27,7 +27,7 @@ Matrix7d information_of(const FitSums& sums, const DopplerModel& model) {
 
 }  // namespace
 
-FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& model, double open_deviation_mps) {
+FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& model, double unobservable_sigma_mps) {
   FitStep result;
   const Matrix7d information = information_of(sums, model);
   const Vector7d gradient = sums.gradient + model.information * (x - model.prior);
@@ -41,7 +41,7 @@ FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& mo
   const Eigen::Vector3d rest = gradient.head<3>() - coupling.transpose() * others_solver.solve(gradient.tail<4>());
 
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen(marginal);
-  const double least = 1.0 / (open_deviation_mps * open_deviation_mps);
+  const double least = 1.0 / (unobservable_sigma_mps * unobservable_sigma_mps);
   for (int k = 0; k < 3; ++k) {
     const Eigen::Vector3d axis = eigen.eigenvectors().col(k);
     if (eigen.eigenvalues()[k] > least) {
@@ -86,11 +86,11 @@ Matrix7d sandwich_covariance(const DopplerRows& rows, const FitSums& sums, const
 }
 
 double noise_from_neighbours(const DopplerRows& rows, const Vector7d& x, double minimum_mps, double maximum_mps) {
-  constexpr std::size_t kMostCells = 2000;
+  constexpr std::size_t kMaxCells = 2000;
   constexpr std::size_t kEnough = 50;
   std::vector<double> sizes;
-  sizes.reserve(kMostCells);
-  const std::size_t stride = rows.cells() / kMostCells + 1;
+  sizes.reserve(kMaxCells);
+  const std::size_t stride = rows.cells() / kMaxCells + 1;
   for (std::size_t c = 0; c < rows.cells(); c += stride) {
     const std::size_t begin = rows.first[c];
     if (rows.first[c + 1] - begin >= 2) {
@@ -104,8 +104,7 @@ double noise_from_neighbours(const DopplerRows& rows, const Vector7d& x, double 
     }
   }
   // The median of a handful of residuals that were just fitted says nothing.
-  const double noise =
-      sizes.size() < kEnough / 2 ? maximum_mps : kDeviationPerMad * median(std::move(sizes));
+  const double noise = sizes.size() < kEnough / 2 ? maximum_mps : kSigmaPerMad * median(std::move(sizes));
   return std::clamp(noise, minimum_mps, maximum_mps);
 }
 

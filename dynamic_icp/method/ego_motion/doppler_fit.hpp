@@ -26,8 +26,8 @@ struct FitStep {
 };
 
 /// Solves for the step from x. A direction of v whose deviation, given everything else unknown too, would exceed
-/// `open_deviation_mps` is not observed: no step is made along it.
-FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& model, double open_deviation_mps);
+/// `unobservable_sigma_mps` is not observed: no step is made along it.
+FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& model, double unobservable_sigma_mps);
 
 /// Covariance of x by the sandwich formula, from gradients summed over the direction sectors: residuals within a
 /// sector may depend on each other in any way. Zero along the directions of v that `open` projects onto. See the source

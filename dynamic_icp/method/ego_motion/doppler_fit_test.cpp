@@ -110,9 +110,9 @@ TEST(DopplerFit, ACellThatCreepsLosesItsWeightThoughItsPointsDoNot) {
   raw.points.emplace_back(10.0, 20.5, 0.5);
   raw.doppler.push_back(0.13);  // alone the same residual is noise
   const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1));
-  const RobustScale judged{0.05, 0.2, 0.015};
+  const RobustScale evaluated{0.05, 0.2, 0.015};
   const RobustScale plain{0.05, 0.2, 0.0};
-  const FitSums with = sum_fit(rows, Vector7d::Zero(), judged, true, Workers(1));
+  const FitSums with = sum_fit(rows, Vector7d::Zero(), evaluated, true, Workers(1));
   EXPECT_LE(with.inliers, 1u);
   EXPECT_EQ(sum_fit(rows, Vector7d::Zero(), plain, true, Workers(1)).inliers, 41u);
 }

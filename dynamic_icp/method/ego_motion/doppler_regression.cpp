@@ -32,7 +32,7 @@ ConfigFields fields(DopplerRegressionConfig& config) {
   return {
       {"huber_delta_mps", &config.huber_delta_mps, 1e-3, 100.0, "m/s",
        "residuals beyond this Doppler error lose weight (Huber)"},
-      {"max_iterations", &config.max_iterations, 1, 1000, "", "most reweighting steps of the regression"},
+      {"max_iterations", &config.max_iterations, 1, 1000, "", "maximum number of reweighting steps of the regression"},
       {"step_tolerance_mps", &config.step_tolerance_mps, 1e-12, 1.0, "m/s",
        "the regression has converged when a step is shorter"},
   };

@@ -12,7 +12,7 @@ namespace dynamic_icp::ego_motion {
 namespace {
 
 constexpr std::size_t kEnoughCells = 300;
-constexpr int kMostHalvings = 6;
+constexpr int kMaxHalvings = 6;
 constexpr std::size_t kBlock = 4096;
 
 // Edge of a direction sector on the unit cube, three to six degrees. What errs together,
@@ -72,7 +72,7 @@ DopplerRows sort_into_cells(const Scan& scan, double cell_size_m, const Workers&
 void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, spatial::CellOrder& order,
                      DopplerRows& rows) {
   place_in_cells(scan, cell_size_m, workers, order);
-  for (int halving = 0; halving < kMostHalvings && order.cells() < std::min(kEnoughCells, scan.size() / 4); ++halving) {
+  for (int halving = 0; halving < kMaxHalvings && order.cells() < std::min(kEnoughCells, scan.size() / 4); ++halving) {
     cell_size_m *= 0.5;
     place_in_cells(scan, cell_size_m, workers, order);
   }
@@ -97,10 +97,10 @@ void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& worker
   number_sectors(rows);
 }
 
-Electorate elect(const DopplerRows& rows, std::size_t most) {
+ConsensusSet sample(const DopplerRows& rows, std::size_t most) {
   const std::size_t n = std::min(most, rows.cells());
-  Electorate electorate;
-  DopplerRows& chosen = electorate.rows;
+  ConsensusSet consensus_set;
+  DopplerRows& chosen = consensus_set.rows;
   chosen.reference_time_s = rows.reference_time_s;
   chosen.duration_s = rows.duration_s;
   chosen.takes_time = rows.takes_time;
@@ -123,13 +123,13 @@ Electorate elect(const DopplerRows& rows, std::size_t most) {
     occupied += outermost == n ? 1 : 0;
     outermost = outermost == n || rows.range[cell] > chosen.range[outermost] ? k : outermost;
   }
-  electorate.weights.assign(n, 0.5 / static_cast<double>(std::max<std::size_t>(n, 1)));
+  consensus_set.weights.assign(n, 0.5 / static_cast<double>(std::max<std::size_t>(n, 1)));
   for (const std::size_t k : farthest) {
     if (k < n) {
-      electorate.weights[k] += 0.5 / static_cast<double>(occupied);
+      consensus_set.weights[k] += 0.5 / static_cast<double>(occupied);
     }
   }
-  return electorate;
+  return consensus_set;
 }
 
 }  // namespace dynamic_icp::ego_motion

@@ -46,7 +46,7 @@ void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& worker
                      DopplerRows& rows);
 
 /// Rows that vote on what stands still, and the weight of each vote; the weights sum to one.
-struct Electorate {
+struct ConsensusSet {
   DopplerRows rows;  ///< one row per cell
   std::vector<double> weights;
 };
@@ -55,6 +55,6 @@ struct Electorate {
 /// the static scene fills more space than a crowd. The other half goes to the farthest cell of each direction sector:
 /// whatever moves has something static behind it, so what encloses the scene is static far more often than not,
 /// wherever and however the sensor is mounted.
-Electorate elect(const DopplerRows& rows, std::size_t most);
+ConsensusSet sample(const DopplerRows& rows, std::size_t most);
 
 }  // namespace dynamic_icp::ego_motion

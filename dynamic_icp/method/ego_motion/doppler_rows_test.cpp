@@ -32,7 +32,7 @@ TEST(DopplerRows, OfNothingAreNone) {
   EXPECT_EQ(rows.size(), 0u);
   EXPECT_EQ(rows.cells(), 0u);
   EXPECT_FALSE(rows.takes_time);
-  EXPECT_EQ(elect(rows, 100).rows.size(), 0u);
+  EXPECT_EQ(sample(rows, 100).rows.size(), 0u);
 }
 
 TEST(DopplerRows, CellsHoldWhatLiesInTheSameCube) {
@@ -85,13 +85,13 @@ TEST(DopplerRows, PointsAtAnyDistanceHaveACell) {
   EXPECT_EQ(rows.sectors, 3u);
 }
 
-TEST(Electorate, HasOneVotePerCellAndOneMorePerSectorForTheFarthest) {
+TEST(ConsensusSet, HasOneVotePerCellAndOneMorePerSectorForTheFarthest) {
   // A near wall of many points and a far one above it, in the same sectors only where they overlap in direction.
   const Scan scan = random_scan(4, 3000, 40.0);
   const DopplerRows rows = sort_into_cells(scan, 2.0, Workers(1));
-  const Electorate voters = elect(rows, rows.cells());
-  ASSERT_EQ(voters.rows.size(), rows.cells());
-  EXPECT_NEAR(std::accumulate(voters.weights.begin(), voters.weights.end(), 0.0), 1.0, 1e-12);
+  const ConsensusSet consensus_set = sample(rows, rows.cells());
+  ASSERT_EQ(consensus_set.rows.size(), rows.cells());
+  EXPECT_NEAR(std::accumulate(consensus_set.weights.begin(), consensus_set.weights.end(), 0.0), 1.0, 1e-12);
   const double cell_vote = 0.5 / static_cast<double>(rows.cells());
   const double sector_vote = 0.5 / static_cast<double>(rows.sectors);
   std::map<std::uint32_t, double> farthest;
@@ -100,17 +100,17 @@ TEST(Electorate, HasOneVotePerCellAndOneMorePerSectorForTheFarthest) {
   }
   for (std::size_t c = 0; c < rows.cells(); ++c) {
     const bool outermost = rows.range[c] == farthest[rows.sector[c]];
-    EXPECT_NEAR(voters.weights[c], cell_vote + (outermost ? sector_vote : 0.0), 1e-15);
+    EXPECT_NEAR(consensus_set.weights[c], cell_vote + (outermost ? sector_vote : 0.0), 1e-15);
   }
 }
 
-TEST(Electorate, IsNoLargerThanAllowedAndTakesCellsEvenly) {
+TEST(ConsensusSet, IsNoLargerThanAllowedAndTakesCellsEvenly) {
   const DopplerRows rows = sort_into_cells(random_scan(5, 5000, 40.0), 2.0, Workers(1));
   ASSERT_GT(rows.cells(), 1000u);
-  const Electorate voters = elect(rows, 500);
-  EXPECT_EQ(voters.rows.size(), 500u);
-  EXPECT_EQ(voters.rows.cells(), 500u);
-  EXPECT_NEAR(std::accumulate(voters.weights.begin(), voters.weights.end(), 0.0), 1.0, 1e-12);
+  const ConsensusSet consensus_set = sample(rows, 500);
+  EXPECT_EQ(consensus_set.rows.size(), 500u);
+  EXPECT_EQ(consensus_set.rows.cells(), 500u);
+  EXPECT_NEAR(std::accumulate(consensus_set.weights.begin(), consensus_set.weights.end(), 0.0), 1.0, 1e-12);
 }
 
 TEST(SortIntoCells, UsesItsMemoryAgain) {

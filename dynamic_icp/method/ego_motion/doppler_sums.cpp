@@ -14,17 +14,17 @@ namespace dynamic_icp::ego_motion {
 namespace {
 
 constexpr std::size_t kCellsPerBlock = 128;
-constexpr std::size_t kMostRows = 1024;  // at a time: what is computed of them stays near the processor
+constexpr std::size_t kMaxRows = 1024;  // at a time: what is computed of them stays near the processor
 constexpr std::size_t kLanes = simd::kSumLanes;
 
 /// What is computed of some rows that follow each other.
 struct RowWork {
-  std::array<double, kMostRows> e;            // m/s, residuals
-  std::array<double, kMostRows> w;            // weights
-  std::array<double, kMostRows> cell_weight;  // of the cell that the row belongs to
+  std::array<double, kMaxRows> e;            // m/s, residuals
+  std::array<double, kMaxRows> w;            // weights
+  std::array<double, kMaxRows> cell_weight;  // of the cell that the row belongs to
 };
 
-/// The rows [begin, end), at most kMostRows of them.
+/// The rows [begin, end), at most kMaxRows of them.
 struct RowRange {
   std::size_t begin;
   std::size_t end;
@@ -33,7 +33,8 @@ struct RowRange {
 };
 
 /// Residuals and weights of the points alone.
-void judge_rows(const DopplerRows& rows, const RowRange& range, const Vector7d& x, double cutoff_mps, RowWork& work) {
+void evaluate_rows(const DopplerRows& rows, const RowRange& range, const Vector7d& x, double cutoff_mps,
+                   RowWork& work) {
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     const double* const ux = rows.ux.data() + range.begin;
     const double* const uy = rows.uy.data() + range.begin;
@@ -63,7 +64,7 @@ void judge_rows(const DopplerRows& rows, const RowRange& range, const Vector7d& 
 
 /// The weight of a cell, or a part of one, by the mean of its residuals. That mean is known better than one point: what
 /// creeps below the noise of a point shows here.
-double judge_cell(const RowWork& work, std::size_t begin, std::size_t end, const RobustScale& scale) {
+double evaluate_cell(const RowWork& work, std::size_t begin, std::size_t end, const RobustScale& scale) {
   double weight = 0.0;
   double sum = 0.0;
   for (std::size_t i = begin; i < end; ++i) {
@@ -215,12 +216,12 @@ Vector7d gradient_of(const DopplerRows& rows, std::size_t offset, std::size_t be
 /// of the cell where that is too large. Moves `cell` to that of the next range.
 RowRange next_range(const DopplerRows& rows, std::size_t begin, std::size_t end_cell, std::size_t& cell) {
   RowRange range{begin, begin};
-  while (cell < end_cell && rows.first[cell + 1] - begin <= kMostRows) {
+  while (cell < end_cell && rows.first[cell + 1] - begin <= kMaxRows) {
     ++cell;
     range.end = rows.first[cell];
   }
   if (range.size() == 0) {
-    range.end = begin + kMostRows;
+    range.end = begin + kMaxRows;
   }
   return range;
 }
@@ -251,13 +252,13 @@ FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& s
     for (std::size_t row = rows.first[begin]; row < rows.first[end];) {
       std::size_t cell = next_cell;
       const RowRange range = next_range(rows, row, end, next_cell);
-      judge_rows(rows, range, x, scale.cutoff_mps, work);
+      evaluate_rows(rows, range, x, scale.cutoff_mps, work);
       for (; cell < end && rows.first[cell] < range.end; ++cell) {
         const std::size_t part_begin = std::max<std::size_t>(rows.first[cell], range.begin) - range.begin;
         const std::size_t part_end = std::min<std::size_t>(rows.first[cell + 1], range.end) - range.begin;
         std::fill(work.cell_weight.begin() + static_cast<std::ptrdiff_t>(part_begin),
                   work.cell_weight.begin() + static_cast<std::ptrdiff_t>(part_end),
-                  judge_cell(work, part_begin, part_end, scale));
+                  evaluate_cell(work, part_begin, part_end, scale));
         if (cell_gradients != nullptr) {
           (*cell_gradients)[cell] += factor * gradient_of(rows, range.begin, part_begin, part_end, work, has_bias);
         }

@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 /// Points in a few places, some of them with thousands of points, others with one: cells too large to be summed at
 /// once.
-DopplerRows crowded_rows(bool takes_time) {
+DopplerRows dynamic_rows(bool takes_time) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> uniform(0.0, 1.0);
   std::normal_distribution<double> normal;
@@ -45,8 +45,8 @@ FitSums expected_sums(const DopplerRows& rows, const Vector7d& x, const RobustSc
     }
     double cell_weight = 1.0;
     if (scale.surface_mps > 0.0 && weight > 1.0) {
-      const double deviation = std::hypot(scale.noise_mps / std::sqrt(weight), scale.surface_mps);
-      cell_weight = estimation::tukey_weight(sum / weight, scale.cutoff_mps / scale.noise_mps * deviation);
+      const double sigma = std::hypot(scale.noise_mps / std::sqrt(weight), scale.surface_mps);
+      cell_weight = estimation::tukey_weight(sum / weight, scale.cutoff_mps / scale.noise_mps * sigma);
     }
     for (std::size_t i = rows.first[cell]; i < rows.first[cell + 1]; ++i) {
       const double e = residual(rows, i, x);
@@ -91,7 +91,7 @@ void expect_sums(const DopplerRows& rows, const RobustScale& scale, bool has_bia
 
 TEST(SumFit, IsTheSumOverTheRows) {
   for (const bool takes_time : {false, true}) {
-    const DopplerRows rows = crowded_rows(takes_time);
+    const DopplerRows rows = dynamic_rows(takes_time);
     ASSERT_EQ(rows.takes_time, takes_time);
     ASSERT_GT(rows.size(), 1024 * rows.cells());
     for (const bool has_bias : {false, true}) {

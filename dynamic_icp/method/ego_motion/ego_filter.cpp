@@ -20,10 +20,12 @@ double log_density(double distance, double variance) {
 ConfigFields fields(DriftConfig& config) {
   return {
       {"start_acceleration_mps2", &config.start_acceleration_mps2, 1e-3, 1000.0, "m/s^2",
-       "deviation of the acceleration at the first scan"},
-      {"start_bias_mps", &config.start_bias_mps, 1e-6, 10.0, "m/s", "deviation of the Doppler bias at the first scan"},
-      {"jerk_mps3", &config.jerk_mps3, 1e-3, 1e4, "m/s^3", "deviation of the change of the acceleration"},
-      {"bias_drift_mps", &config.bias_drift_mps, 0.0, 1.0, "m/s", "deviation of the change of the bias in one second"},
+       "standard deviation of the acceleration at the first scan"},
+      {"start_bias_mps", &config.start_bias_mps, 1e-6, 10.0, "m/s",
+       "standard deviation of the Doppler bias at the first scan"},
+      {"jerk_mps3", &config.jerk_mps3, 1e-3, 1e4, "m/s^3", "standard deviation of the change of the acceleration"},
+      {"bias_drift_mps", &config.bias_drift_mps, 0.0, 1.0, "m/s",
+       "standard deviation of the change of the bias in one second"},
   };
 }
 
@@ -53,7 +55,7 @@ EgoPrior predict(const EgoVelocity& ego, double dt_s, const DriftConfig& config)
   return prior;
 }
 
-EgoVelocity weigh_calibration(const EgoVelocity& filtered, const DriftConfig& config) {
+EgoVelocity average_over_bias_models(const EgoVelocity& filtered, const DriftConfig& config) {
   const double variance = filtered.bias_variance;
   if (!(variance > 0.0)) {
     return filtered;

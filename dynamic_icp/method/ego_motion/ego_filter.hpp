@@ -33,6 +33,6 @@ EgoPrior predict(const EgoVelocity& ego, double dt_s, const DriftConfig& config)
 /// a sweep it keeps a bias that nobody has seen from spoiling the velocity.
 ///
 /// For use, not for the filter: what it is given is to be carried on.
-EgoVelocity weigh_calibration(const EgoVelocity& filtered, const DriftConfig& config);
+EgoVelocity average_over_bias_models(const EgoVelocity& filtered, const DriftConfig& config);
 
 }  // namespace dynamic_icp::ego_motion

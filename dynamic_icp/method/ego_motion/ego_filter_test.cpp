@@ -65,11 +65,11 @@ TEST(EgoFilter, KnowsNoVelocityWhereNoneWasStated) {
 }
 
 /// An estimate whose velocity goes with the bias, as in a narrow view.
-EgoVelocity narrow_view(double bias, double deviation) {
+EgoVelocity narrow_view(double bias, double sigma) {
   EgoVelocity ego;
   ego.velocity_sensor = {10.0 + bias, 0.0, 0.0};
   ego.bias_mps = bias;
-  ego.bias_variance = deviation * deviation;
+  ego.bias_variance = sigma * sigma;
   Vector7d direction = Vector7d::Zero();
   direction[0] = direction[6] = 1.0;
   ego.joint_covariance = ego.bias_variance * direction * direction.transpose() + 1e-6 * Matrix7d::Identity();
@@ -80,14 +80,14 @@ EgoVelocity narrow_view(double bias, double deviation) {
 
 TEST(WeighCalibration, PresumesNoBiasThatNobodySaw) {
   // As wide as before any scan: nothing was learned, each case is worth one half.
-  const EgoVelocity weighed = weigh_calibration(narrow_view(0.1, 0.2), {});
+  const EgoVelocity weighed = average_over_bias_models(narrow_view(0.1, 0.2), {});
   EXPECT_GT(weighed.velocity_sensor.x(), 10.03);
   EXPECT_LT(weighed.velocity_sensor.x(), 10.07);
   EXPECT_GT(std::sqrt(weighed.covariance(0, 0)), 0.1) << "both cases are still open";
 }
 
 TEST(WeighCalibration, BelievesAZeroThatWasSeen) {
-  const EgoVelocity weighed = weigh_calibration(narrow_view(0.01, 0.01), {});
+  const EgoVelocity weighed = average_over_bias_models(narrow_view(0.01, 0.01), {});
   EXPECT_LT(std::abs(weighed.bias_mps), 0.002);
   EXPECT_NEAR(weighed.velocity_sensor.x(), 10.0, 0.002);
   EXPECT_LT(weighed.covariance(0, 0), narrow_view(0.01, 0.01).covariance(0, 0));
@@ -95,12 +95,12 @@ TEST(WeighCalibration, BelievesAZeroThatWasSeen) {
 
 TEST(WeighCalibration, LeavesABiasThatWasSeenAlone) {
   const EgoVelocity seen = narrow_view(0.2, 0.01);
-  const EgoVelocity weighed = weigh_calibration(seen, {});
+  const EgoVelocity weighed = average_over_bias_models(seen, {});
   EXPECT_NEAR(weighed.bias_mps, 0.2, 1e-6);
   EXPECT_LT((weighed.covariance - seen.covariance).norm(), 1e-6);
   EgoVelocity none = seen;
   none.bias_variance = 0.0;
-  EXPECT_EQ(weigh_calibration(none, {}).velocity_sensor, none.velocity_sensor);
+  EXPECT_EQ(average_over_bias_models(none, {}).velocity_sensor, none.velocity_sensor);
 }
 
 TEST(WeighCalibration, IsRightOnAverage) {
@@ -118,7 +118,7 @@ TEST(WeighCalibration, IsRightOnAverage) {
     const double information = 1.0 / (kSeen * kSeen);
     const double posterior = (bias + kSeen * normal(random)) * information / (information + presumed);
     const EgoVelocity weighed =
-        weigh_calibration(narrow_view(posterior, 1.0 / std::sqrt(information + presumed)), config);
+        average_over_bias_models(narrow_view(posterior, 1.0 / std::sqrt(information + presumed)), config);
     squares += std::pow(weighed.velocity_sensor.x() - 10.0 - bias, 2);
     stated += weighed.covariance(0, 0);
   }

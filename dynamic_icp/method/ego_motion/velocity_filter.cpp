@@ -13,7 +13,7 @@ constexpr std::size_t kBlock = 4096;
 
 ConfigFields fields(VelocityFilterConfig& config) {
   return {
-      {"enabled", &config.enabled, 0, 0, "", "tell moving points from static ones; off: all count as static"},
+      {"enabled", &config.enabled, 0, 0, "", "classify points as moving or static; off: all count as static"},
       {"tau_0_mps", &config.tau_0_mps, 0.0, 100.0, "m/s",
        "a point moves when its Doppler residual exceeds tau_0 + kappa * distance"},
       {"kappa_per_s", &config.kappa_per_s, 0.0, 10.0, "(m/s)/m", "growth of that threshold with the distance"},

@@ -17,7 +17,7 @@ namespace dynamic_icp::ego_motion {
 namespace {
 
 constexpr std::size_t kLanes = 8;    // hypotheses that are counted together, one per lane
-constexpr double kLeastShare = 0.4;  // of the votes of the best; a mode of three noisy rows has lost some to the noise
+constexpr double kMinShare = 0.4;    // of the votes of the best; a mode of three noisy rows has lost some to the noise
 constexpr std::uint64_t kDraws = 5;  // rows looked at for the second and the third row of a sample
 
 // Without a pull towards the start a sample in a plane would have no solution; velocities of 100 m/s are free of it.
@@ -33,17 +33,17 @@ struct VoteRow {
   float per_width2;  // 1/width^2
 };
 
-std::vector<VoteRow> vote_rows(const Electorate& voters, const Vector7d& start, const ModeSearch& search) {
-  const DopplerRows& rows = voters.rows;
+std::vector<VoteRow> vote_rows(const ConsensusSet& consensus_set, const Vector7d& start, const ModeSearch& search) {
+  const DopplerRows& rows = consensus_set.rows;
   std::vector<VoteRow> result(rows.size());
   for (std::size_t i = 0; i < rows.size(); ++i) {
-    const double slack = search.acceleration_deviation * rows.dt[i];
+    const double slack = search.acceleration_sigma * rows.dt[i];
     const Eigen::Vector3f u = rows.u(i).cast<float>();
     result[i] = {u.x(),
                  u.y(),
                  u.z(),
                  static_cast<float>(residual(rows, i, start)),
-                 static_cast<float>(voters.weights[i]),
+                 static_cast<float>(consensus_set.weights[i]),
                  static_cast<float>(1.0 / (search.width_mps * search.width_mps + slack * slack))};
   }
   return result;
@@ -140,12 +140,12 @@ void vote(const std::vector<VoteRow>& rows, const Eigen::Vector3d* changes, std:
 
 }  // namespace
 
-double votes(const Electorate& voters, const Vector7d& x, double width_mps) {
+double inlier_weight(const ConsensusSet& consensus_set, const Vector7d& x, double width_mps) {
   const double per_width2 = 1.0 / (width_mps * width_mps);
   double sum = 0.0;
-  for (std::size_t i = 0; i < voters.rows.size(); ++i) {
-    const double e = residual(voters.rows, i, x);
-    sum += voters.weights[i] * std::max(0.0, 1.0 - e * e * per_width2);
+  for (std::size_t i = 0; i < consensus_set.rows.size(); ++i) {
+    const double e = residual(consensus_set.rows, i, x);
+    sum += consensus_set.weights[i] * std::max(0.0, 1.0 - e * e * per_width2);
   }
   return sum;
 }
@@ -166,11 +166,11 @@ double StateDistance::operator()(const Vector7d& a, const Vector7d& b) const {
   return std::sqrt(std::max(0.0, change.dot(gram_ * change)));
 }
 
-std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& start, const ModeSearch& search,
+std::vector<VelocityMode> find_modes(const ConsensusSet& consensus_set, const Vector7d& start, const ModeSearch& search,
                                      const Workers& workers) {
-  const DopplerRows& rows = voters.rows;
+  const DopplerRows& rows = consensus_set.rows;
   const Sampler sampler(rows, start, search);
-  const std::vector<VoteRow> votes_by_row = vote_rows(voters, start, search);
+  const std::vector<VoteRow> inlier_weight_by_row = vote_rows(consensus_set, start, search);
   const std::size_t n = sampler.possible() ? search.hypotheses + 1 : 1;
   std::vector<Eigen::Vector3d> changes(n, Eigen::Vector3d::Zero());
   std::vector<double> support(n);
@@ -179,7 +179,7 @@ std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& s
       changes[h] = sampler.change(h);
     }
     for (std::size_t h = begin; h < end; h += kLanes) {
-      vote(votes_by_row, &changes[h], std::min<std::size_t>(kLanes, end - h), &support[h]);
+      vote(inlier_weight_by_row, &changes[h], std::min<std::size_t>(kLanes, end - h), &support[h]);
     }
   });
   std::vector<std::size_t> order(n);
@@ -189,7 +189,7 @@ std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& s
   const StateDistance distance(rows);
   std::vector<VelocityMode> modes;
   for (const std::size_t h : order) {
-    if (support[h] < kLeastShare * support[order.front()]) {
+    if (support[h] < kMinShare * support[order.front()]) {
       break;
     }
     Vector7d x = start;
@@ -199,7 +199,7 @@ std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& s
     if (is_new) {
       modes.push_back({x, support[h]});
     }
-    if (modes.size() == search.most_modes) {
+    if (modes.size() == search.max_modes) {
       break;
     }
   }

@@ -16,27 +16,27 @@ namespace dynamic_icp::ego_motion {
 /// A velocity that many rows agree on.
 struct VelocityMode {
   Vector7d x = Vector7d::Zero();
-  double votes = 0.0;  ///< share of the votes, in [0, 1]
+  double inlier_weight = 0.0;  ///< share of the votes, in [0, 1]
 };
 
 /// How modes are looked for.
 struct ModeSearch {
   std::size_t hypotheses = 256;
-  std::size_t most_modes = 6;
-  double width_mps = 0.35;              ///< a row within this residual agrees, the more the smaller it is
-  double within_mps = 0.0;              ///< hypotheses come from rows with smaller residuals at the start; 0: all
-  double acceleration_deviation = 0.0;  ///< m/s^2: widens the vote of rows away from the reference time
+  std::size_t max_modes = 6;
+  double width_mps = 0.35;          ///< a row within this residual agrees, the more the smaller it is
+  double within_mps = 0.0;          ///< hypotheses come from rows with smaller residuals at the start; 0: all
+  double acceleration_sigma = 0.0;  ///< m/s^2: widens the vote of rows away from the reference time
   std::uint64_t seed = 0;
 };
 
 /// The modes of the votes near or far from `start`, best first: hypotheses are exact for three rows, drawn so that
 /// their lines of sight spread; they have a and b of `start`. `start` itself is one. Hypotheses that predict almost
 /// the same Doppler as a better one are left out. Always at least one mode; the same for any number of threads.
-std::vector<VelocityMode> find_modes(const Electorate& voters, const Vector7d& start, const ModeSearch& search,
+std::vector<VelocityMode> find_modes(const ConsensusSet& consensus_set, const Vector7d& start, const ModeSearch& search,
                                      const Workers& workers);
 
 /// Share of the votes for x: weighted mean of max(0, 1 - (e/width)^2).
-double votes(const Electorate& voters, const Vector7d& x, double width_mps);
+double inlier_weight(const ConsensusSet& consensus_set, const Vector7d& x, double width_mps);
 
 /// How different states look to the sensor, whatever its field of view.
 class StateDistance {

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// Points all around; the first `share` of them see the sensor move with `a`, the others with `b`.
-Electorate two_groups(double share, const Vector3d& a, const Vector3d& b, double noise_mps) {
+ConsensusSet two_groups(double share, const Vector3d& a, const Vector3d& b, double noise_mps) {
   std::mt19937 random(1);
   std::uniform_real_distribution<double> uniform(-1.0, 1.0);
   std::normal_distribution<double> normal;
@@ -23,7 +23,7 @@ Electorate two_groups(double share, const Vector3d& a, const Vector3d& b, double
     raw.points.push_back(point);
     raw.doppler.push_back(-point.normalized().dot(i < 1000.0 * share ? a : b) + noise_mps * normal(random));
   }
-  return elect(sort_into_cells(Scan::from_raw(raw), 0.5, Workers(1)), 1000);
+  return sample(sort_into_cells(Scan::from_raw(raw), 0.5, Workers(1)), 1000);
 }
 
 Vector7d state(const Vector3d& v) {
@@ -35,52 +35,53 @@ Vector7d state(const Vector3d& v) {
 TEST(VelocityModes, FindBothVelocitiesTheStrongerFirst) {
   const Vector3d a(8.0, 1.0, 0.0);
   const Vector3d b(-3.0, 0.0, 1.0);
-  const Electorate voters = two_groups(0.6, a, b, 0.02);
-  const std::vector<VelocityMode> modes = find_modes(voters, Vector7d::Zero(), {}, Workers(1));
+  const ConsensusSet consensus_set = two_groups(0.6, a, b, 0.02);
+  const std::vector<VelocityMode> modes = find_modes(consensus_set, Vector7d::Zero(), {}, Workers(1));
   ASSERT_GE(modes.size(), 2u);
   EXPECT_LT((modes[0].x.head<3>() - a).norm(), 0.2);
   EXPECT_LT((modes[1].x.head<3>() - b).norm(), 0.2);
-  EXPECT_GT(modes[0].votes, modes[1].votes);
+  EXPECT_GT(modes[0].inlier_weight, modes[1].inlier_weight);
 }
 
 TEST(VelocityModes, AreAtLeastTheStart) {
-  EXPECT_EQ(find_modes(Electorate{}, state({1, 2, 3}), {}, Workers(1)).size(), 1u);
-  EXPECT_EQ(find_modes(Electorate{}, state({1, 2, 3}), {}, Workers(1))[0].x, state({1, 2, 3}));
+  EXPECT_EQ(find_modes(ConsensusSet{}, state({1, 2, 3}), {}, Workers(1)).size(), 1u);
+  EXPECT_EQ(find_modes(ConsensusSet{}, state({1, 2, 3}), {}, Workers(1))[0].x, state({1, 2, 3}));
 }
 
 TEST(VelocityModes, DifferByMoreThanTheWidth) {
-  const Electorate voters = two_groups(0.5, {5, 0, 0}, {4, 0, 0}, 0.3);
+  const ConsensusSet consensus_set = two_groups(0.5, {5, 0, 0}, {4, 0, 0}, 0.3);
   const ModeSearch search;
-  const std::vector<VelocityMode> modes = find_modes(voters, Vector7d::Zero(), search, Workers(1));
+  const std::vector<VelocityMode> modes = find_modes(consensus_set, Vector7d::Zero(), search, Workers(1));
   ASSERT_GE(modes.size(), 2u);
   for (std::size_t i = 0; i < modes.size(); ++i) {
     for (std::size_t j = 0; j < i; ++j) {
-      EXPECT_GT(StateDistance(voters.rows)(modes[i].x, modes[j].x), search.width_mps);
+      EXPECT_GT(StateDistance(consensus_set.rows)(modes[i].x, modes[j].x), search.width_mps);
     }
   }
 }
 
 TEST(VelocityModes, AreTheSameForAnyNumberOfThreads) {
-  const Electorate voters = two_groups(0.4, {8, 1, 0}, {2, 0, 0}, 0.1);
-  const std::vector<VelocityMode> one = find_modes(voters, Vector7d::Zero(), {}, Workers(1));
-  const std::vector<VelocityMode> many = find_modes(voters, Vector7d::Zero(), {}, Workers(5));
+  const ConsensusSet consensus_set = two_groups(0.4, {8, 1, 0}, {2, 0, 0}, 0.1);
+  const std::vector<VelocityMode> one = find_modes(consensus_set, Vector7d::Zero(), {}, Workers(1));
+  const std::vector<VelocityMode> many = find_modes(consensus_set, Vector7d::Zero(), {}, Workers(5));
   ASSERT_EQ(one.size(), many.size());
   for (std::size_t k = 0; k < one.size(); ++k) {
     EXPECT_EQ(one[k].x, many[k].x);
-    EXPECT_EQ(one[k].votes, many[k].votes);
+    EXPECT_EQ(one[k].inlier_weight, many[k].inlier_weight);
   }
 }
 
 TEST(Votes, AreTheWeightOfTheRowsThatAgree) {
-  const Electorate voters = two_groups(1.0, {5, 0, 0}, {5, 0, 0}, 0.0);
-  EXPECT_NEAR(votes(voters, state({5, 0, 0}), 0.1), 1.0, 1e-9);
-  EXPECT_LT(votes(voters, state({-5, 0, 0}), 0.1), 0.02);
+  const ConsensusSet consensus_set = two_groups(1.0, {5, 0, 0}, {5, 0, 0}, 0.0);
+  EXPECT_NEAR(inlier_weight(consensus_set, state({5, 0, 0}), 0.1), 1.0, 1e-9);
+  EXPECT_LT(inlier_weight(consensus_set, state({-5, 0, 0}), 0.1), 0.02);
   // One row: 1 - (e/width)^2 with e = 0.05, width = 0.1.
   RawScan raw;
   raw.points.emplace_back(1.0, 0.0, 0.0);
   raw.doppler.push_back(-1.0);
-  EXPECT_NEAR(votes(elect(sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1)), 10), state({1.05, 7, 7}), 0.1), 0.75,
-              1e-9);
+  EXPECT_NEAR(
+      inlier_weight(sample(sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1)), 10), state({1.05, 7, 7}), 0.1), 0.75,
+      1e-9);
 }
 
 TEST(Distance, IsWhatTheSensorWouldSee) {

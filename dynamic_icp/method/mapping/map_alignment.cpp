@@ -22,7 +22,7 @@ namespace {
 constexpr double kNarrowing = 0.5;
 
 // Patches tell of themselves when there are so many.
-constexpr std::size_t kTellingPatches = 50;
+constexpr std::size_t kInformativePatches = 50;
 
 // The wide kernel is given up when it is narrower than any surface is rough.
 constexpr double kNarrow_m = 0.02;
@@ -56,7 +56,7 @@ class PriorTerms {
       }
     }
     // e_t = t - fixed - R turned; a rotation d moves R turned by d x R turned.
-    const Eigen::Vector3d turned = at.T_map_sensor.linear() * prior_.displacement_turned;
+    const Eigen::Vector3d turned = at.T_map_sensor.linear() * prior_.displacement_rotated;
     const Eigen::Vector3d e_t = at.T_map_sensor.translation() - prior_.displacement_fixed - turned;
     Eigen::Matrix<double, 3, 6> J;
     J << skew(turned), Eigen::Matrix3d::Identity();
@@ -91,8 +91,8 @@ void describe(MapAlignment& result, const PlaneFit& fit, const PlaneSums& sums, 
   result.rms_m = sums.weights > 0.0 ? std::sqrt(sums.squares / sums.weights) : 0.0;
   result.chi = sums.weights > 0.0 ? std::sqrt(sums.chi_squares / sums.weights) : 0.0;
   const std::vector<PatchMean> means = fit.patch_means();
-  if (means.size() >= kTellingPatches) {
-    result.model_deviation_m = unexplained_deviation(means);
+  if (means.size() >= kInformativePatches) {
+    result.model_sigma_m = unexplained_sigma(means);
   }
 }
 
@@ -113,12 +113,12 @@ MapAlignment align_to_map(const Scan& scan, const PlaneMap& map, const MotionPri
   MapAlignment result;
   result.points = scan.size();
   result.T_map_sensor.linear() = R_start;
-  result.T_map_sensor.translation() = prior.displacement_fixed + R_start * prior.displacement_turned;
+  result.T_map_sensor.translation() = prior.displacement_fixed + R_start * prior.displacement_rotated;
   result.sweep = prior.sweep;
 
   PlaneFit fit(scan, map, workers);
   const PriorTerms prior_terms(prior);
-  const PlaneNoise noise{config.min_deviation_m, config.model_deviation_m};
+  const PlaneNoise noise{config.min_sigma_m, config.model_sigma_m};
   const std::size_t coarse_stride = std::clamp<std::size_t>(scan.size() / kCoarsePoints, 1, kCoarsestStride);
   gate_m = std::min(config.max_gate_m, gate_m);
   PlaneSums sums;
@@ -155,7 +155,7 @@ Eigen::Matrix3d position_information_of_noise(const Scan& scan, const PlaneMap& 
                                               const MapAlignConfig& config, const Workers& workers) {
   PlaneFit fit(scan, map, workers);
   fit.associate(found.T_map_sensor, found.sweep, 1);
-  return fit.position_information_of_noise({config.min_deviation_m, config.model_deviation_m}, {config.kernel, 0.0});
+  return fit.position_information_of_noise({config.min_sigma_m, config.model_sigma_m}, {config.kernel, 0.0});
 }
 
 motion::RotationState rotation_state(const MapAlignment& found) {

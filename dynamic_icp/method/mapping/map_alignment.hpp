@@ -25,10 +25,10 @@ struct MotionPrior {
   motion::Matrix9d covariance =
       motion::Matrix9d::Identity();  ///< of [rotation (rad, map axes); omega (rad/s); alpha (rad/s^2)]
 
-  /// The position at the stamp from the Doppler velocities: t = displacement_fixed + R displacement_turned. The second
+  /// The position at the stamp from the Doppler velocities: t = displacement_fixed + R displacement_rotated. The second
   /// part comes from the velocity of this very scan, which turns with it.
   Eigen::Vector3d displacement_fixed = Eigen::Vector3d::Zero();          ///< m, map axes, from the map's origin
-  Eigen::Vector3d displacement_turned = Eigen::Vector3d::Zero();         ///< m, sensor axes at the stamp
+  Eigen::Vector3d displacement_rotated = Eigen::Vector3d::Zero();        ///< m, sensor axes at the stamp
   Eigen::Matrix3d translation_covariance = Eigen::Matrix3d::Identity();  ///< m^2, map axes
 };
 
@@ -49,14 +49,14 @@ struct MapAlignment {
   double chi = 0.0;           ///< the same over its predicted deviation: 1 where the noise model is right
   /// m, deviation of patches from planes: what the mean distances of the points on the patches scatter more than noise
   /// and the errors of the fits explain. Nothing when too few patches tell.
-  std::optional<double> model_deviation_m;
+  std::optional<double> model_sigma_m;
 };
 
 /// Aligns a scan of static points to a map. Minimises over rotation, position, omega and alpha
 ///   sum_i w_i rho(e_i) + |prior|^2,   e_i = n . (T_map_sensor T_stamp_tau(i) p_i - mean)
 /// by Gauss-Newton: point-to-plane distances at the time of each point, the displacement by the Doppler velocities of
 /// this and earlier scans with their covariance, and the motion expected from the scans before. They share the work by
-/// information alone. The points on one patch have its error c = height_variance + model_deviation^2 in common, so m
+/// information alone. The points on one patch have its error c = height_variance + model_sigma^2 in common, so m
 /// of them with a variance s^2 each weigh w_i = 1 / (s^2 + m c): together never more than 1 / c.
 ///
 /// The kernel begins as wide as the prior is uncertain and narrows with each step; meanwhile a part of the points does.

@@ -121,7 +121,7 @@ TEST(AlignToMap, TurnsTheDisplacementWithTheScan) {
   const Eigen::Isometry3d truth = pose({0.0, 0.0, 0.05}, {2.0, 0.0, 0.0});
   MotionPrior prior = prior_around(truth, {0.0, 0.0, 0.1}, Vector3d::Zero());
   prior.displacement_fixed.setZero();
-  prior.displacement_turned = truth.linear().transpose() * truth.translation();
+  prior.displacement_rotated = truth.linear().transpose() * truth.translation();
   const MapAlignment found = align_to_map(tunnel.scan(truth, {}, false), tunnel.map(), prior, {}, kOneThread);
   EXPECT_LT((found.T_map_sensor.translation() - truth.translation()).norm(), 1e-3);
 }
@@ -151,7 +151,7 @@ TEST(AlignToMap, StatesErrorsAsLargeAsTheyAre) {
   const Hall hall;
   const PlaneMap map = hall.map();
   MapAlignConfig exact;
-  exact.model_deviation_m = 0.0;  // these are planes
+  exact.model_sigma_m = 0.0;  // these are planes
   std::mt19937 random(5);
   std::normal_distribution<double> normal;
   const auto vector = [&](double scale) -> Vector3d {

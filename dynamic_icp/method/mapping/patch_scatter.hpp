@@ -15,6 +15,6 @@ struct PatchMean {
 /// The deviation (m) that all patches have beyond what explains them: the d for which the median of
 /// squared_mean / (explained + d^2) is that of a chi-squared variable with one degree of freedom. The median, because
 /// some patches hold moving things or two surfaces. Zero where everything is explained, or without patches.
-double unexplained_deviation(std::span<const PatchMean> patches);
+double unexplained_sigma(std::span<const PatchMean> patches);
 
 }  // namespace dynamic_icp::mapping

@@ -19,28 +19,28 @@ std::vector<PatchMean> patches(double deviation_m, double outlier_share) {
   for (int k = 0; k < 4000; ++k) {
     PatchMean patch;
     patch.explained = std::pow(0.0005 + 0.003 * uniform(random), 2);
-    const double deviation =
+    const double sigma =
         uniform(random) < outlier_share ? 0.05 : std::sqrt(patch.explained + deviation_m * deviation_m);
-    patch.squared_mean = std::pow(deviation * normal(random), 2);
+    patch.squared_mean = std::pow(sigma * normal(random), 2);
     result.push_back(patch);
   }
   return result;
 }
 
-TEST(UnexplainedDeviation, IsFoundUnderNoiseOfAllSizes) {
+TEST(UnexplainedSigma, IsFoundUnderNoiseOfAllSizes) {
   for (const double deviation_m : {0.002, 0.01, 0.1}) {
-    EXPECT_NEAR(unexplained_deviation(patches(deviation_m, 0.0)), deviation_m, 0.07 * deviation_m);
+    EXPECT_NEAR(unexplained_sigma(patches(deviation_m, 0.0)), deviation_m, 0.07 * deviation_m);
   }
 }
 
-TEST(UnexplainedDeviation, IsSmallWhereEverythingIsExplained) {
-  EXPECT_LT(unexplained_deviation(patches(0.0, 0.0)), 3e-4);
-  EXPECT_EQ(unexplained_deviation({}), 0.0);
-  EXPECT_EQ(unexplained_deviation(std::vector<PatchMean>(100)), 0.0) << "points without noise, exactly on their planes";
+TEST(UnexplainedSigma, IsSmallWhereEverythingIsExplained) {
+  EXPECT_LT(unexplained_sigma(patches(0.0, 0.0)), 3e-4);
+  EXPECT_EQ(unexplained_sigma({}), 0.0);
+  EXPECT_EQ(unexplained_sigma(std::vector<PatchMean>(100)), 0.0) << "points without noise, exactly on their planes";
 }
 
-TEST(UnexplainedDeviation, DoesNotFollowAFewStrangePatches) {
-  EXPECT_NEAR(unexplained_deviation(patches(0.004, 0.1)), 0.004, 0.001);
+TEST(UnexplainedSigma, DoesNotFollowAFewStrangePatches) {
+  EXPECT_NEAR(unexplained_sigma(patches(0.004, 0.1)), 0.004, 0.001);
 }
 
 }  // namespace

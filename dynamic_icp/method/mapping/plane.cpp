@@ -39,7 +39,7 @@ ConfigFields fields(PlaneRule& rule) {
       {"max_flatness", &rule.max_flatness, 0.0, 1.0, "",
        "largest smallest-over-middle eigenvalue of the scatter of a plane's points"},
       {"min_width", &rule.min_width, 0.0, 1.0, "",
-       "least spread of a plane's points in its narrower direction, over the edge of the cell"},
+       "smallest spread of a plane's points in its narrower direction, over the edge of the cell"},
   };
 }
 
@@ -54,8 +54,8 @@ std::optional<Plane> fit_plane(const Moments& moments, const Eigen::Vector3d& or
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
   eigen.computeDirect(scatter);
   const Eigen::Vector3d& values = eigen.eigenvalues();
-  const double least_width = rule.min_width * edge_m;
-  if (!(values[1] > least_width * least_width) || values[0] > rule.max_flatness * values[1]) {
+  const double min_width = rule.min_width * edge_m;
+  if (!(values[1] > min_width * min_width) || values[0] > rule.max_flatness * values[1]) {
     return std::nullopt;
   }
   Plane plane;

@@ -10,7 +10,7 @@ namespace {
 constexpr std::size_t kBlock = PlaneRows::kMost;
 
 // A patch tells of itself with so many points on it.
-constexpr std::uint32_t kTellingPoints = 5;
+constexpr std::uint32_t kInformativePoints = 5;
 
 }  // namespace
 
@@ -65,8 +65,8 @@ PlaneSums PlaneFit::linearise(const PlaneNoise& noise, const PlaneWeights& weigh
 
 /// The rows of the points [begin, end) of those that take part.
 void PlaneFit::fill(PlaneRows& rows, std::size_t begin, std::size_t end, const PlaneNoise& noise) const {
-  const double least_variance = noise.min_deviation_m * noise.min_deviation_m;
-  const double model_variance = noise.model_deviation_m * noise.model_deviation_m;
+  const double min_variance = noise.min_sigma_m * noise.min_sigma_m;
+  const double model_variance = noise.model_sigma_m * noise.model_sigma_m;
   rows.size = 0;
   for (std::size_t k = begin; k < end; ++k) {
     const std::size_t i = k * stride_;
@@ -84,7 +84,7 @@ void PlaneFit::fill(PlaneRows& rows, std::size_t begin, std::size_t end, const P
     }
     rows.tau[row] = scan_.has_times() ? scan_.times()[i] : 0.0;
     rows.e[row] = plane.distance(point);
-    rows.own[row] = std::max(plane.variance, least_variance);
+    rows.own[row] = std::max(plane.variance, min_variance);
     rows.common[row] = plane.height_variance(point) + model_variance;
     rows.members[row] = members_[met_[i]->id];
   }
@@ -126,7 +126,7 @@ std::vector<PatchMean> PlaneFit::patch_means() const {
   }
   std::vector<PatchMean> means;
   for (std::size_t id = 0; id < met.size(); ++id) {
-    if (met[id] != nullptr && members_[id] >= kTellingPoints) {
+    if (met[id] != nullptr && members_[id] >= kInformativePoints) {
       const double m = members_[id];
       const Eigen::Vector3d middle = T_map_sensor_ * Eigen::Vector3d(sums[id] / m);
       const double distance = met[id]->plane.distance(middle);

@@ -18,8 +18,8 @@ namespace dynamic_icp::mapping {
 
 /// How points on planes are believed.
 struct PlaneNoise {
-  double min_deviation_m = 0.005;    ///< least deviation of a point from its plane
-  double model_deviation_m = 0.003;  ///< of a patch from a plane: common to all points on it
+  double min_sigma_m = 0.005;    ///< smallest standard deviation of a point from its plane
+  double model_sigma_m = 0.003;  ///< of a patch from a plane: common to all points on it
 };
 
 /// One scan against one map: what the steps of an alignment share. Scan and map must outlive it.

@@ -22,7 +22,7 @@ constexpr double kFinalGate_m = 0.5;
 // After these the kernel of a candidate is narrow: enough to compare.
 constexpr int kCandidateSteps = 9;
 
-constexpr int kMostSteps = 6;
+constexpr int kMaxSteps = 6;
 constexpr std::size_t kFewPoints = 1500;
 
 Scan thinned(const Scan& scan) {
@@ -38,8 +38,8 @@ Scan thinned(const Scan& scan) {
 std::vector<Eigen::Matrix3d> starts_around(const MotionPrior& prior) {
   std::vector<Eigen::Matrix3d> starts = {prior.R_map_sensor};
   for (int axis = 0; axis < 3; ++axis) {
-    const double deviation = std::sqrt(prior.covariance(axis, axis));
-    const int steps = static_cast<int>(std::min<double>(kMostSteps, kReach * deviation / kStep_rad));
+    const double sigma = std::sqrt(prior.covariance(axis, axis));
+    const int steps = static_cast<int>(std::min<double>(kMaxSteps, kReach * sigma / kStep_rad));
     for (int k = -steps; k <= steps; ++k) {
       if (k != 0) {
         starts.emplace_back(exp_so3(k * kStep_rad * Eigen::Vector3d::Unit(axis)) * prior.R_map_sensor);

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kIntervals = 96;
 constexpr std::size_t kBlock = 2048;
-constexpr double kLeastInterval_s = 1e-12;  // what takes less is an instant
+constexpr double kMinInterval_s = 1e-12;  // what takes less is an instant
 
 }  // namespace
 
@@ -26,8 +26,8 @@ TimeSpan time_span(const Scan& scan) {
 
 Deskewer::Deskewer(const SweepMotion& sweep, const TimeSpan& span) : first_(span.first) {
   const double interval = (span.last - span.first) / static_cast<double>(kIntervals);
-  per_second_ = interval > kLeastInterval_s ? 1.0 / interval : 0.0;
-  knots_.resize(interval > kLeastInterval_s ? kIntervals + 1 : 1);
+  per_second_ = interval > kMinInterval_s ? 1.0 / interval : 0.0;
+  knots_.resize(interval > kMinInterval_s ? kIntervals + 1 : 1);
   for (std::size_t k = 0; k < knots_.size(); ++k) {
     const double tau = first_ + static_cast<double>(k) * interval;
     knots_[k] = {tau, sweep.pose(tau), sweep.omega + tau * sweep.alpha, sweep.velocity_at(tau)};

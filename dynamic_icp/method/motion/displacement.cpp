@@ -11,7 +11,7 @@ namespace {
 
 // Times that nearly coincide make weights that cancel and amplify every error. For equal steps they sum to 1.2 times
 // the interval.
-constexpr double kMostWeight = 10.0;
+constexpr double kMaxWeight = 10.0;
 
 double absolute_sum(const std::vector<double>& weights) {
   double sum = 0.0;
@@ -46,7 +46,7 @@ Displacement displacement_between(std::span<const VelocitySample> samples, doubl
     times_s.push_back(sample.time_s);
   }
   std::vector<double> weights = quadrature_weights(times_s, begin_s, end_s);
-  while (samples.size() > 1 && !(absolute_sum(weights) <= kMostWeight * (end_s - begin_s))) {
+  while (samples.size() > 1 && !(absolute_sum(weights) <= kMaxWeight * (end_s - begin_s))) {
     samples = samples.subspan(1);
     times_s.erase(times_s.begin());
     weights = quadrature_weights(times_s, begin_s, end_s);

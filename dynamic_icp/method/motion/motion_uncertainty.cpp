@@ -11,12 +11,12 @@ namespace dynamic_icp::motion {
 namespace {
 
 // Keeps information invertible where there is none: deviations of a kilometre and of a thousand radians.
-constexpr double kLeastInformation = 1e-6;
+constexpr double kMinInformation = 1e-6;
 
 Eigen::Matrix3d inverse(const Eigen::Matrix3d& matrix) { return matrix.ldlt().solve(Eigen::Matrix3d::Identity()); }
 
 Eigen::Matrix3d covariance_of(const Eigen::Matrix3d& information) {
-  return inverse(information + kLeastInformation * Eigen::Matrix3d::Identity());
+  return inverse(information + kMinInformation * Eigen::Matrix3d::Identity());
 }
 
 /// The covariance of [omega * length_m; rho], all in metres.
@@ -37,7 +37,7 @@ Matrix6d motion_covariance(const MotionEvidence& evidence, const Eigen::Matrix3d
                                      (evidence.source_rotation_covariance + evidence.target_rotation_covariance) *
                                      R_map_target;
   covariance.bottomRightCorner<3, 3>() = R_map_target.transpose() * displacement * R_map_target;
-  const Eigen::Matrix3d J = -skew(evidence.displacement_turned);
+  const Eigen::Matrix3d J = -skew(evidence.displacement_rotated);
   const Eigen::Matrix3d rotation = covariance.topLeftCorner<3, 3>();
   covariance.bottomRightCorner<3, 3>() += J * rotation * J.transpose();
   covariance.bottomLeftCorner<3, 3>() = J * rotation;
@@ -51,8 +51,8 @@ Eigen::Matrix3d position_information(const Matrix6d& information) {
          cross.transpose() * covariance_of(information.topLeftCorner<3, 3>()) * cross;
 }
 
-std::vector<estimation::DegenerateDirection> unknown_directions(const Matrix6d& covariance, double length_m,
-                                                                double deviation_m) {
+std::vector<estimation::DegenerateDirection> unobservable_directions(const Matrix6d& covariance, double length_m,
+                                                                     double deviation_m) {
   const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(in_metres(covariance, length_m));
   std::vector<estimation::DegenerateDirection> unknown;
   for (int k = 5; k >= 0 && eigen.eigenvalues()[k] > deviation_m * deviation_m; --k) {

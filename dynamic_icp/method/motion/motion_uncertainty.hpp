@@ -23,7 +23,7 @@ struct MotionEvidence {
   Eigen::Matrix3d source_position_information = Eigen::Matrix3d::Zero();  ///< 1/m^2, from the points of the scan
   Eigen::Matrix3d target_position_information = Eigen::Matrix3d::Zero();
   /// m, target axes: the part of the displacement by the velocity of the target scan, which turns with its rotation.
-  Eigen::Vector3d displacement_turned = Eigen::Vector3d::Zero();
+  Eigen::Vector3d displacement_rotated = Eigen::Vector3d::Zero();
 };
 
 /// Covariance of the left perturbation [omega (rad); rho (m)] of T_target_source, in target axes.
@@ -39,8 +39,8 @@ Eigen::Matrix3d position_information(const Matrix6d& information);
 
 /// The directions [omega * length_m; rho] (m) along which a motion is known worse than `deviation_m`, worst first; with
 /// their share of the information of the best known direction.
-std::vector<estimation::DegenerateDirection> unknown_directions(const Matrix6d& covariance, double length_m,
-                                                                double deviation_m);
+std::vector<estimation::DegenerateDirection> unobservable_directions(const Matrix6d& covariance, double length_m,
+                                                                     double deviation_m);
 
 /// Least over best known direction of a motion, as a ratio of their information.
 double information_ratio(const Matrix6d& covariance, double length_m);

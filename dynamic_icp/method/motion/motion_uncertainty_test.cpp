@@ -68,7 +68,7 @@ TEST(MotionCovariance, CarriesEveryErrorToFirstOrder) {
   // One part of the displacement was measured before and turns with the source, the other is that of the target's
   // velocity, in its axes. Derivatives by all errors are taken numerically.
   MotionEvidence evidence = usual_evidence();
-  evidence.displacement_turned = {0.7, -0.3, 0.2};
+  evidence.displacement_rotated = {0.7, -0.3, 0.2};
   const Matrix3d R_map_source = exp_so3({0.3, -0.2, 1.0});
   const Matrix3d R_map_target = exp_so3({0.3, -0.18, 1.06});
   const Vector3d turned_with_source(1.2, 2.0, -0.1);
@@ -78,7 +78,7 @@ TEST(MotionCovariance, CarriesEveryErrorToFirstOrder) {
     Eigen::Isometry3d T_map_target = Eigen::Isometry3d::Identity();
     T_map_target.linear() = exp_so3(error.segment<3>(3)) * R_map_target;
     T_map_target.translation() = exp_so3(error.head<3>()) * turned_with_source + error.tail<3>() +
-                                 T_map_target.linear() * evidence.displacement_turned;
+                                 T_map_target.linear() * evidence.displacement_rotated;
     return Eigen::Isometry3d(T_map_target.inverse() * T_map_source);
   };
   const Eigen::Isometry3d exact = motion(Eigen::Matrix<double, 9, 1>::Zero());
@@ -127,17 +127,17 @@ TEST(PositionInformation, IsTheInverseOfTheMarginalCovariance) {
 TEST(UnknownDirections, NameTheAxisOfATunnel) {
   Matrix6d covariance = 1e-8 * Matrix6d::Identity();
   covariance(3, 3) = 0.25;
-  const auto unknown = unknown_directions(covariance, 30.0, 0.1);
+  const auto unknown = unobservable_directions(covariance, 30.0, 0.1);
   ASSERT_EQ(unknown.size(), 1u);
   EXPECT_NEAR(std::abs(unknown[0].direction[3]), 1.0, 1e-9);
-  EXPECT_TRUE(unknown_directions(1e-8 * Matrix6d::Identity(), 30.0, 0.1).empty());
+  EXPECT_TRUE(unobservable_directions(1e-8 * Matrix6d::Identity(), 30.0, 0.1).empty());
 }
 
 TEST(UnknownDirections, WeighRotationsByTheirLever) {
   Matrix6d covariance = 1e-10 * Matrix6d::Identity();
   covariance(2, 2) = 0.01 * 0.01;  // 0.01 rad: 0.3 m at 30 m
-  EXPECT_EQ(unknown_directions(covariance, 30.0, 0.1).size(), 1u);
-  EXPECT_TRUE(unknown_directions(covariance, 5.0, 0.1).empty());
+  EXPECT_EQ(unobservable_directions(covariance, 30.0, 0.1).size(), 1u);
+  EXPECT_TRUE(unobservable_directions(covariance, 5.0, 0.1).empty());
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ namespace dynamic_icp::motion {
 namespace {
 
 // Keeps the covariance invertible where a direction is known almost exactly.
-constexpr double kLeastVariance = 1e-14;
+constexpr double kMinVariance = 1e-14;
 
 // The process noise follows the last scans with this weight for the newest, within bounds.
 constexpr double kProcessNoiseGain = 0.2;
@@ -38,7 +38,7 @@ double innovation(const RotationState& found, const RotationState& predicted) {
 
 RotationState first_rotation_state(const RotationFilterConfig& config) {
   RotationState state;
-  state.covariance.diagonal().setConstant(kLeastVariance);
+  state.covariance.diagonal().setConstant(kMinVariance);
   state.covariance.diagonal().segment<3>(3).setConstant(config.start_omega_rad_s * config.start_omega_rad_s);
   state.covariance.diagonal().tail<3>().setConstant(config.alpha_rad_s2 * config.alpha_rad_s2);
   return state;
@@ -62,7 +62,7 @@ RotationState predict(const RotationState& state, double dt_s, const RotationFil
   const double driving = variance_of_change(state.process_noise, dt_s, config);
   next.process_noise = state.process_noise;
   next.covariance = F * state.covariance * F.transpose() + driving * G * G.transpose();
-  next.covariance.diagonal().array() += kLeastVariance;
+  next.covariance.diagonal().array() += kMinVariance;
   return next;
 }
 

@@ -7,8 +7,8 @@ namespace dynamic_icp::motion {
 ConfigFields fields(RotationFilterConfig& config) {
   return {
       {"start_omega_rad_s", &config.start_omega_rad_s, 1e-3, 100.0, "rad/s",
-       "deviation of the rate of turn at the first scan"},
-      {"alpha_rad_s2", &config.alpha_rad_s2, 1e-3, 1000.0, "rad/s^2", "deviation of the angular acceleration"},
+       "standard deviation of the angular velocity at the first scan"},
+      {"alpha_rad_s2", &config.alpha_rad_s2, 1e-3, 1000.0, "rad/s^2", "standard deviation of the angular acceleration"},
       {"alpha_time_s", &config.alpha_time_s, 1e-2, 100.0, "s", "how long an angular acceleration lasts"},
   };
 }

@@ -19,7 +19,7 @@ bool uses_declared_times(const RawScan& raw, const SweepConfig& config) {
 
 ConfigFields fields(SweepConfig& config) {
   return {
-      {"undo", &config.undo, 0, 0, "", "undo the motion during a scan where the times of its points are known"},
+      {"deskew", &config.deskew, 0, 0, "", "deskew scans whose points have times"},
       {"declared_duration_s", &config.declared_duration_s, 0.0, 10.0, "s",
        "where points have no times: the scan takes so long, column by column at an even rate; 0: taken at its stamp"},
       {"declared_left_to_right", &config.declared_left_to_right, 0, 0, "",
@@ -72,17 +72,17 @@ SweepReport sweep_as_configured(const RawScan& raw, const SweepConfig& config) {
     report.times = SweepTimes::kDeclared;
     report.duration_s = config.declared_duration_s;
   }
-  report.undone = config.undo && report.duration_s.value_or(0.0) > 0.0;
+  report.deskewed = config.deskew && report.duration_s.value_or(0.0) > 0.0;
   return report;
 }
 
 std::optional<RawScan> retimed(const RawScan& raw, const SweepConfig& config) {
-  if (!config.undo && !raw.times.empty()) {
+  if (!config.deskew && !raw.times.empty()) {
     RawScan timeless = raw;
     timeless.times.clear();
     return timeless;
   }
-  if (config.undo && uses_declared_times(raw, config)) {
+  if (config.deskew && uses_declared_times(raw, config)) {
     RawScan timed = raw;
     timed.times = declared_times(raw.points, config);
     return timed;

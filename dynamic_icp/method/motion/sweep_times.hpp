@@ -15,7 +15,7 @@ namespace dynamic_icp::motion {
 
 /// What is done about the time a scan takes.
 struct SweepConfig {
-  bool undo = true;                     ///< off: every scan counts as taken at its stamp (ablation "no-deskew")
+  bool deskew = true;                     ///< off: every scan counts as taken at its stamp (ablation "no-deskew")
   double declared_duration_s = 0.0;     ///< where points have no times: the scan takes so long, column by column; 0: no
   bool declared_left_to_right = false;  ///< order of these columns; off: from right to left, azimuth growing
 };
@@ -34,7 +34,7 @@ enum class SweepTimes { kNone, kInData, kDeclared };
 struct SweepReport {
   SweepTimes times = SweepTimes::kNone;
   std::optional<double> duration_s;  ///< from the earliest point to the latest; empty without times
-  bool undone = false;               ///< whether the method takes the motion during the scan out of it
+  bool deskewed = false;             ///< whether the method takes the motion during the scan out of it
 };
 
 /// What the scan itself says; nothing is done about it yet. Times that cannot be those of the scan do not count.

@@ -67,9 +67,9 @@ TEST(SweepReport, TakesTheTimesInTheDataAsTheyAre) {
   const SweepReport report = sweep_as_configured(raw, {});
   EXPECT_EQ(report.times, SweepTimes::kInData);
   EXPECT_NEAR(report.duration_s.value(), 0.08, 1e-12);
-  EXPECT_TRUE(report.undone);
+  EXPECT_TRUE(report.deskewed);
   EXPECT_FALSE(retimed(raw, {}).has_value()) << "no copy without need";
-  EXPECT_FALSE(sweep_in_data(raw).undone) << "the data alone do nothing";
+  EXPECT_FALSE(sweep_in_data(raw).deskewed) << "the data alone do nothing";
 }
 
 TEST(SweepReport, DeclaredTimesCountOnlyWhereThereAreNone) {
@@ -86,11 +86,11 @@ TEST(SweepReport, DeclaredTimesCountOnlyWhereThereAreNone) {
 
 TEST(SweepReport, SwitchedOffDropsTheTimesAndSaysSo) {
   SweepConfig off;
-  off.undo = false;
+  off.deskew = false;
   const auto timeless = retimed(two_points({0.0, 0.05}), off);
   ASSERT_TRUE(timeless.has_value());
   EXPECT_TRUE(timeless->times.empty());
-  EXPECT_FALSE(sweep_as_configured(two_points({0.0, 0.05}), off).undone);
+  EXPECT_FALSE(sweep_as_configured(two_points({0.0, 0.05}), off).deskewed);
   EXPECT_FALSE(retimed(two_points({}), off).has_value());
 }
 
@@ -98,7 +98,7 @@ TEST(SweepReport, WithoutTimesThereIsNoSweep) {
   const SweepReport report = sweep_as_configured(two_points({}), {});
   EXPECT_EQ(report.times, SweepTimes::kNone);
   EXPECT_FALSE(report.duration_s.has_value());
-  EXPECT_FALSE(report.undone);
+  EXPECT_FALSE(report.deskewed);
   EXPECT_FALSE(sweep_in_data(two_points({std::nan(""), std::nan("")})).duration_s.has_value());
 }
 

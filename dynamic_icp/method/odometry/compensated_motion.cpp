@@ -11,7 +11,7 @@ namespace dynamic_icp::odometry {
 namespace {
 
 constexpr double kUnknown_mps = 30.0;
-constexpr double kStill_mps = 0.5;
+constexpr double kStationary_mps = 0.5;
 
 /// A velocity that no Doppler shows. Should a scan with the sensor's motion in its Doppler follow, its filter begins
 /// from this one.
@@ -27,16 +27,16 @@ ego_motion::EgoVelocity not_from_doppler(const Eigen::Vector3d& velocity, const 
 
 }  // namespace
 
-std::string compensated_sentence() {
+std::string compensated_doppler_note() {
   return "the Doppler is compensated: it shows what moves, but not the velocity of the sensor, which is that of the "
          "alignment";
 }
 
-ego_motion::EgoVelocity at_rest(const Scan& scan) {
+ego_motion::EgoVelocity static_frame(const Scan& scan) {
   ego_motion::EgoVelocity ego;
   double squares = 0.0;
   for (const double doppler : scan.doppler()) {
-    if (std::abs(doppler) < kStill_mps) {
+    if (std::abs(doppler) < kStationary_mps) {
       squares += doppler * doppler;
       ++ego.inliers;
     }
@@ -53,8 +53,8 @@ ego_motion::EgoVelocity unknown_velocity() {
   return ego;
 }
 
-ego_motion::EgoVelocity goes_on(const ego_motion::EgoVelocity& velocity, double dt_s) {
-  const double change = kBlindAcceleration_mps2 * dt_s;
+ego_motion::EgoVelocity propagate(const ego_motion::EgoVelocity& velocity, double dt_s) {
+  const double change = kUnmodelledAcceleration_mps2 * dt_s;
   return not_from_doppler(velocity.velocity_sensor,
                           velocity.covariance + change * change * Eigen::Matrix3d::Identity());
 }

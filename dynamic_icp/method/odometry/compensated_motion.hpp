@@ -14,20 +14,20 @@
 namespace dynamic_icp::odometry {
 
 /// Where no scan tells, a vehicle changes its velocity by no more than this.
-inline constexpr double kBlindAcceleration_mps2 = 3.0;
+inline constexpr double kUnmodelledAcceleration_mps2 = 3.0;
 
 /// For assumptions().
-std::string compensated_sentence();
+std::string compensated_doppler_note();
 
 /// The frame in which the static scene of such a scan stands still: no velocity, with the scatter of the points that do
 /// not move by half a metre per second.
-ego_motion::EgoVelocity at_rest(const Scan& scan);
+ego_motion::EgoVelocity static_frame(const Scan& scan);
 
 /// Before the first motion: zero, give or take what any vehicle drives (30 m/s).
 ego_motion::EgoVelocity unknown_velocity();
 
 /// `dt_s` later: the same, with what an unknown acceleration adds.
-ego_motion::EgoVelocity goes_on(const ego_motion::EgoVelocity& velocity, double dt_s);
+ego_motion::EgoVelocity propagate(const ego_motion::EgoVelocity& velocity, double dt_s);
 
 /// The even velocity of a motion in `dt_s`, sensor axes; `position_covariance_map` (m^2) is of its end, in map axes.
 ego_motion::EgoVelocity velocity_of(const Eigen::Isometry3d& T_source_target, double dt_s,

@@ -43,12 +43,12 @@ TEST(CompensatedMotion, AVelocityIsThatOfTheMotion) {
       velocity_of(T, 0.1, Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity());
   EXPECT_LT((found.velocity_sensor - velocity).norm(), 1e-9);
   EXPECT_NEAR(found.covariance(0, 0), 1e-2, 1e-12) << "0.01 m in 0.1 s are 0.1 m/s";
-  EXPECT_NEAR(goes_on(found, 0.1).covariance(1, 1), 1e-2 + 0.09, 1e-12) << "3 m/s^2 for 0.1 s are 0.3 m/s";
+  EXPECT_NEAR(propagate(found, 0.1).covariance(1, 1), 1e-2 + 0.09, 1e-12) << "3 m/s^2 for 0.1 s are 0.3 m/s";
 }
 
 TEST(CompensatedMotion, TheMapOdometryFollowsALivelyDriveAndItsObjects) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
-    const Drive drive{street_with_cars(), lively(10.0), sensor};
+    const Drive drive{street_with_cars(), agile(10.0), sensor};
     MapOdometry odometry(with_ablation(), 2);
     const std::vector<Frame> frames = run(drive, odometry, 16);
     const MotionError error = rms_error(drive, frames, 3);
@@ -74,7 +74,7 @@ TEST(CompensatedMotion, ATunnelIsHonestAboutWhatItDoesNotKnow) {
 }
 
 TEST(CompensatedMotion, ThePaperFollowsADrive) {
-  const Drive drive{street_with_cars(), lively(10.0), {}};
+  const Drive drive{street_with_cars(), agile(10.0), {}};
   DynamicIcp odometry(PaperConfig{}, 2);
   const std::vector<Frame> frames = run(drive, odometry, 12);
   const MotionError error = rms_error(drive, frames, 2);
@@ -86,9 +86,9 @@ TEST(CompensatedMotion, ThePaperFollowsADrive) {
 
 TEST(CompensatedMotion, DopplerIcpIsLeftWithItsGeometry) {
   const Drive drive{street(), circle(1.0, 0.0), {}};
-  Surroundings surroundings;
-  surroundings.doppler_kind = DopplerKind::kCompensated;
-  ScanToScanIcp odometry(DopplerIcpConfig{}, surroundings, 1);
+  SensorContext context;
+  context.doppler_kind = DopplerKind::kCompensated;
+  ScanToScanIcp odometry(DopplerIcpConfig{}, context, 1);
   EXPECT_EQ(run(drive, odometry, 2).back().alignment.doppler.count, 0u);
   ASSERT_EQ(odometry.assumptions().size(), 2u);
   EXPECT_NE(odometry.assumptions()[1].find("compensated"), std::string::npos);
@@ -96,10 +96,10 @@ TEST(CompensatedMotion, DopplerIcpIsLeftWithItsGeometry) {
 
 TEST(CompensatedMotion, IsSaid) {
   for (const Config& config : {Config(PaperConfig{}), Config(MapOdometryConfig{})}) {
-    Surroundings surroundings;
-    EXPECT_TRUE(make_odometry(config, surroundings, 1)->assumptions().empty());
-    surroundings.doppler_kind = DopplerKind::kCompensated;
-    EXPECT_EQ(make_odometry(config, surroundings, 1)->assumptions().size(), 1u);
+    SensorContext context;
+    EXPECT_TRUE(make_odometry(config, context, 1)->assumptions().empty());
+    context.doppler_kind = DopplerKind::kCompensated;
+    EXPECT_EQ(make_odometry(config, context, 1)->assumptions().size(), 1u);
   }
 }
 

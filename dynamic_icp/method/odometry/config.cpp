@@ -14,7 +14,7 @@ namespace dynamic_icp::odometry {
 namespace {
 
 // The voxel grid tells 2^20 cells apart in each direction.
-constexpr double kMostVoxels = 1 << 20;
+constexpr double kMaxVoxels = 1 << 20;
 
 [[noreturn]] void throw_unknown(const char* what, std::string_view name, const std::vector<std::string_view>& known) {
   throw UsageError(fmt::format("unknown {} '{}'; known are: {}", what, name, fmt::join(known, ", ")));
@@ -37,11 +37,11 @@ void check_together(const PreprocessConfig& config) {
   const double voxel = config.voxel.voxel_size_m;
   const double max_range = config.range.max_range_m;
   check_order("preprocess.range.min_range_m", config.range.min_range_m, "preprocess.range.max_range_m", max_range);
-  if (voxel > 0.0 && max_range / voxel >= kMostVoxels - 1) {
+  if (voxel > 0.0 && max_range / voxel >= kMaxVoxels - 1) {
     throw UsageError(
         fmt::format("configuration key 'preprocess.voxel.voxel_size_m' is {}, expected 0 or at least "
                     "{:.4g} m with points up to {} m",
-                    voxel, max_range / (kMostVoxels - 2), max_range));
+                    voxel, max_range / (kMaxVoxels - 2), max_range));
   }
 }
 
@@ -88,11 +88,12 @@ ConfigFields fields(MapOdometryConfig& config) {
   ConfigFields all;
   append_preprocess(all, config.preprocess);
   append_fields(all, "ego_motion.filter", fields(ego_motion.filter));
-  append_fields(all, "ego_motion",
-                {{"use_consensus", &ego_motion.use_consensus, 0, 0, "",
-                  "find the static scene by consensus; off: Huber regression, as from scan to scan"},
-                 {"static_deviations", &ego_motion.static_deviations, 0.0, 100.0, "",
-                  "with a local map a point moves only beyond so many deviations of the static Doppler"}});
+  append_fields(
+      all, "ego_motion",
+      {{"use_consensus", &ego_motion.use_consensus, 0, 0, "",
+        "find the static scene by consensus; off: Huber regression, as from scan to scan"},
+       {"static_sigmas", &ego_motion.static_sigmas, 0.0, 100.0, "",
+        "with a local map a point is moving only beyond this many standard deviations of the static Doppler"}});
   if (!ego_motion.use_consensus) {
     append_fields(all, "ego_motion.regression", fields(ego_motion.regression));
   }
@@ -101,20 +102,21 @@ ConfigFields fields(MapOdometryConfig& config) {
   append_fields(all, "sweep", fields(config.sweep));
   append_fields(all, "mapping", fields(config.mapping));
   append_fields(all, "registration.map", fields(config.map_align));
-  append_fields(all, "turn", fields(config.turn));
+  append_fields(all, "rotation", fields(config.rotation));
   append_fields(all, "dynamics", {{"predict", &config.track_objects, 0, 0, "", kPredict}});
   append_fields(all, "tracking", fields(config.tracking));
   append_fields(
       all, "odometry",
       {{"use_displacement", &config.use_displacement, 0, 0, "",
-        "with a local map: the way between scans by the Doppler velocities is a term of the alignment"},
-       {"displacement_deviation_mps", &config.displacement_deviation_mps, 0.0, 10.0, "m/s",
-        "what the way between scans may be off besides the errors of the velocities, over the time between them"},
-       {"search_start", &config.search_start, 0, 0, "", "with a local map: try several turns for the first two scans"},
+        "with a local map: the translation integrated from Doppler velocities is a term of the alignment"},
+       {"displacement_sigma_mps", &config.displacement_sigma_mps, 0.0, 10.0, "m/s",
+        "standard deviation of that translation over the time between scans, beyond the errors of the velocities"},
+       {"search_start", &config.search_start, 0, 0, "",
+        "with a local map: try several rotations for the first two scans"},
        {"lost_match", &config.lost_match, 0.0, 1.0, "",
         "with a local map: lost when less than this share of the usual number of points fits the map"},
-       {"unknown_deviation_m", &config.unknown_deviation_m, 1e-6, 1e3, "m",
-        "with a local map: motions known worse than this are reported as degenerate"}});
+       {"unobservable_sigma_m", &config.unobservable_sigma_m, 1e-6, 1e3, "m",
+        "with a local map: directions with a larger standard deviation are reported as degenerate"}});
   append_stream(all, config.stream);
   return all;
 }
@@ -154,19 +156,20 @@ ConfigFields fields(KissIcpConfig& config) {
   append_fields(
       all, "kiss_icp",
       {{"deskew", &config.deskew, 0, 0, "",
-        "move the points of a sweep to its middle by the last motion, where the scan has times"},
+        "deskew to the middle of the scan by the last motion, where the points have times"},
        {"min_range_m", &config.min_range_m, 0.0, 1000.0, "m", "points nearer to the sensor are left out"},
        {"max_range_m", &config.max_range_m, 1.0, 10000.0, "m",
         "points farther from the sensor are left out, in the scan and in the map"},
        // With half of this edge the farthest point is still one of the 2^20 cells that the voxel grid tells apart.
        {"voxel_size_m", &config.voxel_size_m, 0.05, 100.0, "m",
         "edge of the voxels of the map; half of it thins the points of the map, 1.5 times those to be registered"},
-       {"max_points_per_voxel", &config.max_points_per_voxel, 1, 1000, "", "most points of a voxel of the map"},
+       {"max_points_per_voxel", &config.max_points_per_voxel, 1, 1000, "",
+        "maximum number of points in a voxel of the map"},
        {"initial_threshold_m", &config.initial_threshold_m, 1e-3, 1e3, "m",
         "expected error of the predicted pose before it is known (sigma)"},
        {"min_motion_m", &config.min_motion_m, 0.0, 1e3, "m",
         "smaller errors of the prediction do not count (delta_min)"},
-       {"max_iterations", &config.max_iterations, 1, 10000, "", "most Gauss-Newton steps"},
+       {"max_iterations", &config.max_iterations, 1, 10000, "", "maximum number of Gauss-Newton steps"},
        {"min_step", &config.min_step, 1e-12, 1.0, "",
         "the registration has converged when the step, rad and m together, is shorter"}});
   append_fields(all, "odometry", {{"min_points", &config.min_points, 6, 1000000, "", kMinPoints}});
@@ -235,6 +238,26 @@ std::vector<std::string_view> method_names() {
   return names;
 }
 
+std::span<const std::pair<std::string_view, std::string_view>> renamed_keys() {
+  static constexpr std::pair<std::string_view, std::string_view> kKeys[] = {
+      {"ego_motion.static_deviations", "ego_motion.static_sigmas"},
+      {"ego_motion.consensus.vote_width_mps", "ego_motion.consensus.inlier_threshold_mps"},
+      {"dynamics.velocity.max_deviation_mps", "dynamics.velocity.max_sigma_mps"},
+      {"registration.map.min_deviation_m", "registration.map.min_sigma_m"},
+      {"registration.map.model_deviation_m", "registration.map.model_sigma_m"},
+      {"turn.start_omega_rad_s", "rotation.start_omega_rad_s"},
+      {"turn.alpha_rad_s2", "rotation.alpha_rad_s2"},
+      {"turn.alpha_time_s", "rotation.alpha_time_s"},
+      {"tracking.confirm_deviation_mps", "tracking.confirm_sigma_mps"},
+      {"tracking.least_speed_mps", "tracking.min_speed_mps"},
+      {"tracking.tangential_deviation_mps", "tracking.tangential_sigma_mps"},
+      {"odometry.displacement_deviation_mps", "odometry.displacement_sigma_mps"},
+      {"odometry.unknown_deviation_m", "odometry.unobservable_sigma_m"},
+      {"sweep.undo", "sweep.deskew"},
+  };
+  return kKeys;
+}
+
 std::vector<std::string_view> preset_names() {
   std::vector<std::string_view> names;
   for (const Pipeline& pipeline : pipelines()) {
@@ -280,7 +303,7 @@ constexpr Part<MapOdometryConfig> kMapOdometryParts[] = {
     {"no-dr", [](MapOdometryConfig& config) { config.use_displacement = false; }},
     {"no-consensus", [](MapOdometryConfig& config) { config.ego_motion.use_consensus = false; }},
     {"no-bias", [](MapOdometryConfig& config) { config.ego_motion.consensus.estimate_bias = false; }},
-    {"no-deskew", [](MapOdometryConfig& config) { config.sweep.undo = false; }},
+    {"no-deskew", [](MapOdometryConfig& config) { config.sweep.deskew = false; }},
     {"no-map", [](MapOdometryConfig& config) { config.mapping.memory_scans = 0.0; }},
     {"no-search", [](MapOdometryConfig& config) { config.search_start = false; }}};
 

@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <span>
 #include <string_view>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -71,7 +73,7 @@ struct EgoMotionConfig {
   ego_motion::DopplerRegressionConfig regression;  ///< read, and among the fields, only without consensus
   ego_motion::ConsensusRegressionConfig consensus;
   ego_motion::DriftConfig drift;
-  double static_deviations = 4.0;  ///< a point moves only beyond so many deviations of the static Doppler
+  double static_sigmas = 4.0;  ///< a point moves only beyond so many deviations of the static Doppler
 };
 
 /// Dynamic-ICP beyond the paper, with a local map: preset `default`.
@@ -81,14 +83,14 @@ struct MapOdometryConfig {
   motion::SweepConfig sweep;
   mapping::PlaneMapConfig mapping;
   mapping::MapAlignConfig map_align;
-  motion::RotationFilterConfig turn;
+  motion::RotationFilterConfig rotation;
   bool track_objects = true;  ///< off: moving points are left out (ablation "no-dpp")
   tracking::TrackerConfig tracking;
-  bool use_displacement = true;               ///< the way between scans from the Doppler, as a term of the alignment
-  double displacement_deviation_mps = 0.003;  ///< error of the integrated velocity over the time between two scans
-  bool search_start = true;                   ///< try several turns for the first pair of scans
-  double lost_match = 0.5;                    ///< lost when less than this share of the usual number of points fits
-  double unknown_deviation_m = 0.1;           ///< directions known worse than this are degenerate
+  bool use_displacement = true;           ///< the way between scans from the Doppler, as a term of the alignment
+  double displacement_sigma_mps = 0.003;  ///< error of the integrated velocity over the time between two scans
+  bool search_start = true;               ///< try several turns for the first pair of scans
+  double lost_match = 0.5;                ///< lost when less than this share of the usual number of points fits
+  double unobservable_sigma_m = 0.1;      ///< directions known worse than this are degenerate
   StreamConfig stream;
 };
 
@@ -158,6 +160,9 @@ const std::vector<Pipeline>& pipelines();
 
 /// dynamic-icp, doppler-icp, point-to-point, point-to-plane, gicp, kiss-icp.
 std::vector<std::string_view> method_names();
+
+/// Names that keys had up to version 0.1, and those they have now. Programs may read the former for one release more.
+std::span<const std::pair<std::string_view, std::string_view>> renamed_keys();
 
 std::vector<std::string_view> preset_names();
 

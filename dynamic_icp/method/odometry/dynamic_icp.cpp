@@ -27,7 +27,7 @@ DynamicIcp::DynamicIcp(DynamicIcp&&) noexcept = default;
 DynamicIcp& DynamicIcp::operator=(DynamicIcp&&) noexcept = default;
 
 std::vector<std::string> DynamicIcp::assumptions() const {
-  return expected_ == DopplerKind::kCompensated ? std::vector{compensated_sentence()} : std::vector<std::string>{};
+  return expected_ == DopplerKind::kCompensated ? std::vector{compensated_doppler_note()} : std::vector<std::string>{};
 }
 
 // The system overview of the paper for one scan. Its four modules for the pair (last scan, this scan) are spread over

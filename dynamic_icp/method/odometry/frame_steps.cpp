@@ -6,9 +6,9 @@
 
 namespace dynamic_icp::odometry {
 
-void take_over(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame) {
+void assign(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame) {
   const Scan::RangeLimits limits{config.range.min_range_m, config.range.max_range_m};
-  scan.take_over(raw, limits, workers, &frame.dropped);  // Eq. (1)
+  scan.assign(raw, limits, workers, &frame.dropped);  // Eq. (1)
   frame.stamp = raw.stamp;
   frame.points = raw.points.size();
   frame.labels.assign(frame.points, -1);
@@ -16,7 +16,7 @@ void take_over(const RawScan& raw, const PreprocessConfig& config, const Workers
 
 Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame) {
   Scan whole;
-  take_over(raw, config, workers, whole, frame);
+  assign(raw, config, workers, whole, frame);
   Scan scan = preprocess::voxel_grid(whole, config.voxel, workers);
   frame.points_used = scan.size();
   return scan;
@@ -57,7 +57,7 @@ void set_motion(Frame& frame, FrameStatus status, const Eigen::Isometry3d& T_wor
   frame.T_world_sensor = T_world_last * T_target_source.inverse();
 }
 
-void tell_velocity_from_motion(Frame& frame, double dt_s) {
+void set_velocity_from_motion(Frame& frame, double dt_s) {
   if (is_aligned(frame.status) && dt_s >= kMinScanInterval_s) {
     frame.ego.status = ego_motion::EgoVelocityStatus::kFromMotion;
     frame.ego.velocity_sensor = -frame.T_target_source.translation() / dt_s;

@@ -19,7 +19,7 @@ const PipelineConfig& checked(const PipelineConfig& config) {
 
 /// Takes over what is finite and in range into `scan`, whose memory is used again; fills stamp, counts and `labels` (-1
 /// for all points) of the frame.
-void take_over(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame);
+void assign(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame);
 
 /// Takes over the scan and thins it by the voxel grid.
 Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame);
@@ -39,7 +39,7 @@ void set_motion(Frame& frame, FrameStatus status, const Eigen::Isometry3d& T_wor
 
 /// The velocity of the sensor as the motion from the last scan, where that was aligned and not too soon before: for
 /// methods that do not look for the velocity itself.
-void tell_velocity_from_motion(Frame& frame, double dt_s);
+void set_velocity_from_motion(Frame& frame, double dt_s);
 
 /// Whether the pose comes from an alignment, converged or not.
 bool is_aligned(FrameStatus status);

@@ -46,7 +46,7 @@ class ScanToMap final : public registration::Problem {
         pairs.push_back({i, nearest[i]->index, nearest[i]->squared_distance});
       }
     }
-    return registration::judged(std::move(pairs), source_.size());
+    return registration::evaluated(std::move(pairs), source_.size());
   }
 
   [[nodiscard]] registration::Linearisation linearise(const registration::Correspondences& correspondences,
@@ -115,7 +115,7 @@ Frame KissIcp::process(const RawScan& raw) {
     register_to_map(source, T_world_last_ * T_last_now_, frame);
   }
   go_on_to(frame);
-  tell_velocity_from_motion(frame, stream_.since_any_s());
+  set_velocity_from_motion(frame, stream_.since_any_s());
   update_map(scan.map_points, frame.T_world_sensor);
   clock.finish(Stage::kRegistration);
   return frame;
@@ -133,7 +133,7 @@ Scan KissIcp::deskewed_in_range(const RawScan& raw, Frame& frame) const {
   frame.dropped.out_of_range = scan.size() - in_range.size();
   frame.labels.assign(frame.points, -1);
   frame.sweep = motion::sweep_in_data(raw);
-  frame.sweep->undone = config_.deskew && frame.sweep->duration_s.value_or(0.0) > 0.0;
+  frame.sweep->deskewed = config_.deskew && frame.sweep->duration_s.value_or(0.0) > 0.0;
   return in_range;
 }
 

@@ -26,8 +26,8 @@ constexpr std::size_t kBlock = 4096;
 
 // Fewer agree with a map only by chance: of the points on its patches, and of all. A sparse radar meets few patches in
 // the map of one scan (2 % of its points agree), and fits those well.
-constexpr double kLeastAgreement = 0.2;
-constexpr double kLeastMatch = 0.01;
+constexpr double kMinAgreement = 0.2;
+constexpr double kMinMatch = 0.01;
 
 // 1/m^2, of a position that is known because the map begins with it.
 constexpr double kExactPosition = 1e12;
@@ -36,15 +36,15 @@ constexpr double kExactPosition = 1e12;
 constexpr double kUsualMatchGain = 0.2;
 
 // So does the deviation of patches from planes; below the least no surface is trusted.
-constexpr double kModelDeviationGain = 0.2;
-constexpr double kLeastModelDeviation_m = 0.001;
+constexpr double kModelSigmaGain = 0.2;
+constexpr double kMinModelDeviation_m = 0.001;
 
 // With the first turn known the first scan is made straight and the second aligned again: each round leaves about
 // a tenth of the error.
-constexpr int kStraighteningRounds = 4;
-constexpr double kStraighteningGate_m = 0.5;
-constexpr double kStraighteningGain = 0.5;
-constexpr double kStraight_rad_s = 3e-4;  // moves the end of a sweep of 0.1 s by 0.002 degrees
+constexpr int kDeskewRounds = 4;
+constexpr double kDeskewGate_m = 0.5;
+constexpr double kDeskewGateGain = 0.5;
+constexpr double kDeskewed_rad_s = 3e-4;  // moves the end of a sweep of 0.1 s by 0.002 degrees
 
 // A displacement that is known no better is not known.
 constexpr double kUnknown_m = 100.0;
@@ -61,15 +61,15 @@ double match(const mapping::MapAlignment& found) {
 }
 
 /// Whether the alignment is worth nothing, given the usual share of points that agree.
-bool is_lost(const mapping::MapAlignment& found, double least_match) {
-  return found.diverged || match(found) < least_match ||
-         found.matched < kLeastAgreement * static_cast<double>(found.on_planes);
+bool is_lost(const mapping::MapAlignment& found, double min_match) {
+  return found.diverged || match(found) < min_match ||
+         found.matched < kMinAgreement * static_cast<double>(found.on_planes);
 }
 
 /// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
 ego_motion::VelocityFilterConfig filter_for(const EgoMotionConfig& config, const ego_motion::EgoVelocity& ego) {
   ego_motion::VelocityFilterConfig filter = config.filter;
-  filter.tau_0_mps = std::max(filter.tau_0_mps, config.static_deviations * ego.inlier_rms_mps);
+  filter.tau_0_mps = std::max(filter.tau_0_mps, config.static_sigmas * ego.inlier_rms_mps);
   return filter;
 }
 
@@ -90,7 +90,7 @@ MapOdometry::MapOdometry(const MapOdometryConfig& config, int threads, DopplerKi
       stream_(config.stream) {}
 
 std::vector<std::string> MapOdometry::assumptions() const {
-  return expected_ == DopplerKind::kCompensated ? std::vector{compensated_sentence()} : std::vector<std::string>{};
+  return expected_ == DopplerKind::kCompensated ? std::vector{compensated_doppler_note()} : std::vector<std::string>{};
 }
 
 Frame MapOdometry::process(const RawScan& raw) {
@@ -104,29 +104,29 @@ Frame MapOdometry::process(const RawScan& raw) {
   frame.status = found;
   if (is_skipped(found)) {
     if (state_) {
-      extrapolate(stream_.elapsed_s(), found, frame);
+      predict_only(stream_.elapsed_s(), found, frame);
     }
     return frame;
   }
-  Moment now = tell_static_from_moving();
+  ScanState now = tell_static_from_moving();
   frame.ego = now.ego;
   clock.finish(Stage::kEgoMotion);
 
   if (found == FrameStatus::kFirst) {
     begin(now, Eigen::Isometry3d::Identity());
   } else if (found == FrameStatus::kTimeGap) {
-    extrapolate(now.stamp_s, found, frame);
+    predict_only(now.stamp_s, found, frame);
     begin(now, frame.T_world_sensor);
   } else {
     if (!now.is_relative && state_->scans_in_map == 1) {
       now.ego = first_velocity(now);
     }
-    go_on(now, frame);
+    update(now, frame);
   }
   if (!now.is_relative) {
     frame.ego = state_->filtered;
   }
-  frame.twist = motion::twist_at_stamp(state_->turn, frame.ego, now.middle_s);
+  frame.twist = motion::twist_at_stamp(state_->rotation, frame.ego, now.middle_s);
   clock.finish(Stage::kRegistration);
 
   workers_.both([&] { frame.static_points = add_to_map(now); }, [&] { track_objects(frame); });
@@ -139,7 +139,7 @@ void MapOdometry::thin_and_sort(const RawScan& raw, Frame& frame) {
   frame.sweep = motion::sweep_as_configured(raw, config_.sweep);
   const std::optional<RawScan> timed = motion::retimed(raw, config_.sweep);
   const Scan& whole = memory_.whole;
-  take_over(timed ? *timed : raw, config_.preprocess, workers_, memory_.whole, frame);
+  assign(timed ? *timed : raw, config_.preprocess, workers_, memory_.whole, frame);
   workers_.both(
       [&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, memory_.thinned); },
       [&] {
@@ -150,20 +150,21 @@ void MapOdometry::thin_and_sort(const RawScan& raw, Frame& frame) {
 }
 
 /// The velocity of the sensor at this scan, and the points that stand still.
-MapOdometry::Moment MapOdometry::tell_static_from_moving() {
+MapOdometry::ScanState MapOdometry::tell_static_from_moving() {
   const Scan& whole = memory_.whole;
-  Moment now;
+  ScanState now;
   now.stamp_s = stream_.elapsed_s();
   now.middle_s = memory_.rows.reference_time_s;
   now.duration_s = memory_.rows.duration_s;
   now.is_relative = whole.doppler_kind() == DopplerKind::kRelative;
   now.filtered = estimate_ego(now.stamp_s);
-  now.ego = now.is_relative ? ego_motion::weigh_calibration(now.filtered, config_.ego_motion.drift) : now.filtered;
-  const ego_motion::EgoVelocity in_doppler = now.is_relative ? now.ego : at_rest(whole);
+  now.ego =
+      now.is_relative ? ego_motion::average_over_bias_models(now.filtered, config_.ego_motion.drift) : now.filtered;
+  const ego_motion::EgoVelocity in_doppler = now.is_relative ? now.ego : static_frame(whole);
   ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, in_doppler), workers_,
                            memory_.is_moving);
-  now.still = whole.select(still_rows(memory_.thinned, memory_.is_moving));
+  now.static_points = whole.select(still_rows(memory_.thinned, memory_.is_moving));
   return now;
 }
 
@@ -172,7 +173,7 @@ ego_motion::EgoVelocity MapOdometry::estimate_ego(double stamp_s) const {
   const Scan& scan = memory_.whole;
   const ego_motion::DopplerRows& rows = memory_.rows;
   if (scan.doppler_kind() == DopplerKind::kCompensated) {
-    return state_ ? goes_on(state_->filtered, stamp_s - state_->stamp_s) : unknown_velocity();
+    return state_ ? propagate(state_->filtered, stamp_s - state_->stamp_s) : unknown_velocity();
   }
   if (!config.use_consensus) {
     const Eigen::Vector3d start = state_ ? state_->filtered.velocity_sensor : Eigen::Vector3d::Zero();
@@ -190,24 +191,24 @@ ego_motion::EgoVelocity MapOdometry::estimate_ego(double stamp_s) const {
 }
 
 /// A new map with this scan as its first, at a known place.
-void MapOdometry::begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor) {
+void MapOdometry::begin(const ScanState& now, const Eigen::Isometry3d& T_map_sensor) {
   map_.clear();
   State state;
   state.stamp_s = now.stamp_s;
-  state.model_deviation_m = state_ ? state_->model_deviation_m : config_.map_align.model_deviation_m;
+  state.model_sigma_m = state_ ? state_->model_sigma_m : config_.map_align.model_sigma_m;
   state.filtered = now.filtered;
   state.T_map_sensor = T_map_sensor;
   state.position_information = kExactPosition * Eigen::Matrix3d::Identity();
-  state.turn = motion::first_rotation_state(config_.turn);
-  state.turn.R_map_sensor = T_map_sensor.linear();
+  state.rotation = motion::first_rotation_state(config_.rotation);
+  state.rotation.R_map_sensor = T_map_sensor.linear();
   state.sweep = straight_sweep(now.ego, now.middle_s);
   state.first = now;
   state.velocities = {
-      {now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, state.turn.R_map_sensor}};
+      {now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, state.rotation.R_map_sensor}};
   state_ = std::move(state);
 }
 
-std::vector<motion::VelocitySample> MapOdometry::velocities_with(const Moment& now) const {
+std::vector<motion::VelocitySample> MapOdometry::velocities_with(const ScanState& now) const {
   std::vector<motion::VelocitySample> samples = state_->velocities;
   samples.push_back({now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, {}});
   if (samples.size() > kVelocitySamples) {
@@ -217,17 +218,17 @@ std::vector<motion::VelocitySample> MapOdometry::velocities_with(const Moment& n
 }
 
 /// Where the scan should be: the turn as it was expected, the way by the velocities of this and the last scans.
-mapping::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
+mapping::MotionPrior MapOdometry::motion_prior(const ScanState& now) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
-  const motion::RotationState turn = motion::predict(state_->turn, dt_s, config_.turn);
+  const motion::RotationState rotation = motion::predict(state_->rotation, dt_s, config_.rotation);
   mapping::MotionPrior prior;
-  prior.R_map_sensor = turn.R_map_sensor;
+  prior.R_map_sensor = rotation.R_map_sensor;
   prior.sweep = straight_sweep(now.ego, now.middle_s);
-  prior.sweep.omega = turn.omega;
-  prior.sweep.alpha = turn.alpha;
-  prior.covariance = turn.covariance;
+  prior.sweep.omega = rotation.omega;
+  prior.sweep.alpha = rotation.alpha;
+  prior.covariance = rotation.covariance;
   if (!now.is_relative) {
-    expect_even_motion(now, prior);
+    predict_constant_velocity(now, prior);
     return prior;
   }
   std::vector<motion::VelocitySample> samples = velocities_with(now);
@@ -235,55 +236,58 @@ mapping::MotionPrior MapOdometry::motion_prior(const Moment& now) const {
   samples.back().R_map_sensor = prior.R_map_sensor * R_stamp_middle;
   const motion::Displacement displacement = motion::displacement_between(samples, state_->stamp_s, now.stamp_s);
   prior.displacement_fixed = state_->T_map_sensor.translation() + displacement.fixed_map;
-  prior.displacement_turned = displacement.last_weight_s * (R_stamp_middle * now.ego.velocity_sensor);
-  const double integration_m = config_.use_displacement ? config_.displacement_deviation_mps * dt_s : kUnknown_m;
+  prior.displacement_rotated = displacement.last_weight_s * (R_stamp_middle * now.ego.velocity_sensor);
+  const double integration_m = config_.use_displacement ? config_.displacement_sigma_mps * dt_s : kUnknown_m;
   prior.translation_covariance = state_->position_covariance + displacement.covariance_map +
                                  integration_m * integration_m * Eigen::Matrix3d::Identity();
   return prior;
 }
 
-void MapOdometry::go_on(const Moment& now, Frame& frame) {
+void MapOdometry::update(const ScanState& now, Frame& frame) {
   mapping::MapAlignConfig config = config_.map_align;
-  config.model_deviation_m = state_->model_deviation_m;
+  config.model_sigma_m = state_->model_sigma_m;
   const mapping::MotionPrior prior = motion_prior(now);
   mapping::MapAlignment found = state_->scans_in_map == 1 ? align_second(now, prior)
-                                : !now.is_relative        ? align_with_found_velocity(now, prior, config)
-                                                   : mapping::align_to_map(now.still, map_, prior, config, workers_);
-  const double least_match = std::max(kLeastMatch, config_.lost_match * state_->usual_match);
-  if (is_lost(found, least_match)) {
-    found = mapping::search_and_align(now.still, map_, prior, config, workers_);
+                                : !now.is_relative
+                                    ? align_with_found_velocity(now, prior, config)
+                                    : mapping::align_to_map(now.static_points, map_, prior, config, workers_);
+  const double min_match = std::max(kMinMatch, config_.lost_match * state_->usual_match);
+  if (is_lost(found, min_match)) {
+    found = mapping::search_and_align(now.static_points, map_, prior, config, workers_);
   }
-  if (is_lost(found, least_match) || !is_plausible_motion(motion_to(found), now.stamp_s - state_->stamp_s)) {
-    lose(now, prior, frame);
+  if (is_lost(found, min_match) || !is_plausible_motion(motion_to(found), now.stamp_s - state_->stamp_s)) {
+    mark_lost(now, prior, frame);
     return;
   }
-  const Eigen::Matrix3d held = held_position(now, found);
+  const Eigen::Matrix3d observed = observed_position_information(now, found);
   if (!now.is_relative) {
-    keep_expected_where_nothing_holds(prior, held, found);
+    keep_predicted_where_unobservable(prior, observed, found);
   }
-  const ego_motion::EgoVelocity moved = now.is_relative ? now.filtered : found_velocity(now, found, held);
-  const motion::RotationState expected = motion::predict(state_->turn, now.stamp_s - state_->stamp_s, config_.turn);
-  const motion::RotationState turn =
-      motion::updated(mapping::rotation_state(found), expected, now.duration_s, config_.turn);
-  describe(prior, found, held, turn.covariance.topLeftCorner<3, 3>(), registration::typical_distance(now.still), frame);
+  const ego_motion::EgoVelocity moved = now.is_relative ? now.filtered : found_velocity(now, found, observed);
+  const motion::RotationState expected =
+      motion::predict(state_->rotation, now.stamp_s - state_->stamp_s, config_.rotation);
+  const motion::RotationState rotation =
+      motion::updated(mapping::rotation_state(found), expected, now.duration_s, config_.rotation);
+  describe(prior, found, observed, rotation.covariance.topLeftCorner<3, 3>(),
+           registration::typical_distance(now.static_points), frame);
 
   state_->usual_match = state_->scans_in_map == 1
                             ? match(found)
                             : state_->usual_match + kUsualMatchGain * (match(found) - state_->usual_match);
-  if (found.model_deviation_m) {
-    const double seen = std::max(kLeastModelDeviation_m, *found.model_deviation_m);
-    state_->model_deviation_m += kModelDeviationGain * (seen - state_->model_deviation_m);
+  if (found.model_sigma_m) {
+    const double seen = std::max(kMinModelDeviation_m, *found.model_sigma_m);
+    state_->model_sigma_m += kModelSigmaGain * (seen - state_->model_sigma_m);
   }
   state_->first = {};
   state_->stamp_s = now.stamp_s;
   state_->T_map_sensor = found.T_map_sensor;
-  state_->turn = turn;
+  state_->rotation = rotation;
   state_->sweep = found.sweep;
   state_->filtered = moved;
   // The map is the mean of its last scans: a position drifts away from it only as long as it remembers.
   const double memory = config_.mapping.memory_scans;
   state_->position_covariance = memory / (memory + 1.0) * found.covariance.block<3, 3>(3, 3);
-  state_->position_information = held;
+  state_->position_information = observed;
   std::vector<motion::VelocitySample> velocities = velocities_with(now);
   velocities.back().R_map_sensor = found.T_map_sensor.linear() * found.sweep.rotation(now.middle_s);
   state_->velocities = std::move(velocities);
@@ -291,15 +295,15 @@ void MapOdometry::go_on(const Moment& now, Frame& frame) {
 
 /// What the frame says of an alignment.
 void MapOdometry::describe(const mapping::MotionPrior& prior, const mapping::MapAlignment& found,
-                           const Eigen::Matrix3d& held, const Eigen::Matrix3d& rotation_covariance, double length_m,
+                           const Eigen::Matrix3d& observed, const Eigen::Matrix3d& rotation_covariance, double length_m,
                            Frame& frame) const {
   motion::MotionEvidence evidence;
-  evidence.source_rotation_covariance = state_->turn.covariance.topLeftCorner<3, 3>();
+  evidence.source_rotation_covariance = state_->rotation.covariance.topLeftCorner<3, 3>();
   evidence.target_rotation_covariance = rotation_covariance;
   evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
   evidence.source_position_information = state_->position_information;
-  evidence.target_position_information = held;
-  evidence.displacement_turned = prior.displacement_turned;
+  evidence.target_position_information = observed;
+  evidence.displacement_rotated = prior.displacement_rotated;
   registration::Alignment& alignment = frame.alignment;
   alignment.iterations = found.iterations;
   alignment.fitness = match(found);
@@ -308,7 +312,7 @@ void MapOdometry::describe(const mapping::MotionPrior& prior, const mapping::Map
   alignment.geometry = {found.on_planes, static_cast<std::size_t>(found.matched), found.rms_m};
   alignment.length_m = length_m;
   alignment.covariance = motion::motion_covariance(evidence, found.T_map_sensor.linear());
-  alignment.degenerate = motion::unknown_directions(*alignment.covariance, length_m, config_.unknown_deviation_m);
+  alignment.degenerate = motion::unobservable_directions(*alignment.covariance, length_m, config_.unobservable_sigma_m);
   alignment.information_ratio = motion::information_ratio(*alignment.covariance, length_m);
   alignment.T_target_source = found.T_map_sensor.inverse() * state_->T_map_sensor;
   alignment.status =
@@ -322,62 +326,62 @@ void MapOdometry::describe(const mapping::MotionPrior& prior, const mapping::Map
 }
 
 /// Nothing fits the map: the motion is the one expected, and the map begins anew.
-void MapOdometry::lose(const Moment& now, const mapping::MotionPrior& prior, Frame& frame) {
+void MapOdometry::mark_lost(const ScanState& now, const mapping::MotionPrior& prior, Frame& frame) {
   Eigen::Isometry3d T_map_sensor = Eigen::Isometry3d::Identity();
   T_map_sensor.linear() = prior.R_map_sensor;
-  T_map_sensor.translation() = prior.displacement_fixed + prior.R_map_sensor * prior.displacement_turned;
+  T_map_sensor.translation() = prior.displacement_fixed + prior.R_map_sensor * prior.displacement_rotated;
   set_motion(frame, FrameStatus::kLost, state_->T_map_sensor, T_map_sensor.inverse() * state_->T_map_sensor);
   motion::MotionEvidence evidence;
   evidence.target_rotation_covariance = prior.covariance.topLeftCorner<3, 3>();
   evidence.displacement_covariance = prior.translation_covariance - state_->position_covariance;
-  evidence.displacement_turned = prior.displacement_turned;
+  evidence.displacement_rotated = prior.displacement_rotated;
   frame.alignment.covariance = motion::motion_covariance(evidence, prior.R_map_sensor);
   const motion::SweepMotion sweep = prior.sweep;
   begin(now, T_map_sensor);
-  state_->turn.omega = sweep.omega;
+  state_->rotation.omega = sweep.omega;
   state_->sweep.omega = sweep.omega;
 }
 
 /// The first scan was laid down as if the sensor did not turn. With the turn that the second shows it is laid down
 /// again, until both agree.
-mapping::MapAlignment MapOdometry::align_second(const Moment& now, const mapping::MotionPrior& prior) {
-  mapping::MapAlignment found = config_.search_start
-                                    ? mapping::search_and_align(now.still, map_, prior, config_.map_align, workers_)
-                                    : mapping::align_to_map(now.still, map_, prior, config_.map_align, workers_);
-  if (!state_->first.still.has_times()) {
+mapping::MapAlignment MapOdometry::align_second(const ScanState& now, const mapping::MotionPrior& prior) {
+  mapping::MapAlignment found =
+      config_.search_start ? mapping::search_and_align(now.static_points, map_, prior, config_.map_align, workers_)
+                           : mapping::align_to_map(now.static_points, map_, prior, config_.map_align, workers_);
+  if (!state_->first.static_points.has_times()) {
     return found;
   }
-  const Moment& first = state_->first;
+  const ScanState& first = state_->first;
   const double dt_s = now.stamp_s - first.stamp_s;
-  double gate_m = kStraighteningGate_m;
-  for (int round = 0; round < kStraighteningRounds; ++round, gate_m *= kStraighteningGain) {
+  double gate_m = kDeskewGate_m;
+  for (int round = 0; round < kDeskewRounds; ++round, gate_m *= kDeskewGateGain) {
     const Eigen::Matrix3d R_first_now = state_->T_map_sensor.linear().transpose() * found.T_map_sensor.linear();
     const Eigen::Vector3d mean_omega = log_so3(R_first_now) / dt_s;
-    if (round > 0 && (mean_omega - state_->sweep.omega).norm() < kStraight_rad_s) {
+    if (round > 0 && (mean_omega - state_->sweep.omega).norm() < kDeskewed_rad_s) {
       break;
     }
     state_->sweep.omega = mean_omega;
-    state_->turn.omega = mean_omega;
+    state_->rotation.omega = mean_omega;
     if (!now.is_relative) {
       state_->sweep.velocity = log_se3(motion_to(found)).tail<3>() / dt_s;
     }
     state_->velocities.back().R_map_sensor = state_->T_map_sensor.linear() * state_->sweep.rotation(first.middle_s);
-    mapping::MotionPrior straightened = motion_prior(now);
+    mapping::MotionPrior deskewed_prior = motion_prior(now);
     if (!now.is_relative) {
-      straightened.sweep.velocity = state_->sweep.velocity;
+      deskewed_prior.sweep.velocity = state_->sweep.velocity;
     }
     map_.clear();
     state_->scans_in_map = 0;
     add_to_map(first);
-    found = mapping::align_to_map(now.still, map_, straightened, found.T_map_sensor.linear(), gate_m, config_.map_align,
-                                  workers_);
+    found = mapping::align_to_map(now.static_points, map_, deskewed_prior, found.T_map_sensor.linear(), gate_m,
+                                  config_.map_align, workers_);
   }
   return found;
 }
 
 /// Returns the points that were added, in sensor axes at the stamp.
-std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const Moment& now) {
-  std::vector<Eigen::Vector3d> points = motion::deskewed_points(now.still, state_->sweep, workers_);
+std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const ScanState& now) {
+  std::vector<Eigen::Vector3d> points = motion::deskewed_points(now.static_points, state_->sweep, workers_);
   std::vector<Eigen::Vector3d> in_map(points.size());
   workers_.for_each(points.size(), kBlock, [&](std::size_t i) { in_map[i] = state_->T_map_sensor * points[i]; });
   map_.add(in_map, state_->T_map_sensor.translation(), workers_);

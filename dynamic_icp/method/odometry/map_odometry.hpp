@@ -40,14 +40,14 @@ class MapOdometry final : public Odometry {
 
  private:
   /// A scan at hand, with its times.
-  struct Moment {
-    Scan still;               ///< its static points, thinned
+  struct ScanState {
+    Scan static_points;       ///< its static points, thinned
     double stamp_s = 0.0;     ///< after the first scan
     double middle_s = 0.0;    ///< of the sweep, after the stamp
     double duration_s = 0.0;  ///< of the sweep
     bool is_relative = true;  ///< the Doppler shows the sensor's motion; else `ego` is that of the alignments before
     ego_motion::EgoVelocity ego;
-    ego_motion::EgoVelocity filtered;  ///< the same as the filter carries it on, see weigh_calibration
+    ego_motion::EgoVelocity filtered;  ///< the same as the filter carries it on, see average_over_bias_models
   };
 
   /// What is known of the sensor at the last usable scan.
@@ -57,13 +57,13 @@ class MapOdometry final : public Odometry {
     Eigen::Matrix3d position_covariance = Eigen::Matrix3d::Zero();   ///< m^2, against the map
     Eigen::Matrix3d position_information = Eigen::Matrix3d::Zero();  ///< 1/m^2, from the points of the scan
     motion::SweepMotion sweep;
-    motion::RotationState turn;
+    motion::RotationState rotation;
     std::vector<motion::VelocitySample> velocities;  ///< of the last scans, at most three
     ego_motion::EgoVelocity filtered;
-    double usual_match = 0.0;        ///< share of the points that agree with the map, as it was lately
-    double model_deviation_m = 0.0;  ///< of patches from planes, as the last scans show it
+    double usual_match = 0.0;    ///< share of the points that agree with the map, as it was lately
+    double model_sigma_m = 0.0;  ///< of patches from planes, as the last scans show it
     int scans_in_map = 0;
-    Moment first;  ///< the only scan in the map, until the next one shows how it turned; then empty
+    ScanState first;  ///< the only scan in the map, until the next one shows how it turned; then empty
   };
 
   /// Of the scan at hand. The memory is used again for the next one: the system would clear each page of it anew.
@@ -78,29 +78,30 @@ class MapOdometry final : public Odometry {
   };
 
   void thin_and_sort(const RawScan& raw, Frame& frame);
-  [[nodiscard]] Moment tell_static_from_moving();
+  [[nodiscard]] ScanState tell_static_from_moving();
   [[nodiscard]] ego_motion::EgoVelocity estimate_ego(double stamp_s) const;
-  void begin(const Moment& now, const Eigen::Isometry3d& T_map_sensor);
-  void go_on(const Moment& now, Frame& frame);
-  void lose(const Moment& now, const mapping::MotionPrior& prior, Frame& frame);
-  void extrapolate(double stamp_s, FrameStatus status, Frame& frame) const;
-  void describe(const mapping::MotionPrior& prior, const mapping::MapAlignment& found, const Eigen::Matrix3d& held,
+  void begin(const ScanState& now, const Eigen::Isometry3d& T_map_sensor);
+  void update(const ScanState& now, Frame& frame);
+  void mark_lost(const ScanState& now, const mapping::MotionPrior& prior, Frame& frame);
+  void predict_only(double stamp_s, FrameStatus status, Frame& frame) const;
+  void describe(const mapping::MotionPrior& prior, const mapping::MapAlignment& found, const Eigen::Matrix3d& observed,
                 const Eigen::Matrix3d& rotation_covariance, double length_m, Frame& frame) const;
-  [[nodiscard]] std::vector<motion::VelocitySample> velocities_with(const Moment& now) const;
-  [[nodiscard]] mapping::MotionPrior motion_prior(const Moment& now) const;
-  [[nodiscard]] ego_motion::EgoVelocity first_velocity(const Moment& now) const;
-  void expect_even_motion(const Moment& now, mapping::MotionPrior& prior) const;
-  [[nodiscard]] mapping::MapAlignment align_with_found_velocity(const Moment& now, mapping::MotionPrior prior,
+  [[nodiscard]] std::vector<motion::VelocitySample> velocities_with(const ScanState& now) const;
+  [[nodiscard]] mapping::MotionPrior motion_prior(const ScanState& now) const;
+  [[nodiscard]] ego_motion::EgoVelocity first_velocity(const ScanState& now) const;
+  void predict_constant_velocity(const ScanState& now, mapping::MotionPrior& prior) const;
+  [[nodiscard]] mapping::MapAlignment align_with_found_velocity(const ScanState& now, mapping::MotionPrior prior,
                                                                 const mapping::MapAlignConfig& config) const;
-  [[nodiscard]] Eigen::Matrix3d held_position(const Moment& now, const mapping::MapAlignment& found) const;
-  [[nodiscard]] std::vector<Eigen::Vector3d> unheld_directions(const Eigen::Matrix3d& held) const;
-  void keep_expected_where_nothing_holds(const mapping::MotionPrior& prior, const Eigen::Matrix3d& held,
+  [[nodiscard]] Eigen::Matrix3d observed_position_information(const ScanState& now,
+                                                              const mapping::MapAlignment& found) const;
+  [[nodiscard]] std::vector<Eigen::Vector3d> unobservable_directions(const Eigen::Matrix3d& observed) const;
+  void keep_predicted_where_unobservable(const mapping::MotionPrior& prior, const Eigen::Matrix3d& observed,
                                          mapping::MapAlignment& found) const;
-  [[nodiscard]] ego_motion::EgoVelocity found_velocity(const Moment& now, const mapping::MapAlignment& found,
-                                                       const Eigen::Matrix3d& held) const;
+  [[nodiscard]] ego_motion::EgoVelocity found_velocity(const ScanState& now, const mapping::MapAlignment& found,
+                                                       const Eigen::Matrix3d& observed) const;
   [[nodiscard]] Eigen::Isometry3d motion_to(const mapping::MapAlignment& found) const;
-  [[nodiscard]] mapping::MapAlignment align_second(const Moment& now, const mapping::MotionPrior& prior);
-  std::vector<Eigen::Vector3d> add_to_map(const Moment& now);
+  [[nodiscard]] mapping::MapAlignment align_second(const ScanState& now, const mapping::MotionPrior& prior);
+  std::vector<Eigen::Vector3d> add_to_map(const ScanState& now);
   void track_objects(Frame& frame);
 
   MapOdometryConfig config_;

@@ -95,7 +95,7 @@ TEST(MapOdometry, BridgesAnEmptyScan) {
   const Frame empty = odometry.process({stamp_at(0.4), {}, {}, {}, {}, {}, {}});
   EXPECT_EQ(empty.status, FrameStatus::kTooFewPoints);
   EXPECT_LT(error_of(drive, empty, 3, 4).move_m, 0.02);
-  EXPECT_LT(surprise(error_of(drive, empty, 3, 4).left, *empty.alignment.covariance), 20.0);
+  EXPECT_LT(nis(error_of(drive, empty, 3, 4).left, *empty.alignment.covariance), 20.0);
   const Frame next = odometry.process(drive.scan(5));
   EXPECT_EQ(next.status, FrameStatus::kConverged);
   EXPECT_LT(error_of(drive, next, 3, 5).move_m, 0.003) << "aligned over both steps";
@@ -118,7 +118,7 @@ TEST(MapOdometry, BeginsANewMapAfterAGap) {
 }
 
 TEST(MapOdometry, KeepsItsStateWhenItRefusesAScan) {
-  const Drive drive{street_with_cars(), lively(10.0), {}};
+  const Drive drive{street_with_cars(), agile(10.0), {}};
   MapOdometry disturbed(with_ablation(), 1);
   MapOdometry calm(with_ablation(), 1);
   for (int k = 1; k < 5; ++k) {

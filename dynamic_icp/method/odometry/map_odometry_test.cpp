@@ -17,18 +17,18 @@ namespace {
 using namespace synthetic;
 
 /// The motion of the second scan, from five speeds, straight and turning.
-void expect_starts(const Sensor& sensor, double most_m, double most_deg) {
-  for (const double turn : {0.0, 0.6}) {
+void expect_starts(const Sensor& sensor, double max_m, double max_deg) {
+  for (const double rotation : {0.0, 0.6}) {
     for (const double speed : {0.0, 5.0, 15.0, 27.0, 40.0}) {
-      SCOPED_TRACE(std::to_string(speed) + " m/s, " + std::to_string(turn) + " rad/s");
-      const Drive drive{street(), circle(speed, turn), sensor};
+      SCOPED_TRACE(std::to_string(speed) + " m/s, " + std::to_string(rotation) + " rad/s");
+      const Drive drive{street(), circle(speed, rotation), sensor};
       const std::vector<Frame> frames = drive.run(with_ablation(), 2);
       EXPECT_EQ(frames[0].status, FrameStatus::kFirst);
       EXPECT_TRUE(frames[0].T_world_sensor.isApprox(Eigen::Isometry3d::Identity()));
       EXPECT_EQ(frames[1].status, FrameStatus::kConverged);
       const MotionError error = error_of(drive, frames[1], 0, 1);
-      EXPECT_LT(error.move_m, most_m);
-      EXPECT_LT(error.turn_deg, most_deg);
+      EXPECT_LT(error.move_m, max_m);
+      EXPECT_LT(error.turn_deg, max_deg);
       EXPECT_LT((frames[0].ego.velocity_sensor - Vector3d(speed, 0.0, 0.0)).norm(), 0.05) << "already the first scan";
     }
   }
@@ -40,7 +40,7 @@ TEST(MapOdometry, StartsAtAnySpeedAndTurn) { expect_starts(Sensor{}, 0.003, 0.03
 TEST(MapOdometry, StartsAtAnySpeedAndTurnInASweep) { expect_starts(sweeping(), 0.015, 0.08); }
 
 TEST(MapOdometry, FollowsALivelyDrive) {
-  const Drive drive{street_with_cars(), lively(10.0), {}};
+  const Drive drive{street_with_cars(), agile(10.0), {}};
   const std::vector<Frame> frames = drive.run(with_ablation(), 20);
   const MotionError error = rms_error(drive, frames);
   EXPECT_LT(error.move_m, 0.001);
@@ -55,9 +55,9 @@ TEST(MapOdometry, FollowsALivelyDrive) {
 
 // The same sweeps with the times of their points, with declared times, as if taken in an instant, and not undone.
 TEST(MapOdometry, UndoesSweeps) {
-  Drive drive{street_with_cars(), lively(10.0), sweeping()};
+  Drive drive{street_with_cars(), agile(10.0), sweeping()};
   const MotionError timed = rms_error(drive, drive.run(with_ablation(), 14), 4);
-  const MotionError not_undone = rms_error(drive, drive.run(with_ablation("no-deskew"), 14), 4);
+  const MotionError not_deskewed = rms_error(drive, drive.run(with_ablation("no-deskew"), 14), 4);
   drive.sensor.gives_times = false;
   MapOdometryConfig declared = with_ablation();
   declared.sweep.declared_duration_s = 0.1;
@@ -68,12 +68,12 @@ TEST(MapOdometry, UndoesSweeps) {
   EXPECT_LT(as_declared.move_m, 1.5 * timed.move_m);
   EXPECT_LT(as_declared.turn_deg, 1.5 * timed.turn_deg);
   EXPECT_GT(untimed.move_m, 3.0 * timed.move_m);
-  EXPECT_EQ(untimed.move_m, not_undone.move_m) << "times that are not used must not matter";
+  EXPECT_EQ(untimed.move_m, not_deskewed.move_m) << "times that are not used must not matter";
 }
 
 TEST(MapOdometry, KnowsTheWayInATunnelFromTheDoppler) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
-    const Drive drive{tunnel(), lively(10.0), sensor};
+    const Drive drive{tunnel(), agile(10.0), sensor};
     const std::vector<Frame> frames = drive.run(with_ablation(), 12);
     EXPECT_LT(rms_error(drive, frames, 4).move_m, 0.0015);
     EXPECT_EQ(frames.back().status, FrameStatus::kConverged);
@@ -107,13 +107,13 @@ TEST(MapOdometry, SaysThatAPlainDoesNotShowTheYaw) {
     const MotionError error = error_of(drive, frame, k - 1, k);
     EXPECT_LT(error.left.head<2>().norm(), 0.001) << "roll and pitch";
     EXPECT_LT(std::abs(error.left[2]), 4.0 * std::sqrt((*frame.alignment.covariance)(2, 2)));
-    EXPECT_LT(surprise(error.left, *frame.alignment.covariance), 30.0) << "way and yaw err together";
+    EXPECT_LT(nis(error.left, *frame.alignment.covariance), 30.0) << "way and yaw err together";
     EXPECT_NEAR(frame.T_target_source.translation().norm(), 1.0, 0.005) << "the length of the way";
   }
 }
 
 TEST(MapOdometry, FindsAConstantErrorOfTheDoppler) {
-  Drive drive{street_with_cars(), lively(10.0), {}};
+  Drive drive{street_with_cars(), agile(10.0), {}};
   drive.sensor.bias_mps = 0.2;
   const std::vector<Frame> frames = drive.run(with_ablation(), 8);
   EXPECT_NEAR(frames.back().ego.bias_mps, 0.2, 0.02);
@@ -126,7 +126,7 @@ TEST(MapOdometry, FindsAConstantErrorOfTheDoppler) {
 
 TEST(MapOdometry, FollowsTheCars) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
-    const Drive drive{street_with_cars(), lively(10.0), sensor};
+    const Drive drive{street_with_cars(), agile(10.0), sensor};
     MapOdometry odometry(with_ablation(), 1);
     std::vector<std::int64_t> ids(2, 0);
     for (int k = 0; k < 10; ++k) {
@@ -165,12 +165,12 @@ TEST(MapOdometry, StatesHowWellTheMotionIsKnown) {
     int count = 0;
     for (const std::uint64_t seed : {1UL, 2UL}) {
       for (const World& world : {street(), tunnel()}) {
-        const Drive drive{world, lively(seed == 1 ? 8.0 : 14.0), sensor, kPeriod_s, seed};
+        const Drive drive{world, agile(seed == 1 ? 8.0 : 14.0), sensor, kPeriod_s, seed};
         const std::vector<Frame> frames = drive.run(with_ablation(), 11);
         for (int k = 1; k < 11; ++k) {
           const Frame& frame = frames[static_cast<std::size_t>(k)];
-          motion += surprise(error_of(drive, frame, k - 1, k).left, *frame.alignment.covariance);
-          twist += surprise(twist_error(drive, frame, k), frame.twist->covariance);
+          motion += nis(error_of(drive, frame, k - 1, k).left, *frame.alignment.covariance);
+          twist += nis(twist_error(drive, frame, k), frame.twist->covariance);
           ++count;
         }
       }
@@ -184,7 +184,7 @@ TEST(MapOdometry, StatesHowWellTheMotionIsKnown) {
 }
 
 TEST(MapOdometry, SameBitsForAnyNumberOfThreads) {
-  const Drive drive{street_with_cars(), lively(10.0), sweeping()};
+  const Drive drive{street_with_cars(), agile(10.0), sweeping()};
   const std::vector<Frame> one = drive.run(with_ablation(), 5, 1);
   const std::vector<Frame> three = drive.run(with_ablation(), 5, 3);
   EXPECT_FALSE(one.back().tracked.empty());
@@ -194,7 +194,7 @@ TEST(MapOdometry, SameBitsForAnyNumberOfThreads) {
 }
 
 TEST(MapOdometry, EveryAblationRuns) {
-  const Drive drive{street_with_cars(), lively(10.0), sweeping()};
+  const Drive drive{street_with_cars(), agile(10.0), sweeping()};
   for (const std::string_view name : ablation_names(MapOdometryConfig{})) {
     const std::vector<Frame> frames = drive.run(with_ablation(name), 3);
     EXPECT_TRUE(frames.back().T_world_sensor.matrix().allFinite()) << name;
@@ -205,7 +205,7 @@ TEST(MapOdometry, EveryAblationRuns) {
 }
 
 TEST(MapOdometry, WithoutAMapOnlyTheLastScanCounts) {
-  const Drive drive{street(), lively(10.0), {}};
+  const Drive drive{street(), agile(10.0), {}};
   const MapOdometryConfig config = with_ablation("no-map");
   const MotionError error = rms_error(drive, drive.run(config, 12), 3);
   EXPECT_GT(error.turn_deg, 1.2 * rms_error(drive, drive.run(with_ablation(), 12), 3).turn_deg);

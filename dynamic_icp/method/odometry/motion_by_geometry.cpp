@@ -38,7 +38,7 @@ registration::Alignment MotionByGeometry::align(const Scan& source, const regist
 }
 
 ego_motion::EgoVelocity MotionByGeometry::velocity(const Eigen::Vector3d& velocity_sensor) const {
-  ego_motion::EgoVelocity ego = at_rest(Scan());
+  ego_motion::EgoVelocity ego = static_frame(Scan());
   if (twist_) {
     ego.status = ego_motion::EgoVelocityStatus::kFromMotion;
     ego.velocity_sensor = velocity_sensor;

@@ -31,20 +31,20 @@ void check_mounting(const Eigen::Isometry3d& T_vehicle_sensor) {
 }
 
 struct Maker {
-  const Surroundings& surroundings;
+  const SensorContext& context;
   int threads;
 
   std::unique_ptr<Odometry> operator()(const MapOdometryConfig& config) const {
-    return std::make_unique<MapOdometry>(config, threads, surroundings.doppler_kind);
+    return std::make_unique<MapOdometry>(config, threads, context.doppler_kind);
   }
   std::unique_ptr<Odometry> operator()(const PaperConfig& config) const {
-    return std::make_unique<DynamicIcp>(config, threads, surroundings.doppler_kind);
+    return std::make_unique<DynamicIcp>(config, threads, context.doppler_kind);
   }
   std::unique_ptr<Odometry> operator()(const ScanToScanIcpConfig& config) const {
     return std::make_unique<ScanToScanIcp>(config, threads);
   }
   std::unique_ptr<Odometry> operator()(const DopplerIcpConfig& config) const {
-    return std::make_unique<ScanToScanIcp>(config, surroundings, threads);
+    return std::make_unique<ScanToScanIcp>(config, context, threads);
   }
   std::unique_ptr<Odometry> operator()(const KissIcpConfig& config) const {
     return std::make_unique<KissIcp>(config, threads);
@@ -53,11 +53,11 @@ struct Maker {
 
 }  // namespace
 
-std::unique_ptr<Odometry> make_odometry(const Config& config, const Surroundings& surroundings, int threads) {
-  if (surroundings.T_vehicle_sensor) {
-    check_mounting(*surroundings.T_vehicle_sensor);
+std::unique_ptr<Odometry> make_odometry(const Config& config, const SensorContext& context, int threads) {
+  if (context.T_vehicle_sensor) {
+    check_mounting(*context.T_vehicle_sensor);
   }
-  return std::visit(Maker{surroundings, threads}, config);
+  return std::visit(Maker{context, threads}, config);
 }
 
 }  // namespace dynamic_icp::odometry

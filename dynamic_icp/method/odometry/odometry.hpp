@@ -32,7 +32,7 @@ class Odometry {
 };
 
 /// What a method may know besides the scans.
-struct Surroundings {
+struct SensorContext {
   std::optional<Eigen::Isometry3d> T_vehicle_sensor;  ///< mounting of the sensor, where the recording has it
   /// What the Doppler of the scans will be, for `assumptions`; each scan says itself what is done with it.
   DopplerKind doppler_kind = DopplerKind::kRelative;
@@ -44,7 +44,6 @@ bool needs_doppler(std::string_view method);
 /// The pipeline of a configuration: `make_odometry(PaperConfig{})`, `make_odometry(configuration("kiss-icp"))`; an
 /// empty one is preset `default`. `threads` = 0 takes as many as the machine has. Throws UsageError when the
 /// configuration or the mounting is out of range.
-std::unique_ptr<Odometry> make_odometry(const Config& config = {}, const Surroundings& surroundings = {},
-                                        int threads = 0);
+std::unique_ptr<Odometry> make_odometry(const Config& config = {}, const SensorContext& context = {}, int threads = 0);
 
 }  // namespace dynamic_icp::odometry

@@ -21,7 +21,7 @@ Matrix6d adjoint(const Eigen::Isometry3d& T) {
 }
 
 /// An alignment of scans in the frame of the vehicle, told in the frame of the sensor.
-void tell_in_sensor_frame(registration::Alignment& alignment, const Eigen::Isometry3d& T_vehicle_sensor) {
+void express_in_sensor_frame(registration::Alignment& alignment, const Eigen::Isometry3d& T_vehicle_sensor) {
   const Eigen::Isometry3d T_sensor_vehicle = T_vehicle_sensor.inverse();
   alignment.T_target_source = T_sensor_vehicle * alignment.T_target_source * T_vehicle_sensor;
   if (alignment.covariance) {
@@ -49,12 +49,12 @@ struct ScanToScanIcp::Reference {
 ScanToScanIcp::ScanToScanIcp(const ScanToScanIcpConfig& config, int threads)
     : config_(checked(config)), workers_(threads), expected_(DopplerKind::kRelative), stream_(config.stream) {}
 
-ScanToScanIcp::ScanToScanIcp(const DopplerIcpConfig& config, const Surroundings& surroundings, int threads)
+ScanToScanIcp::ScanToScanIcp(const DopplerIcpConfig& config, const SensorContext& context, int threads)
     : config_(checked(config).icp),
       doppler_icp_(config),
-      T_vehicle_sensor_(surroundings.T_vehicle_sensor),
+      T_vehicle_sensor_(context.T_vehicle_sensor),
       workers_(threads),
-      expected_(surroundings.doppler_kind),
+      expected_(context.doppler_kind),
       stream_(config.icp.stream) {}
 
 ScanToScanIcp::~ScanToScanIcp() = default;
@@ -107,7 +107,7 @@ Frame ScanToScanIcp::process(const RawScan& raw) {
   now->T_world_sensor = frame.T_world_sensor;
   if (last_) {
     now->twist = log_se3(frame.T_target_source) / stream_.interval_s();
-    tell_velocity_from_motion(frame, stream_.interval_s());
+    set_velocity_from_motion(frame, stream_.interval_s());
   }
   last_ = std::move(now);
   return frame;
@@ -125,7 +125,7 @@ void ScanToScanIcp::align_to_last(const Reference& now, Frame& frame) const {
   frame.alignment = registration::align(source, target, T_initial, objective(target.scan.doppler_kind(), dt_s),
                                         stop_rule(config_.registration), workers_);
   if (T_vehicle_sensor_) {
-    tell_in_sensor_frame(frame.alignment, *T_vehicle_sensor_);
+    express_in_sensor_frame(frame.alignment, *T_vehicle_sensor_);
   }
   const FrameStatus status = frame_status(frame.alignment, dt_s);
   set_motion(frame, status, last_->T_world_sensor,

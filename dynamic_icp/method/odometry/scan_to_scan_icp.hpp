@@ -21,7 +21,7 @@ class ScanToScanIcp final : public Odometry {
  public:
   /// Both throw UsageError when the configuration is out of range.
   explicit ScanToScanIcp(const ScanToScanIcpConfig& config, int threads = 0);
-  ScanToScanIcp(const DopplerIcpConfig& config, const Surroundings& surroundings, int threads = 0);
+  ScanToScanIcp(const DopplerIcpConfig& config, const SensorContext& context, int threads = 0);
   ~ScanToScanIcp() override;
 
   Frame process(const RawScan& raw) override;

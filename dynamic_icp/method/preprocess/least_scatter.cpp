@@ -10,7 +10,7 @@
 namespace dynamic_icp::preprocess {
 namespace {
 
-constexpr int kMostSteps = 12;
+constexpr int kMaxSteps = 12;
 constexpr double kLastStep = 1e-15;      // of the trace
 constexpr double kSmallestGap = 1e-2;    // of the middle eigenvalue
 constexpr double kSmallestWidth = 1e-4;  // middle over largest eigenvalue
@@ -46,7 +46,7 @@ LeastScatter least_scatter(const Eigen::Matrix3d& scatter) {
   const double determinant = xx * (yy * zz - yz * yz) + xy * (xz * yz - xy * zz) + xz * (xy * yz - xz * yy);
   double smallest = 0.0;
   bool arrived = false;
-  for (int i = 0; i < kMostSteps && !arrived; ++i) {
+  for (int i = 0; i < kMaxSteps && !arrived; ++i) {
     const double value = ((smallest - trace) * smallest + minors) * smallest - determinant;
     const double slope = (3.0 * smallest - 2.0 * trace) * smallest + minors;
     const double step = value / slope;

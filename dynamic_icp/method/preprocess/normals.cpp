@@ -17,7 +17,7 @@ using simd::Lanes;
 using spatial::KdTree;
 
 constexpr std::size_t kLeavesPerBlock = 32;
-constexpr std::size_t kFewestNeighbours = 3;
+constexpr std::size_t kMinNeighbours = 3;
 
 // Scatter (m^2, summed over the neighbours) across which points still count as lying on one line.
 constexpr double kLineScatter = 1e-12;
@@ -106,7 +106,7 @@ Normals estimate_normals(std::span<const Eigen::Vector3d> points, const spatial:
       neighbourhoods.search(leaf);
       for (std::size_t row = 0; row < neighbourhoods.rows(); ++row) {
         const std::span<const std::uint32_t> neighbours = neighbourhoods.positions(row);
-        if (neighbours.size() < kFewestNeighbours) {
+        if (neighbours.size() < kMinNeighbours) {
           continue;
         }
         const std::uint32_t i = tree.order()[leaf * KdTree::kLeafSize + row];

@@ -18,7 +18,7 @@ constexpr std::size_t kBlock = 4096;
 
 ConfigFields fields(VoxelGridConfig& config) {
   return {{"voxel_size_m", &config.voxel_size_m, 0.0, 100.0, "m",
-           "edge of the voxels of which the first measured point is kept; 0 keeps every point"}};
+           "voxel size; the first point of each voxel is kept, 0 keeps all points"}};
 }
 
 Scan voxel_grid(const Scan& scan, const VoxelGridConfig& config) { return voxel_grid(scan, config, Workers(1)); }

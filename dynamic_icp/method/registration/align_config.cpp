@@ -11,7 +11,7 @@ ConfigFields fields(MatchingConfig& config) {
   return {
       {"max_correspondence_distance_m", &config.max_correspondence_distance_m, 1e-3, 1e3, "m",
        "a point farther than this from its nearest target point has no correspondence"},
-      {"max_iterations", &config.max_iterations, 1, 10000, "", "most Gauss-Newton steps (I_max)"},
+      {"max_iterations", &config.max_iterations, 1, 10000, "", "maximum number of Gauss-Newton steps (I_max)"},
       {"tolerance", &config.tolerance, 1e-12, 1.0, "",
        "the alignment has converged when fitness and inlier RMSE (m) both change by less (epsilon)"},
       {"min_correspondences", &config.min_correspondences, 6, 1000000, "", "fewer correspondences are a failure"},

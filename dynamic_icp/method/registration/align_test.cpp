@@ -147,9 +147,9 @@ TEST(Align, CostDoesNotChangeWhenBothScansAreTurned) {
   const Scan source = room.moved(T);
   const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, true, workers).find(T);
   const double expected = cost(source, room.target(), pairs, T);
-  Vector6d turn;
-  turn << 0.4, -1.1, 0.7, 0.0, 0.0, 0.0;
-  const Eigen::Isometry3d Q = exp_se3(turn);
+  Vector6d rotation;
+  rotation << 0.4, -1.1, 0.7, 0.0, 0.0, 0.0;
+  const Eigen::Isometry3d Q = exp_se3(rotation);
   const Scan turned_scan = room.scan.transformed(Q);
   const spatial::KdTree tree(turned_scan.points());
   std::vector<Vector3d> normals = room.normals;
@@ -192,7 +192,7 @@ TEST(Align, OnePlaneIsReportedAsDegenerate) {
   config.doppler_weight = 0.0;
   const Alignment result = align(room.scan, room.target(), Eigen::Isometry3d::Identity(), config, Workers(1));
   EXPECT_EQ(result.status, AlignStatus::kDegenerate);
-  ASSERT_EQ(result.degenerate.size(), 3u) << "two translations along the plane and the turn about its normal";
+  ASSERT_EQ(result.degenerate.size(), 3u) << "two translations along the plane and the rotation about its normal";
   for (const estimation::DegenerateDirection& open : result.degenerate) {
     EXPECT_NEAR(open.direction[0], 0.0, 1e-6);
     EXPECT_NEAR(open.direction[1], 0.0, 1e-6);
@@ -275,7 +275,7 @@ Alignment align_by(GeometryTerm term, const Room& room, const Scan& source, cons
   return align({source, normals, room.has_normal}, room.target(), T_initial, objective, {200, 1e-12}, Workers(2));
 }
 
-std::vector<Vector3d> turned(const std::vector<Vector3d>& normals, const Eigen::Matrix3d& R) {
+std::vector<Vector3d> rotated(const std::vector<Vector3d>& normals, const Eigen::Matrix3d& R) {
   std::vector<Vector3d> result;
   for (const Vector3d& normal : normals) {
     result.push_back(R * normal);
@@ -286,7 +286,7 @@ std::vector<Vector3d> turned(const std::vector<Vector3d>& normals, const Eigen::
 TEST(AlignTerms, EveryGeometryTermRecoversTheMotionOfTheSamePoints) {
   const Room room(1, 6000);
   const Eigen::Isometry3d T = motion(0.004, 0.05);
-  const std::vector<Vector3d> normals = turned(room.normals, T.linear().transpose());
+  const std::vector<Vector3d> normals = rotated(room.normals, T.linear().transpose());
   for (const GeometryTerm term :
        {GeometryTerm::kPointToPoint, GeometryTerm::kPointToPlane, GeometryTerm::kPlaneToPlane}) {
     const Alignment result = align_by(term, room, room.moved(T), normals, Eigen::Isometry3d::Identity());
@@ -323,7 +323,7 @@ TEST(AlignTerms, GicpGradientIsTheSlopeOfItsCost) {
   const Room room(1, 600, 0.02);
   const Eigen::Isometry3d T = motion(0.01, 0.05);
   const Scan scan = room.moved(T);
-  const std::vector<Vector3d> normals = turned(room.normals, T.linear().transpose());
+  const std::vector<Vector3d> normals = rotated(room.normals, T.linear().transpose());
   const Source source{scan, normals, room.has_normal};
   Objective objective;
   objective.geometry = GeometryTerm::kPlaneToPlane;

@@ -105,7 +105,7 @@ Fit fit_of(std::size_t pairs, double squared_distances, std::size_t source_size)
   return {pairs, count / static_cast<double>(source_size), std::sqrt(squared_distances / count)};
 }
 
-Correspondences judged(std::vector<Correspondence> pairs, std::size_t source_size) {
+Correspondences evaluated(std::vector<Correspondence> pairs, std::size_t source_size) {
   double sum = 0.0;
   for (const Correspondence& pair : pairs) {
     sum += pair.squared_distance;
@@ -124,7 +124,7 @@ CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& tar
       place_of_(source.size()),
       groups_((source.size() + kLanes - 1) / kLanes),
       lanes_of_last_group_(kAllLanes >> (kLanes * groups_.size() - source.size())),
-      known_(source.size()) {
+      cache_(source.size()) {
   const std::vector<std::uint32_t> order = spatial::space_order(source.points(), kCell_m);
   for (std::uint32_t place = 0; place < kLanes * groups_.size(); ++place) {
     SourceRows& group = groups_[place / kLanes];
@@ -172,7 +172,7 @@ void CorrespondenceSearch::look_up(std::span<const std::uint32_t> places) {
 
 /// False when a point that is not among the known ones might be nearer.
 bool CorrespondenceSearch::choose_among_known(std::uint32_t place) {
-  const Known& known = known_[place];
+  const NeighbourCache& known = cache_[place];
   const Eigen::Vector3d point = get(groups_[place / kLanes].moved, place % kLanes);
   const double others = known.others - std::sqrt(spatial::squared_distance(point, known.at)) - kRounding_m;
   if (!(others > 0.0)) {
@@ -218,7 +218,7 @@ void CorrespondenceSearch::search(std::span<const std::uint32_t> places) {
     search.search(std::span(points).first(size), std::span(found).first(size));
     for (std::size_t k = 0; k < size; ++k) {
       const auto& [neighbours, count] = found[k];
-      Known& known = known_[places[first + k]];
+      NeighbourCache& known = cache_[places[first + k]];
       known.at = points[k];
       known.count = static_cast<std::uint32_t>(count);
       for (std::size_t n = 0; n < count; ++n) {
@@ -273,7 +273,7 @@ Correspondences CorrespondenceSearch::pairs() const {
       pairs.push_back({i, group.partner[lane], group.squared_distance[lane]});
     }
   }
-  return judged(std::move(pairs), source_.size());
+  return evaluated(std::move(pairs), source_.size());
 }
 
 }  // namespace dynamic_icp::registration

@@ -42,7 +42,7 @@ struct Fit {
 Fit fit_of(std::size_t pairs, double squared_distances, std::size_t source_size);
 
 /// Pairs in the order of the source rows, with their fitness and inlier RMSE.
-Correspondences judged(std::vector<Correspondence> pairs, std::size_t source_size);
+Correspondences evaluated(std::vector<Correspondence> pairs, std::size_t source_size);
 
 /// Pairs each source point, moved by T_target_source, with the nearest target point at most `max_distance_m` away.
 /// A source point whose nearest target point has no normal stays alone: it gets no second choice.
@@ -70,7 +70,7 @@ class CorrespondenceSearch {
 
  private:
   /// The nearest target points of a point when the tree was searched.
-  struct Known {
+  struct NeighbourCache {
     Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< m, target frame: where the point was
     double others = 0.0;                           ///< m, all other target points were at least so far away from there
     std::array<std::uint32_t, spatial::FewNearest::kMost> nearest{};
@@ -89,8 +89,8 @@ class CorrespondenceSearch {
   const Workers& workers_;
   std::vector<std::uint32_t> place_of_;  ///< by row of the source: its place in the groups, four to a group
   std::vector<SourceRows> groups_;
-  unsigned lanes_of_last_group_;  ///< a bit for each lane of the last group that holds a point
-  std::vector<Known> known_;      ///< by place
+  unsigned lanes_of_last_group_;       ///< a bit for each lane of the last group that holds a point
+  std::vector<NeighbourCache> cache_;  ///< by place
 };
 
 }  // namespace dynamic_icp::registration

@@ -15,7 +15,7 @@ class LosingProblem : public Problem {
  public:
   Correspondences find(const Eigen::Isometry3d& T) override {
     const std::size_t pairs = T.matrix().isIdentity() ? 10 : 0;
-    return judged(std::vector<Correspondence>(pairs, {0, 0, 0.01}), 10);
+    return evaluated(std::vector<Correspondence>(pairs, {0, 0, 0.01}), 10);
   }
   [[nodiscard]] Linearisation linearise(const Correspondences& /*pairs*/, const Eigen::Isometry3d& /*T*/,
                                         int /*iteration*/) const override {
@@ -41,7 +41,7 @@ class RunawayProblem : public Problem {
   explicit RunawayProblem(double gradient) : gradient_(gradient) {}
   Correspondences find(const Eigen::Isometry3d& T) override {
     EXPECT_TRUE(T.matrix().allFinite());
-    return judged(std::vector<Correspondence>(10, {0, 0, 0.01}), 10);
+    return evaluated(std::vector<Correspondence>(10, {0, 0, 0.01}), 10);
   }
   [[nodiscard]] Linearisation linearise(const Correspondences& /*pairs*/, const Eigen::Isometry3d& /*T*/,
                                         int iteration) const override {

@@ -137,15 +137,15 @@ DYNAMIC_ICP_INLINE void add_doppler(LaneSums& sums, const SourceRows& group, con
   Vector u;
   load(ray, group.ray);
   load(u, group.direction);
-  const Vector turned{(R[0] * ray.x + R[1] * ray.y) + R[2] * ray.z, (R[3] * ray.x + R[4] * ray.y) + R[5] * ray.z,
-                      (R[6] * ray.x + R[7] * ray.y) + R[8] * ray.z};
+  const Vector rotated{(R[0] * ray.x + R[1] * ray.y) + R[2] * ray.z, (R[3] * ray.x + R[4] * ray.y) + R[5] * ray.z,
+                       (R[6] * ray.x + R[7] * ray.y) + R[8] * ray.z};
   Lanes doppler;
   simd::load(doppler, group.doppler.data());
   Lanes e;
-  dot(e, u, turned);
+  dot(e, u, rotated);
   e -= doppler;
   Vector c;
-  cross(c, turned, u);
+  cross(c, rotated, u);
   Lanes weight;
   tukey(weight, e, objective.tukey_doppler_mps, pairs);
   weight = objective.doppler_weight * weight;

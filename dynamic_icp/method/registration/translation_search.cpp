@@ -14,7 +14,7 @@ namespace {
 constexpr double kFastest_mps = 45.0;
 constexpr double kTargetVoxel_m = 0.4;
 constexpr std::size_t kAlignedPoints = 700;
-constexpr std::size_t kJudgedPoints = 4000;
+constexpr std::size_t kEvaluatedPoints = 4000;
 constexpr double kStartStep_m = 0.8;
 constexpr double kReach_m = 1.0;
 constexpr double kWidth_m = 0.2;
@@ -39,7 +39,7 @@ std::vector<Candidate> candidates_along(const std::vector<Eigen::Vector3d>& axes
   config.max_iterations = kIterations;
   config.tolerance = kTolerance;
   const Scan aligned = evenly_thinned(source, kAlignedPoints);
-  const Scan judged = evenly_thinned(source, kJudgedPoints);
+  const Scan evaluated = evenly_thinned(source, kEvaluatedPoints);
   const int steps = static_cast<int>(reach_m / kStartStep_m);
   std::vector<Candidate> candidates;
   for (const Eigen::Vector3d& axis : axes) {
@@ -50,7 +50,7 @@ std::vector<Candidate> candidates_along(const std::vector<Eigen::Vector3d>& axes
       if (found.correspondences > 0) {
         candidate.T_target_source = found.T_target_source;
       }
-      candidate.cost = misfit(judged, target, candidate.T_target_source, workers);
+      candidate.cost = misfit(evaluated, target, candidate.T_target_source, workers);
       candidates.push_back(candidate);
     }
   }

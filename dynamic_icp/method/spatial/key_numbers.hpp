@@ -36,7 +36,7 @@ class NumbersOf {
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
 
   /// With room for `expected` keys; grows as needed.
-  explicit NumbersOf(std::size_t expected = 0) : slots_(std::bit_ceil(std::max(kFewestSlots, 2 * expected))) {}
+  explicit NumbersOf(std::size_t expected = 0) : slots_(std::bit_ceil(std::max(kMinSlots, 2 * expected))) {}
 
   /// The number of a key, a new one if it never came.
   std::uint32_t number_of(const Key& key) {
@@ -64,7 +64,7 @@ class NumbersOf {
   }
 
  private:
-  static constexpr std::size_t kFewestSlots = 1024;
+  static constexpr std::size_t kMinSlots = 1024;
 
   struct Slot {
     Key key{};

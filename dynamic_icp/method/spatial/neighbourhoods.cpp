@@ -19,7 +19,7 @@ using simd::load;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kRoundingUp = 1.0 + 1e-12;  // more than all rounding in a bound
-constexpr int kMostGuesses = 12;
+constexpr int kMaxGuesses = 12;
 
 /// How many of the values, whose number is a multiple of four, do not exceed the limit.
 DYNAMIC_ICP_INLINE std::size_t count_within(const double* values, std::size_t n, double limit) {
@@ -41,7 +41,7 @@ DYNAMIC_ICP_INLINE double parting_value(const double* values, std::size_t n, std
   double low_count = 0.0;
   auto high_count = static_cast<double>(n);
   const auto wanted = static_cast<double>(k);
-  for (int guess = 0; guess < kMostGuesses; ++guess) {
+  for (int guess = 0; guess < kMaxGuesses; ++guess) {
     // Half a point more: any value between two neighbours will do.
     const double share = guess % 4 == 3 ? 0.5 : (wanted + 0.5 - low_count) / (high_count + 0.5 - low_count);
     const double middle = low + (high - low) * share;

@@ -39,10 +39,10 @@ constexpr double kOwnSpeed_mps = 1.0;  // slower things have no direction of mot
 MotionFilter prior(const Vector3d& position, const TrackConfig& config) {
   MotionFilter::Vector7d state = MotionFilter::Vector7d::Zero();
   state.head<3>() = position;
-  MotionFilter::Vector7d deviation;
-  deviation << 1.0, 1.0, 1.0, config.prior_speed_mps, config.prior_speed_mps, config.prior_climb_mps,
+  MotionFilter::Vector7d sigmas;
+  sigmas << 1.0, 1.0, 1.0, config.prior_speed_mps, config.prior_speed_mps, config.prior_climb_mps,
       config.prior_yaw_rate_rps;
-  return {state, deviation.cwiseAbs2().asDiagonal()};
+  return {state, sigmas.cwiseAbs2().asDiagonal()};
 }
 
 Vector3d mean_of(const std::vector<Vector3d>& points) {
@@ -55,9 +55,9 @@ Vector3d mean_of(const std::vector<Vector3d>& points) {
 
 }  // namespace
 
-BoxFilter::BoxFilter(const Sighting& sighting, std::optional<double> yaw_rad, const TrackConfig& config)
-    : motion_(prior(mean_of(sighting.points), config)), moves_along_sides_(yaw_rad.has_value()) {
-  correct_doppler(sighting, config);
+BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const TrackConfig& config)
+    : motion_(prior(mean_of(detection.points), config)), moves_along_sides_(yaw_rad.has_value()) {
+  correct_doppler(detection, config);
   if (yaw_rad) {
     const double speed = motion_.velocity().head<2>().norm();
     const double sigma = kFirstYawSigma_rad * speed + kYawFloor_mps;
@@ -68,7 +68,7 @@ BoxFilter::BoxFilter(const Sighting& sighting, std::optional<double> yaw_rad, co
     yaw_ = std::atan2(motion_.velocity().y(), motion_.velocity().x());
     log_likelihood_ += kLogUnlikely;
   }
-  make_box(at_mean_time(sighting, motion_.velocity()), config);
+  make_box(at_mean_time(detection, motion_.velocity()), config);
 }
 
 void BoxFilter::predict(double dt_s, const TrackConfig& config) {
@@ -76,15 +76,15 @@ void BoxFilter::predict(double dt_s, const TrackConfig& config) {
   motion_.predict(dt_s, config.motion);
 }
 
-void BoxFilter::correct(const Sighting& sighting, const TrackConfig& config) {
-  correct_doppler(sighting, config);
-  const Sighting now = at_mean_time(sighting, motion_.velocity());
+void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
+  correct_doppler(detection, config);
+  const Detection now = at_mean_time(detection, motion_.velocity());
   follow_direction();
   if (moves_along_sides_) {
     correct_yaw(now, config);
     follow_direction();
   }
-  if (box_deviation_rad_ > kGoodDirection_rad && direction_deviation() < kBetterDirection * box_deviation_rad_) {
+  if (box_sigma_rad_ > kGoodDirection_rad && direction_sigma() < kBetterDirection * box_sigma_rad_) {
     make_box(now, config);
     log_likelihood_ += kLogUsual;
   } else {
@@ -94,7 +94,7 @@ void BoxFilter::correct(const Sighting& sighting, const TrackConfig& config) {
 
 OrientedBox BoxFilter::box() const { return {motion_.position(), upright_axes(yaw_), size_}; }
 
-double BoxFilter::direction_deviation() const {
+double BoxFilter::direction_sigma() const {
   const Eigen::Vector2d v = motion_.velocity().head<2>();
   const double speed = v.norm();
   if (speed < kOwnSpeed_mps) {
@@ -104,47 +104,48 @@ double BoxFilter::direction_deviation() const {
   return std::sqrt(across.dot(motion_.covariance().block<2, 2>(3, 3) * across)) / speed;
 }
 
-void BoxFilter::correct_doppler(const Sighting& sighting, const TrackConfig& config) {
-  const ClusterVelocity measured = fit_cluster_velocity(sighting.directions, sighting.radial, config.doppler_sigma_mps);
+void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
+  const ClusterVelocity measured =
+      fit_cluster_velocity(detection.directions, detection.radial, config.doppler_sigma_mps);
   spread_mps_ = measured.spread_mps;
   signal_mps_ = measured.signal_mps;
   // Roll and pitch of the body look like a vertical velocity, the more the farther it is.
-  const double sway = config.sway_rps * (motion_.position() - sighting.sensor).norm();
+  const double sway = config.sway_rps * (motion_.position() - detection.sensor).norm();
   Eigen::Matrix3d floor = config.doppler_floor_mps * config.doppler_floor_mps * Eigen::Matrix3d::Identity();
   floor(2, 2) += sway * sway;
-  log_likelihood_ += motion_.correct_doppler(measured, sighting.sensor, floor);
+  log_likelihood_ += motion_.correct_doppler(measured, detection.sensor, floor);
 }
 
 /// Vehicles move where their sides point.
-void BoxFilter::correct_yaw(const Sighting& sighting, const TrackConfig& config) {
-  const std::optional<double> fitted = fit_yaw(sighting.points, yaw_, kYawSearch_rad);
+void BoxFilter::correct_yaw(const Detection& detection, const TrackConfig& config) {
+  const std::optional<double> fitted = fit_yaw(detection.points, yaw_, kYawSearch_rad);
   if (!fitted || motion_.velocity().head<2>().norm() < kOwnSpeed_mps) {
     return;
   }
   const Eigen::Matrix3d axes = upright_axes(*fitted);
-  const double side = std::max(span_along(sighting.points, motion_.position(), axes.col(0), kTrim).length(),
-                               span_along(sighting.points, motion_.position(), axes.col(1), kTrim).length());
+  const double side = std::max(span_along(detection.points, motion_.position(), axes.col(0), kTrim).length(),
+                               span_along(detection.points, motion_.position(), axes.col(1), kTrim).length());
   if (side < std::max(kShortestSide_m, config.vehicle_width_m)) {
     return;
   }
-  const double range = (motion_.position() - sighting.sensor).norm();
+  const double range = (motion_.position() - detection.sensor).norm();
   const double sigma =
       std::hypot(config.yaw_sigma_rad, (config.face_sigma_m + config.face_sigma_growth * range) / side);
   const double speed = motion_.velocity().head<2>().norm();
-  const double deviation = sigma * speed + 0.1;
-  log_likelihood_ += motion_.correct_velocity(axes.col(1), 0.0, deviation * deviation);
+  const double sigma_mps = sigma * speed + 0.1;
+  log_likelihood_ += motion_.correct_velocity(axes.col(1), 0.0, sigma_mps * sigma_mps);
 }
 
 void BoxFilter::follow_direction() {
-  if (direction_deviation() < kKnownDirection_rad) {
+  if (direction_sigma() < kKnownDirection_rad) {
     const Vector3d v = motion_.velocity();
     yaw_ = std::atan2(v.y(), v.x());
   }
 }
 
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next.
-bool BoxFilter::is_true_end(const Vector3d& end, const Vector3d& outward, const Sighting& sighting) const {
-  const Vector3d to_end = end - sighting.sensor;
+bool BoxFilter::is_true_end(const Vector3d& end, const Vector3d& outward, const Detection& detection) const {
+  const Vector3d to_end = end - detection.sensor;
   const double range = to_end.norm();
   const Vector3d sight = to_end / range;
   const Vector3d sideways = outward - outward.dot(sight) * sight;
@@ -152,25 +153,25 @@ bool BoxFilter::is_true_end(const Vector3d& end, const Vector3d& outward, const 
     return outward.dot(sight) < 0.0;  // the near end of what is seen end-on; the body hides the far one
   }
   // Points of the body that hardly move along the line of sight are missing among the moving ones.
-  if (std::abs(sight.dot(motion_.doppler_velocity(sighting.sensor))) < kDimSpeed_mps) {
+  if (std::abs(sight.dot(motion_.doppler_velocity(detection.sensor))) < kDimSpeed_mps) {
     return false;
   }
-  if (sighting.view == nullptr) {
+  if (detection.view == nullptr) {
     return true;
   }
   const double cell = range * RangeImage::cell_width();
   for (const double step : {cell, std::max(kLookBeyond_m, 2.0 * cell)}) {
-    const Vector3d beyond = sighting.T_sensor_world * (end + step * sideways.normalized());
-    if (sighting.view->hides(beyond, kOccluderClearance_m)) {
+    const Vector3d beyond = detection.T_sensor_world * (end + step * sideways.normalized());
+    if (detection.view->hides(beyond, kOccluderClearance_m)) {
       return false;
     }
   }
   return true;
 }
 
-AxisView BoxFilter::look_along(int axis, const Sighting& sighting) const {
+AxisView BoxFilter::look_along(int axis, const Detection& detection) const {
   const Vector3d direction = upright_axes(yaw_).col(axis);
-  AxisView view{span_along(sighting.points, motion_.position(), direction, kTrim)};
+  AxisView view{span_along(detection.points, motion_.position(), direction, kTrim)};
   if (axis == 2) {
     return view;
   }
@@ -178,7 +179,7 @@ AxisView BoxFilter::look_along(int axis, const Sighting& sighting) const {
   Vector3d high = Vector3d::Zero();
   double low_count = 0.0;
   double high_count = 0.0;
-  for (const Vector3d& point : sighting.points) {
+  for (const Vector3d& point : detection.points) {
     const double q = (point - motion_.position()).dot(direction);
     if (q <= view.seen.low + kEndDepth_m) {
       low += point;
@@ -189,19 +190,19 @@ AxisView BoxFilter::look_along(int axis, const Sighting& sighting) const {
       high_count += 1.0;
     }
   }
-  view.low_end = is_true_end(low / low_count, -direction, sighting);
-  view.high_end = is_true_end(high / high_count, direction, sighting);
+  view.low_end = is_true_end(low / low_count, -direction, detection);
+  view.high_end = is_true_end(high / high_count, direction, detection);
   return view;
 }
 
 /// The box from this sighting and, where ends are hidden, what is known of its size.
-void BoxFilter::make_box(const Sighting& sighting, const TrackConfig& config) {
+void BoxFilter::make_box(const Detection& detection, const TrackConfig& config) {
   const Eigen::Matrix3d axes = upright_axes(yaw_);
-  const Vector3d known = box_deviation_rad_ < kUsableDirection_rad ? size_ : Vector3d::Zero();
+  const Vector3d known = box_sigma_rad_ < kUsableDirection_rad ? size_ : Vector3d::Zero();
   Vector3d centre = motion_.position();
   Vector3d shift = Vector3d::Zero();
   for (const int axis : {1, 0, 2}) {
-    const AxisView view = look_along(axis, sighting);
+    const AxisView view = look_along(axis, detection);
     double least = known[axis];
     if (axis == 0 && size_.y() >= config.vehicle_width_m) {
       least = std::max(least, config.vehicle_length_m);
@@ -212,33 +213,33 @@ void BoxFilter::make_box(const Sighting& sighting, const TrackConfig& config) {
     const double towards_hidden = (view.low_end ? 1.0 : 0.0) - (view.high_end ? 1.0 : 0.0);
     shift += 0.5 * towards_hidden * (size_[axis] - seen) * axes.col(axis);
   }
-  const double range = (centre - sighting.sensor).norm();
+  const double range = (centre - detection.sensor).norm();
   const double sigma = config.face_sigma_m + config.face_sigma_growth * range;
   motion_.restart_position(centre, sigma * sigma);
   motion_.move_reference(shift);
-  box_deviation_rad_ = direction_deviation();
-  judge_width(config);
+  box_sigma_rad_ = direction_sigma();
+  evaluate_width(config);
 }
 
 /// Vehicles have a greatest width, and are not wider than long.
-void BoxFilter::judge_width(const TrackConfig& config) {
+void BoxFilter::evaluate_width(const TrackConfig& config) {
   const double too_wide = std::max({0.0, size_.y() - config.largest_width_m, size_.y() - size_.x()});
   log_likelihood_ += std::max(kWorstLog, -0.5 * std::pow(too_wide / kWidthSigma_m, 2));
 }
 
 /// Sizes and position from what is seen along the axes.
-void BoxFilter::correct_box(const Sighting& sighting, const TrackConfig& config) {
-  const double range = (motion_.position() - sighting.sensor).norm();
+void BoxFilter::correct_box(const Detection& detection, const TrackConfig& config) {
+  const double range = (motion_.position() - detection.sensor).norm();
   const double sigma = config.face_sigma_m + config.face_sigma_growth * range;
   for (int axis = 0; axis < 3; ++axis) {
-    correct_axis(axis, sighting, sigma);
+    correct_axis(axis, detection, sigma);
   }
-  judge_width(config);
+  evaluate_width(config);
 }
 
-void BoxFilter::correct_axis(int axis, const Sighting& sighting, double sigma) {
+void BoxFilter::correct_axis(int axis, const Detection& detection, double sigma) {
   const Vector3d direction = upright_axes(yaw_).col(axis);
-  const AxisView view = look_along(axis, sighting);
+  const AxisView view = look_along(axis, detection);
   const double here = direction.dot(motion_.position());
   const double missing = view.seen.length() - size_[axis];
   if (view.low_end && view.high_end) {

@@ -6,9 +6,9 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/method/tracking/detection.hpp"
 #include "dynamic_icp/method/tracking/motion_filter.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
-#include "dynamic_icp/method/tracking/sighting.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
 namespace dynamic_icp::tracking {
@@ -29,13 +29,13 @@ class BoxFilter {
  public:
   /// From a first sighting with at least one point, at its mean time. `yaw`: the direction in which, or against which,
   /// the body is taken to move, as vehicles move along their sides. Without it nothing is assumed.
-  BoxFilter(const Sighting& sighting, std::optional<double> yaw_rad, const TrackConfig& config);
+  BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const TrackConfig& config);
 
   /// Moves the state on by `dt_s` seconds, which may be negative.
   void predict(double dt_s, const TrackConfig& config);
 
   /// Takes in another sighting; the state must be that of its mean time.
-  void correct(const Sighting& sighting, const TrackConfig& config);
+  void correct(const Detection& detection, const TrackConfig& config);
 
   [[nodiscard]] const MotionFilter& motion() const { return motion_; }
   [[nodiscard]] OrientedBox box() const;  ///< world
@@ -44,7 +44,7 @@ class BoxFilter {
   [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
 
   /// Deviation of the direction of the velocity, rad; pi for what stands.
-  [[nodiscard]] double direction_deviation() const;
+  [[nodiscard]] double direction_sigma() const;
 
   /// Spread of the last sighting's radial velocities about those of a rigid body, m/s.
   [[nodiscard]] double spread_mps() const { return spread_mps_; }
@@ -53,16 +53,16 @@ class BoxFilter {
   [[nodiscard]] double signal_mps() const { return signal_mps_; }
 
  private:
-  void correct_doppler(const Sighting& sighting, const TrackConfig& config);
-  void correct_yaw(const Sighting& sighting, const TrackConfig& config);
+  void correct_doppler(const Detection& detection, const TrackConfig& config);
+  void correct_yaw(const Detection& detection, const TrackConfig& config);
   void follow_direction();
-  void make_box(const Sighting& sighting, const TrackConfig& config);
-  void correct_box(const Sighting& sighting, const TrackConfig& config);
-  void judge_width(const TrackConfig& config);
-  void correct_axis(int axis, const Sighting& sighting, double sigma);
-  [[nodiscard]] AxisView look_along(int axis, const Sighting& sighting) const;
+  void make_box(const Detection& detection, const TrackConfig& config);
+  void correct_box(const Detection& detection, const TrackConfig& config);
+  void evaluate_width(const TrackConfig& config);
+  void correct_axis(int axis, const Detection& detection, double sigma);
+  [[nodiscard]] AxisView look_along(int axis, const Detection& detection) const;
   [[nodiscard]] bool is_true_end(const Eigen::Vector3d& end, const Eigen::Vector3d& outward,
-                                 const Sighting& sighting) const;
+                                 const Detection& detection) const;
 
   MotionFilter motion_;
   bool moves_along_sides_;
@@ -71,7 +71,7 @@ class BoxFilter {
   double log_likelihood_ = 0.0;
   double spread_mps_ = 0.0;
   double signal_mps_ = 0.0;
-  double box_deviation_rad_ = 0.0;  ///< of the direction when the box was last made anew
+  double box_sigma_rad_ = 0.0;  ///< of the direction when the box was last made anew
 };
 
 }  // namespace dynamic_icp::tracking

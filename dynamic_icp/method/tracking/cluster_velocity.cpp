@@ -51,7 +51,7 @@ ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions
     for (std::size_t i = 0; i < radial.size(); ++i) {
       magnitudes[i] = std::abs(radial[i] - directions[i].dot(result.W));
     }
-    const double scale = std::max(sigma_mps, kDeviationPerMad * median(magnitudes));
+    const double scale = std::max(sigma_mps, kSigmaPerMad * median(magnitudes));
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < radial.size(); ++i) {

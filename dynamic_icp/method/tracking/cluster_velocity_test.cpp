@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 const Vector3d kCentre(20, 6, 1);
 const Vector3d kVelocity(3, 8, 0.2);
-const Vector3d kTurn(0, 0, 0.6);
+const Vector3d kRotation(0, 0, 0.6);
 
 /// Points of a body around kCentre that moves with kVelocity and turns with kTurn, seen from the origin.
 struct Body {
@@ -33,7 +33,7 @@ struct Body {
       const bool outlier = one.uniform(3) < outliers;
       directions.push_back(u);
       radial.push_back(outlier ? one.uniform(4, -30.0, 30.0)
-                               : u.dot(kVelocity + kTurn.cross(point - kCentre)) + sigma * one.normal(5));
+                               : u.dot(kVelocity + kRotation.cross(point - kCentre)) + sigma * one.normal(5));
     }
   }
 };
@@ -41,7 +41,7 @@ struct Body {
 TEST(ClusterVelocity, OfATurningBodyIsItsVelocityWithoutTheTurn) {
   const Body body(200);
   const ClusterVelocity fit = fit_cluster_velocity(body.directions, body.radial, 0.05);
-  EXPECT_TRUE(fit.W.isApprox(kVelocity - kTurn.cross(kCentre), 1e-6)) << fit.W.transpose();
+  EXPECT_TRUE(fit.W.isApprox(kVelocity - kRotation.cross(kCentre), 1e-6)) << fit.W.transpose();
   EXPECT_GT(fit.information.trace(), 0.9 * 200.0 / (0.05 * 0.05)) << "no point is left out";
 }
 
@@ -69,7 +69,7 @@ TEST(ClusterVelocity, ErrorsAreAsLargeAsTheInformationSays) {
       radial[i] += 0.05 * noise.normal(i);
     }
     const ClusterVelocity fit = fit_cluster_velocity(shape.directions, radial, 0.05);
-    const Vector3d e = fit.W - (kVelocity - kTurn.cross(kCentre));
+    const Vector3d e = fit.W - (kVelocity - kRotation.cross(kCentre));
     sum += e.dot(fit.information * e);
   }
   EXPECT_GT(sum / kBodies, 2.4);

@@ -10,9 +10,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kGateDeviations = 2.0;
-constexpr double kWidestGate_m = 2.0;
-constexpr double kWidestGate_mps = 3.0;
+constexpr double kGateSigmas = 2.0;
+constexpr double kMaxGate_m = 2.0;
+constexpr double kMaxGate_mps = 3.0;
 
 constexpr double kGroundClearance_m = 0.3;  // points lower in a box may be the road ...
 constexpr double kGroundShare = 0.25;       // ... but at most so much of its height is left out
@@ -41,7 +41,7 @@ Expectation::Expectation(const Track& predicted, const SensorMotion& sensor, con
   W = predicted.motion().doppler_velocity(eye);
   W_covariance = predicted.motion().doppler_covariance(eye);
   const double position = std::sqrt(predicted.motion().covariance().topLeftCorner<2, 2>().trace());
-  gate_m = std::min(kWidestGate_m, config.gate_m + kGateDeviations * position);
+  gate_m = std::min(kMaxGate_m, config.gate_m + kGateSigmas * position);
   gate_mps = config.gate_mps;
 }
 
@@ -49,21 +49,21 @@ double Expectation::outside(const Vector3d& point_world, double time_s) const {
   return distance_outside(box, point_world - time_s * velocity);
 }
 
-double Expectation::deviation(const Vector3d& direction_world, double radial_mps) const {
+double Expectation::gate_ratio(const Vector3d& direction_world, double radial_mps) const {
   const double sigma = std::sqrt(std::max(0.0, direction_world.dot(W_covariance * direction_world)));
-  const double gate = std::min(kWidestGate_mps, gate_mps + kGateDeviations * sigma);
+  const double gate = std::min(kMaxGate_mps, gate_mps + kGateSigmas * sigma);
   return std::abs(radial_mps - direction_world.dot(W)) / gate;
 }
 
-bool Expectation::may_look_still(const Vector3d& sensor_world, double slow_mps) const {
+bool Expectation::may_appear_static(const Vector3d& sensor_world, double slow_mps) const {
   const Vector3d to_object = box.centre - sensor_world;
   const double range = std::max(1.0, to_object.norm());
   const double difference = 0.5 * box.size.norm() / range * W.norm();  // of radial velocities within the body
   return velocity.norm() > slow_mps && std::abs(to_object.dot(W)) / range < slow_mps + difference;
 }
 
-void visit_still_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,
-                        const StillVisitor& visit) {
+void visit_static_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,
+                         const StaticVisitor& visit) {
   if (expectations.empty()) {
     return;
   }

@@ -37,10 +37,10 @@ struct Expectation {
   [[nodiscard]] double outside(const Eigen::Vector3d& point_world, double time_s) const;
 
   /// Deviation of a radial velocity from the expected one as a share of what is allowed.
-  [[nodiscard]] double deviation(const Eigen::Vector3d& direction_world, double radial_mps) const;
+  [[nodiscard]] double gate_ratio(const Eigen::Vector3d& direction_world, double radial_mps) const;
 
   /// Whether some of its points may be as slow along the line of sight as what stands, though it moves.
-  [[nodiscard]] bool may_look_still(const Eigen::Vector3d& sensor_world, double slow_mps) const;
+  [[nodiscard]] bool may_appear_static(const Eigen::Vector3d& sensor_world, double slow_mps) const;
 };
 
 /// One scan, prepared for tracking.
@@ -59,11 +59,11 @@ struct TrackingInput {
 };
 
 /// Called with the number of an expectation, a row, and the row's line of sight in world axes.
-using StillVisitor = std::function<void(std::size_t expectation, std::uint32_t row, const Eigen::Vector3d& direction)>;
+using StaticVisitor = std::function<void(std::size_t expectation, std::uint32_t row, const Eigen::Vector3d& direction)>;
 
 /// Visits each point that is not among the moving ones in the box of each expectation, without the lowest part of the
 /// box, where the ground may be. In the order of the rows.
-void visit_still_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,
-                        const StillVisitor& visit);
+void visit_static_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,
+                         const StaticVisitor& visit);
 
 }  // namespace dynamic_icp::tracking

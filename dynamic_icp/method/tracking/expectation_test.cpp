@@ -18,17 +18,17 @@ using Eigen::Vector3d;
 /// A track of a car that drives with `velocity`, from its rear and right side.
 Track car(const Vector3d& centre, const Vector3d& velocity) {
   const Eigen::Matrix3d axes = upright_axes(std::atan2(velocity.y(), velocity.x()));
-  Sighting sighting;
+  Detection detection;
   for (std::uint64_t i = 0; i < 200; ++i) {
     const RandomSource one = RandomSource(4).fork(i);
     Vector3d q(one.uniform(0, -0.5, 0.5), one.uniform(1, -0.5, 0.5), one.uniform(2, -0.5, 0.5));
     (i % 3 == 0 ? q.x() : q.y()) = -0.5;
-    sighting.points.emplace_back(centre + axes * q.cwiseProduct(Vector3d(4.5, 1.8, 1.5)));
-    sighting.directions.push_back(sighting.points.back().normalized());
-    sighting.radial.push_back(sighting.directions.back().dot(velocity));
-    sighting.times.push_back(0.0);
+    detection.points.emplace_back(centre + axes * q.cwiseProduct(Vector3d(4.5, 1.8, 1.5)));
+    detection.directions.push_back(detection.points.back().normalized());
+    detection.radial.push_back(detection.directions.back().dot(velocity));
+    detection.times.push_back(0.0);
   }
-  return {sighting, 0.0, {}};
+  return {detection, 0.0, {}};
 }
 
 Expectation expectation_of(const Vector3d& centre, const Vector3d& velocity) {
@@ -44,16 +44,16 @@ TEST(Expectation, ItsOwnPointsAreInsideAndHaveItsRadialVelocity) {
   EXPECT_LT(expected.outside(rear + 0.1 * expected.velocity, 0.1), 0.1) << "it has moved on when it was measured";
   EXPECT_GT(expected.outside(rear - Vector3d(6.0, 0.0, 0.0), 0.0), expected.gate_m);
   const Vector3d sight = rear.normalized();
-  EXPECT_LT(expected.deviation(sight, sight.dot(velocity)), 0.2);
-  EXPECT_GT(expected.deviation(sight, sight.dot(velocity) + 4.0), 1.0) << "beyond the widest gate";
-  EXPECT_NEAR(expected.deviation(sight, sight.dot(expected.W) + 1.0),
-              expected.deviation(sight, sight.dot(expected.W) - 1.0), 1e-9);
+  EXPECT_LT(expected.gate_ratio(sight, sight.dot(velocity)), 0.2);
+  EXPECT_GT(expected.gate_ratio(sight, sight.dot(velocity) + 4.0), 1.0) << "beyond the widest gate";
+  EXPECT_NEAR(expected.gate_ratio(sight, sight.dot(expected.W) + 1.0),
+              expected.gate_ratio(sight, sight.dot(expected.W) - 1.0), 1e-9);
 }
 
 TEST(Expectation, OnlyWhatCrossesTheLineOfSightMayAppearStatic) {
   const Vector3d eye = Vector3d::Zero();
-  EXPECT_TRUE(expectation_of({20.0, 0.0, 0.0}, {0.0, 8.0, 0.0}).may_look_still(eye, 1.0));
-  EXPECT_FALSE(expectation_of({20.0, 0.0, 0.0}, {8.0, 0.0, 0.0}).may_look_still(eye, 1.0));
+  EXPECT_TRUE(expectation_of({20.0, 0.0, 0.0}, {0.0, 8.0, 0.0}).may_appear_static(eye, 1.0));
+  EXPECT_FALSE(expectation_of({20.0, 0.0, 0.0}, {8.0, 0.0, 0.0}).may_appear_static(eye, 1.0));
 }
 
 TEST(Expectation, VisitsTheStaticPointsInItsBoxAboveTheGround) {
@@ -85,12 +85,12 @@ TEST(Expectation, VisitsTheStaticPointsInItsBoxAboveTheGround) {
     const Workers workers(threads);
     const TrackingInput input{scan, radial, is_moving, {}, 0.0, 0.0, {}, {}, {}, {}, RangeImage(scan, workers)};
     std::vector<std::uint32_t> visited;
-    visit_still_points(input, std::vector<Expectation>{expected}, workers,
-                       [&](std::size_t number, std::uint32_t row, const Vector3d& direction) {
-                         EXPECT_EQ(number, 0u);
-                         EXPECT_TRUE(direction.isApprox(scan.directions()[row], 1e-12));
-                         visited.push_back(row);
-                       });
+    visit_static_points(input, std::vector<Expectation>{expected}, workers,
+                        [&](std::size_t number, std::uint32_t row, const Vector3d& direction) {
+                          EXPECT_EQ(number, 0u);
+                          EXPECT_TRUE(direction.isApprox(scan.directions()[row], 1e-12));
+                          visited.push_back(row);
+                        });
     EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end()));
     EXPECT_EQ(std::set<std::uint32_t>(visited.begin(), visited.end()), inside);
     EXPECT_EQ(visited.size(), inside.size()) << "none twice";

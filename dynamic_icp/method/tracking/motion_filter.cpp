@@ -17,8 +17,8 @@ using Eigen::Vector3d;
 
 // Measurements more than this many deviations off count as if they were just so many off (Huber's influence).
 constexpr double kLargestInnovation = 3.0;
-constexpr double kWorstSquare = 16.0;       // of a normalised residual, for the likelihood: all may happen
-constexpr double kLeastInformation = 1e-4;  // (s/m)^2: a deviation of 100 m/s
+constexpr double kWorstSquare = 16.0;     // of a normalised residual, for the likelihood: all may happen
+constexpr double kMinInformation = 1e-4;  // (s/m)^2: a deviation of 100 m/s
 
 const Vector3d kUp = Vector3d::UnitZ();
 
@@ -121,7 +121,7 @@ double MotionFilter::correct_doppler(const ClusterVelocity& measured, const Vect
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(measured.information);
   for (int i = 2; i >= 0; --i) {
     const double information = eigen.eigenvalues()[i];
-    if (information < kLeastInformation) {
+    if (information < kMinInformation) {
       continue;
     }
     const Vector3d e = eigen.eigenvectors().col(i);

@@ -17,10 +17,10 @@ using Eigen::Vector3d;
 using Vector7d = MotionFilter::Vector7d;
 using Matrix7d = MotionFilter::Matrix7d;
 
-MotionFilter filter(const Vector3d& p, const Vector3d& v, double yaw_rate, double deviation = 1.0) {
+MotionFilter filter(const Vector3d& p, const Vector3d& v, double yaw_rate, double sigma = 1.0) {
   Vector7d x;
   x << p, v, yaw_rate;
-  return {x, deviation * deviation * Matrix7d::Identity()};
+  return {x, sigma * sigma * Matrix7d::Identity()};
 }
 
 TEST(MotionFilter, FollowsACircle) {
@@ -59,9 +59,9 @@ TEST(MotionFilter, DopplerVelocityIsThatOfTheEquation) {
 TEST(MotionFilter, DopplerAloneDoesNotTellTurningFromMovingAcross) {
   Vector7d x = Vector7d::Zero();
   x.x() = 30.0;
-  Vector7d deviation;
-  deviation << 1e-3, 1e-3, 1e-3, 10.0, 10.0, 10.0, 1.0;
-  MotionFilter motion(x, deviation.cwiseAbs2().asDiagonal());
+  Vector7d sigma;
+  sigma << 1e-3, 1e-3, 1e-3, 10.0, 10.0, 10.0, 1.0;
+  MotionFilter motion(x, sigma.cwiseAbs2().asDiagonal());
   ClusterVelocity measured;
   measured.W = {5, 7, 0};
   measured.information = 1e6 * Eigen::Matrix3d::Identity();

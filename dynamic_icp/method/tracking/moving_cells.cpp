@@ -125,8 +125,8 @@ void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::ui
   }
 }
 
-constexpr double kTighter = 0.8;     // links are shortened by this factor ...
-constexpr int kMostTightenings = 2;  // ... so often; much shorter ones than a cell would part everything
+constexpr double kTighter = 0.8;    // links are shortened by this factor ...
+constexpr int kMaxTightenings = 2;  // ... so often; much shorter ones than a cell would part everything
 
 /// The groups that some of the cells make among themselves.
 std::vector<CellGroup> groups_among(const MovingCells& moving, std::span<const std::uint32_t> cells,
@@ -264,7 +264,7 @@ std::vector<CellGroup> vehicle_groups(const MovingCells& moving, std::span<const
                                       double largest_width_m, int min_points, const GroupingConfig& config) {
   GroupingConfig tighter = config;
   std::vector<CellGroup> groups = groups_among(moving, cells, config);
-  for (int i = 0; i < kMostTightenings; ++i) {
+  for (int i = 0; i < kMaxTightenings; ++i) {
     tighter.link_distance_m *= kTighter;
     tighter.link_growth *= kTighter;
     std::vector<CellGroup> parted;

@@ -15,11 +15,11 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::int32_t kNobody = -1;
-constexpr double kWidest = 2.0;    // new objects are not wider than so many vehicles
+constexpr double kMax = 2.0;       // new objects are not wider than so many vehicles
 constexpr double kSplinter = 0.1;  // a track with this share of the points of another may be a part of it
 constexpr double kSplinterVelocity_mps = 2.0;
-constexpr double kLeastSignal = 2.0;      // of the radial velocities of a new object over their spread
-constexpr std::size_t kFewestPoints = 3;  // of a sighting: a velocity has three unknowns
+constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
+constexpr std::size_t kMinPoints = 3;  // of a sighting: a velocity has three unknowns
 
 double sweep_duration(const Scan& scan) {
   return scan.times().empty() ? 0.0 : *std::max_element(scan.times().begin(), scan.times().end());
@@ -106,10 +106,10 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   }
   std::vector<std::int32_t> owner(input.moving.cells.size(), kNobody);
   assign(input, expected, owner);
-  adopt(input, expected, owner);
+  associate(input, expected, owner);
   collect_members(input, expected, owner, workers);
-  give_birth(input, owner, workers);
-  bury();
+  initiate_tracks(input, owner, workers);
+  delete_tracks();
   std::vector<TrackedObject> objects;
   for (const Entry& entry : entries_) {
     objects.push_back(report(entry, sensor));
@@ -131,7 +131,7 @@ void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectati
         continue;
       }
       const double score = std::max(expected.outside(point, cell.time_s) / expected.gate_m,
-                                    expected.deviation(input.cell_directions[i], cell.radial_mps));
+                                    expected.gate_ratio(input.cell_directions[i], cell.radial_mps));
       if (score < best[i]) {
         best[i] = score;
         owner[i] = static_cast<std::int32_t>(k);
@@ -141,8 +141,8 @@ void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectati
 }
 
 /// Cells that are linked to those of a track and not far from its box become part of it: sides that come into view.
-void ObjectTracker::adopt(const TrackingInput& input, std::span<const Expectation> expectations,
-                          std::vector<std::int32_t>& owner) const {
+void ObjectTracker::associate(const TrackingInput& input, std::span<const Expectation> expectations,
+                              std::vector<std::int32_t>& owner) const {
   std::vector<std::vector<std::int32_t>> owners_of_group;
   for (std::size_t i = 0; i < owner.size(); ++i) {
     if (input.groups[i] >= owners_of_group.size()) {
@@ -162,7 +162,7 @@ void ObjectTracker::adopt(const TrackingInput& input, std::span<const Expectatio
     for (const std::int32_t k : owners_of_group[input.groups[i]]) {
       const Expectation& expected = expectations[static_cast<std::size_t>(k)];
       const double outside = expected.outside(input.cell_points[i], cell.time_s);
-      if (outside < nearest && expected.deviation(input.cell_directions[i], cell.radial_mps) < 2.0) {
+      if (outside < nearest && expected.gate_ratio(input.cell_directions[i], cell.radial_mps) < 2.0) {
         nearest = outside;
         owner[i] = k;
       }
@@ -171,33 +171,33 @@ void ObjectTracker::adopt(const TrackingInput& input, std::span<const Expectatio
 }
 
 /// Adds to slow tracks the points in their boxes that are not among the moving ones but move as they do.
-void ObjectTracker::gather_still(const TrackingInput& input, std::span<const Expectation> expectations,
-                                 const Workers& workers) {
+void ObjectTracker::gather_static(const TrackingInput& input, std::span<const Expectation> expectations,
+                                  const Workers& workers) {
   std::vector<std::size_t> slow;
   std::vector<Expectation> expected;
   for (std::size_t k = 0; k < entries_.size(); ++k) {
-    if (expectations[k].may_look_still(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
+    if (expectations[k].may_appear_static(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
       slow.push_back(k);
       expected.push_back(expectations[k]);
     }
   }
-  std::vector<std::vector<std::uint32_t>> still(slow.size());
+  std::vector<std::vector<std::uint32_t>> static_points(slow.size());
   std::vector<std::size_t> contradictions(slow.size(), 0);
-  visit_still_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+  visit_static_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
     if (contradicts(expected[i].W.dot(direction), input.radial[row], config_)) {
       ++contradictions[i];
-    } else if (expected[i].deviation(direction, input.radial[row]) < 1.0) {
-      still[i].push_back(row);
+    } else if (expected[i].gate_ratio(direction, input.radial[row]) < 1.0) {
+      static_points[i].push_back(row);
     }
   });
   for (std::size_t i = 0; i < slow.size(); ++i) {
     std::vector<std::uint32_t>& members = entries_[slow[i]].members;
-    if (contradictions[i] > members.size() + still[i].size()) {
+    if (contradictions[i] > members.size() + static_points[i].size()) {
       members.clear();
       continue;
     }
     const auto middle = static_cast<std::ptrdiff_t>(members.size());
-    members.insert(members.end(), still[i].begin(), still[i].end());
+    members.insert(members.end(), static_points[i].begin(), static_points[i].end());
     std::inplace_merge(members.begin(), members.begin() + middle, members.end());
   }
 }
@@ -214,17 +214,17 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
       entries_[static_cast<std::size_t>(k)].members.push_back(input.moving.rows[i]);
     }
   }
-  gather_still(input, expectations, workers);
+  gather_static(input, expectations, workers);
   workers.for_each(entries_.size(), 1, [&](std::size_t k) {
     Entry& entry = entries_[k];
     ++entry.age;
-    if (entry.members.size() < kFewestPoints) {
+    if (entry.members.size() < kMinPoints) {
       ++entry.missed;
       entry.members.clear();
       return;
     }
     Track corrected = entry.track;
-    corrected.correct(make_sighting(input.scan, input.radial, entry.members, input.sensor, &input.view), input.stamp_s,
+    corrected.correct(make_detection(input.scan, input.radial, entry.members, input.sensor, &input.view), input.stamp_s,
                       config_.track);
     if (corrected.best().spread_mps() > config_.max_spread_mps) {
       ++entry.missed;
@@ -245,13 +245,12 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
 /// Whether the velocity is worth reporting: known well enough, or as well as it will be.
 bool ObjectTracker::is_credible(const Entry& entry) const {
   const double variance = entry.track.velocity_covariance().topLeftCorner<2, 2>().trace();
-  return variance < config_.confirm_deviation_mps * config_.confirm_deviation_mps ||
-         entry.seen >= config_.confirm_anyway_scans;
+  return variance < config_.confirm_sigma_mps * config_.confirm_sigma_mps || entry.seen >= config_.confirm_anyway_scans;
 }
 
 /// Groups nobody owns become tracks.
-void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner,
-                               const Workers& workers) {
+void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vector<std::int32_t>& owner,
+                                    const Workers& workers) {
   std::vector<std::uint32_t> unowned;
   for (std::uint32_t cell = 0; cell < owner.size(); ++cell) {
     if (owner[cell] == kNobody) {
@@ -264,15 +263,15 @@ void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std
       vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
   std::vector<std::optional<Track>> tracks(groups.size());
   workers.for_each(groups.size(), 1, [&](std::size_t i) {
-    tracks[i].emplace(make_sighting(input.scan, input.radial, groups[i].rows, input.sensor, &input.view), input.stamp_s,
-                      config_.track);
+    tracks[i].emplace(make_detection(input.scan, input.radial, groups[i].rows, input.sensor, &input.view),
+                      input.stamp_s, config_.track);
   });
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const Track& track = *tracks[i];
     // Errors around zero have more spread than signal.
     const double spread = track.best().spread_mps();
-    const bool plausible = track.box().size.y() <= kWidest * config_.track.largest_width_m;
-    if (plausible && spread <= config_.max_spread_mps && track.best().signal_mps() >= kLeastSignal * spread) {
+    const bool plausible = track.box().size.y() <= kMax * config_.track.largest_width_m;
+    if (plausible && spread <= config_.max_spread_mps && track.best().signal_mps() >= kMinSignal * spread) {
       newborn.push_back({0, track, track});
       newborn.back().predicted.predict(input.stamp_s, config_.track);
       newborn.back().members = std::move(groups[i].rows);
@@ -281,7 +280,7 @@ void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std
   }
   // Where many points stand still, some that seem to move are errors of measurement.
   std::vector<std::size_t> contradictions(newborn.size(), 0);
-  visit_still_points(input, expectations, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+  visit_static_points(input, expectations, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
     contradictions[i] += contradicts(expectations[i].W.dot(direction), input.radial[row], config_) ? 1 : 0;
   });
   for (std::size_t i = 0; i < newborn.size(); ++i) {
@@ -301,7 +300,7 @@ void ObjectTracker::give_birth(const TrackingInput& input, const std::vector<std
 
 /// Whether two tracks are one body: one has its centre in the box of the other, or it is a splinter beside it that
 /// moves as it does.
-bool ObjectTracker::are_one(const Entry& a, const Entry& b) const {
+bool ObjectTracker::are_same_object(const Entry& a, const Entry& b) const {
   const bool a_is_smaller = a.members.size() < b.members.size();
   const Entry& small = a_is_smaller ? a : b;
   const Entry& large = a_is_smaller ? b : a;
@@ -318,15 +317,15 @@ bool ObjectTracker::are_one(const Entry& a, const Entry& b) const {
 
 /// Ends tracks that stand and those not seen for long, tentative ones at once, and makes one of those that share a
 /// place.
-void ObjectTracker::bury() {
+void ObjectTracker::delete_tracks() {
   std::vector<Entry> living;
   for (Entry& entry : entries_) {
     const bool lost = entry.missed > (entry.confirmed ? config_.coast_scans : 0);
-    if (lost || entry.track.motion().velocity().norm() < config_.least_speed_mps) {
+    if (lost || entry.track.motion().velocity().norm() < config_.min_speed_mps) {
       continue;
     }
     const auto same =
-        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_one(older, entry); });
+        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_same_object(older, entry); });
     if (same == living.end()) {
       living.push_back(std::move(entry));
     } else if (entry.members.size() > same->members.size()) {
@@ -362,8 +361,8 @@ TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sens
   object.extent = aligned_extent(object.box);
   // Not of unit length: straight above the sensor it is zero, and nothing counts as observed.
   const Vector3d across = R.col(2).cross(object.centroid);
-  const double deviation = config_.tangential_deviation_mps;
-  object.tangential_observed = across.dot(object.covariance * across) < deviation * deviation * across.squaredNorm();
+  const double sigma_mps = config_.tangential_sigma_mps;
+  object.tangential_observed = across.dot(object.covariance * across) < sigma_mps * sigma_mps * across.squaredNorm();
   object.age_scans = entry.age;
   object.scans_seen = entry.seen;
   object.members = entry.members;

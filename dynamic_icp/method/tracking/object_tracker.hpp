@@ -51,15 +51,15 @@ class ObjectTracker {
   // `expectations`: of each of the entries, in their order.
   void assign(const TrackingInput& input, std::span<const Expectation> expectations,
               std::vector<std::int32_t>& owner) const;
-  void adopt(const TrackingInput& input, std::span<const Expectation> expectations,
-             std::vector<std::int32_t>& owner) const;
+  void associate(const TrackingInput& input, std::span<const Expectation> expectations,
+                 std::vector<std::int32_t>& owner) const;
   void collect_members(const TrackingInput& input, std::span<const Expectation> expectations,
                        const std::vector<std::int32_t>& owner, const Workers& workers);
-  void gather_still(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers);
-  void give_birth(const TrackingInput& input, const std::vector<std::int32_t>& owner, const Workers& workers);
+  void gather_static(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers);
+  void initiate_tracks(const TrackingInput& input, const std::vector<std::int32_t>& owner, const Workers& workers);
   [[nodiscard]] bool is_credible(const Entry& entry) const;
-  [[nodiscard]] bool are_one(const Entry& a, const Entry& b) const;
-  void bury();
+  [[nodiscard]] bool are_same_object(const Entry& a, const Entry& b) const;
+  void delete_tracks();
   [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor) const;
 
   TrackerConfig config_;

@@ -23,11 +23,12 @@ constexpr double kPeriod_s = 0.1;
 /// Driving 8 m/s in a circle, 0.3 rad/s, tilted by two degrees.
 Eigen::Isometry3d turning_and_tilted(double t) {
   constexpr double kSpeed = 8.0;
-  constexpr double kTurn = 0.3;
-  const double heading = 0.7 + kTurn * t;
+  constexpr double kRotation = 0.3;
+  const double heading = 0.7 + kRotation * t;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = exp_so3({0.0, 0.0, heading}) * exp_so3({0.03, -0.04, 0.0});
-  T.translation() = kSpeed / kTurn * Vector3d(std::sin(heading) - std::sin(0.7), std::cos(0.7) - std::cos(heading), 0);
+  T.translation() =
+      kSpeed / kRotation * Vector3d(std::sin(heading) - std::sin(0.7), std::cos(0.7) - std::cos(heading), 0);
   return T;
 }
 

@@ -10,8 +10,8 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::size_t kFewestPointsOfAYaw = 5;
-constexpr std::size_t kMostPointsOfAYaw = 200;
+constexpr std::size_t kMinPointsOfAYaw = 5;
+constexpr std::size_t kMaxPointsOfAYaw = 200;
 constexpr double kCoarseStep_rad = 0.052;  // 3 degrees
 constexpr double kFineStep_rad = 0.0087;   // half a degree
 constexpr double kNearestToEdge_m = 0.05;  // closer than the noise of the range is not better
@@ -84,10 +84,10 @@ Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector
 }
 
 std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, double near_yaw_rad, double range_rad) {
-  if (points.size() < kFewestPointsOfAYaw) {
+  if (points.size() < kMinPointsOfAYaw) {
     return std::nullopt;
   }
-  const std::size_t stride = (points.size() + kMostPointsOfAYaw - 1) / kMostPointsOfAYaw;
+  const std::size_t stride = (points.size() + kMaxPointsOfAYaw - 1) / kMaxPointsOfAYaw;
   Eigen::Array2Xd plane(2, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < plane.cols(); ++i) {
     // Relative to one of them: coordinates in the world may be large.

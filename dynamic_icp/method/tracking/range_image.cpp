@@ -18,7 +18,7 @@ constexpr std::size_t kBlock = 512;
 constexpr int kColumns = 720;
 constexpr int kRows = 120;
 constexpr double kSlopePerRow = 0.0175;  // a degree
-constexpr double kLeast_m = 1e-12;       // nothing is divided by less
+constexpr double kMin_m = 1e-12;         // nothing is divided by less
 
 struct Cell {
   int column = 0;
@@ -28,14 +28,14 @@ struct Cell {
 /// A measure of the azimuth that grows with it from 0 to 4 in one turn, without an arc tangent.
 DYNAMIC_ICP_INLINE double turn_measure(double x, double y) {
   const double sum = std::abs(x) + std::abs(y);
-  const double a = y / (sum > kLeast_m ? sum : kLeast_m);
+  const double a = y / (sum > kMin_m ? sum : kMin_m);
   const double right = y < 0.0 ? 4.0 + a : a;
   return x < 0.0 ? 2.0 - a : right;
 }
 
 DYNAMIC_ICP_INLINE Cell cell_of(double x, double y, double z) {
   const double across = std::sqrt(x * x + y * y);
-  const double row = z / (across > kLeast_m ? across : kLeast_m) * (1.0 / kSlopePerRow) + 0.5 * kRows;
+  const double row = z / (across > kMin_m ? across : kMin_m) * (1.0 / kSlopePerRow) + 0.5 * kRows;
   const double not_above = row < kRows - 1.0 ? row : kRows - 1.0;
   const int column = static_cast<int>(turn_measure(x, y) * (0.25 * kColumns));
   return {column < kColumns ? column : kColumns - 1, static_cast<int>(not_above > 0.0 ? not_above : 0.0)};

@@ -18,16 +18,16 @@ namespace dynamic_icp::tracking {
 class Track {
  public:
   /// From a first sighting with at least one point, in a scan `stamp_s` after any origin of time.
-  Track(const Sighting& sighting, double stamp_s, const TrackConfig& config);
+  Track(const Detection& detection, double stamp_s, const TrackConfig& config);
 
   /// Moves the state to `time_s`.
   void predict(double time_s, const TrackConfig& config);
 
   /// Takes in another sighting; the state is then that of its mean time.
-  void correct(const Sighting& sighting, double stamp_s, const TrackConfig& config);
+  void correct(const Detection& detection, double stamp_s, const TrackConfig& config);
 
   [[nodiscard]] double time_s() const { return time_s_; }
-  [[nodiscard]] const BoxFilter& best() const { return opinions_[best_]; }
+  [[nodiscard]] const BoxFilter& best() const { return hypotheses_[best_]; }
   [[nodiscard]] const MotionFilter& motion() const { return best().motion(); }
   [[nodiscard]] OrientedBox box() const { return best().box(); }
 
@@ -35,12 +35,12 @@ class Track {
   [[nodiscard]] Eigen::Matrix3d velocity_covariance() const;
 
  private:
-  void judge();
+  void evaluate();
 
-  std::vector<BoxFilter> opinions_;
+  std::vector<BoxFilter> hypotheses_;
   std::size_t best_ = 0;
   double time_s_;
-  int sightings_ = 1;
+  int detections_ = 1;
 };
 
 }  // namespace dynamic_icp::tracking

@@ -20,21 +20,21 @@ const Vector3d kSize(4.5, 1.8, 1.5);
 
 /// The rear and the right side of a car that drives straight; the sensor is in the origin, the points were measured
 /// `time_s` after the stamp.
-Sighting car_at(const Vector3d& centre, const Vector3d& velocity, std::uint64_t seed, double time_s = 0.0) {
+Detection car_at(const Vector3d& centre, const Vector3d& velocity, std::uint64_t seed, double time_s = 0.0) {
   const Eigen::Matrix3d axes = upright_axes(std::atan2(velocity.y(), velocity.x()));
-  Sighting sighting;
+  Detection detection;
   for (std::uint64_t i = 0; i < 200; ++i) {
     const RandomSource one = RandomSource(seed).fork(i);
     Vector3d q(one.uniform(0, -0.5, 0.5), one.uniform(1, -0.5, 0.5), one.uniform(2, -0.5, 0.5));
     (i % 3 == 0 ? q.x() : q.y()) = -0.5;
     const Vector3d noise(0.02 * one.normal(3), 0.02 * one.normal(4), 0.0);
-    sighting.points.emplace_back(centre + time_s * velocity + axes * (q.cwiseProduct(kSize) + noise));
-    sighting.directions.push_back(sighting.points.back().normalized());
-    sighting.radial.push_back(sighting.directions.back().dot(velocity) + 0.05 * one.normal(5));
-    sighting.times.push_back(time_s);
+    detection.points.emplace_back(centre + time_s * velocity + axes * (q.cwiseProduct(kSize) + noise));
+    detection.directions.push_back(detection.points.back().normalized());
+    detection.radial.push_back(detection.directions.back().dot(velocity) + 0.05 * one.normal(5));
+    detection.times.push_back(time_s);
   }
-  sighting.mean_time_s = time_s;
-  return sighting;
+  detection.mean_time_s = time_s;
+  return detection;
 }
 
 double largest_sigma(const Eigen::Matrix3d& covariance) {

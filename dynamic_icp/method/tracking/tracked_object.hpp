@@ -30,7 +30,7 @@ struct TrackedObject {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the velocity, (m/s)^2
   double yaw_rate_rps = 0.0;                             ///< about the world's z axis
   double yaw_rate_variance = 0.0;                        ///< (rad/s)^2
-  /// Whether the velocity across the line of sight is known to TrackerConfig::tangential_deviation_mps. Where it is
+  /// Whether the velocity across the line of sight is known to TrackerConfig::tangential_sigma_mps. Where it is
   /// not, only the part of the velocity along the line of sight should be used.
   bool tangential_observed = false;
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< m, sensor frame: centre of the box

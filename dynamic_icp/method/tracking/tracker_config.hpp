@@ -30,20 +30,20 @@ ConfigFields fields(TrackConfig& config);
 struct TrackerConfig {
   GroupingConfig grouping;
   TrackConfig track;
-  int min_points = 10;                 ///< a group of fewer points is no object
-  int confirm_points = 40;             ///< so many points at once confirm an object in its first scan
-  int confirm_scans = 2;               ///< else it takes so many scans with points
-  double confirm_deviation_mps = 3.0;  ///< and its velocity must be known so well ...
-  int confirm_anyway_scans = 3;        ///< ... or have been observed in so many scans
-  int coast_scans = 5;                 ///< a confirmed track is kept for so many scans without points
-  double max_spread_mps = 0.4;         ///< points whose velocities differ more from those of a rigid body are no object
-  double same_velocity_mps = 0.2;      ///< still points in a new object's box contradict it when they deviate more
-  double least_speed_mps = 0.5;        ///< what is slower counts as standing
-  double gate_m = 0.5;                 ///< points of an object lie so near to its predicted box, beyond its uncertainty
-  double gate_mps = 0.5;               ///< and have so nearly its predicted radial velocity, beyond its uncertainty
-  double growth_m = 1.0;               ///< parts of the same group become part of the object up to so far from its box
-  double slow_mps = 1.0;               ///< objects with less radial speed are looked for among the static points too
-  double tangential_deviation_mps = 1.0;  ///< beyond this the velocity across the line of sight is not observed
+  int min_points = 10;                ///< a group of fewer points is no object
+  int confirm_points = 40;            ///< so many points at once confirm an object in its first scan
+  int confirm_scans = 2;              ///< else it takes so many scans with points
+  double confirm_sigma_mps = 3.0;     ///< and its velocity must be known so well ...
+  int confirm_anyway_scans = 3;       ///< ... or have been observed in so many scans
+  int coast_scans = 5;                ///< a confirmed track is kept for so many scans without points
+  double max_spread_mps = 0.4;        ///< points whose velocities differ more from those of a rigid body are no object
+  double same_velocity_mps = 0.2;     ///< still points in a new object's box contradict it when they deviate more
+  double min_speed_mps = 0.5;         ///< what is slower counts as standing
+  double gate_m = 0.5;                ///< points of an object lie so near to its predicted box, beyond its uncertainty
+  double gate_mps = 0.5;              ///< and have so nearly its predicted radial velocity, beyond its uncertainty
+  double growth_m = 1.0;              ///< parts of the same group become part of the object up to so far from its box
+  double slow_mps = 1.0;              ///< objects with less radial speed are looked for among the static points too
+  double tangential_sigma_mps = 1.0;  ///< beyond this the velocity across the line of sight is not observed
 };
 
 ConfigFields fields(TrackerConfig& config);

@@ -138,7 +138,7 @@ std::unique_ptr<Dataset> open_helipr(const fs::path& folder, const OpenOptions& 
   recording.format = "helipr";
   recording.layout_of = layout_of;
   recording.scans.assumptions.emplace_back(
-      "the Doppler is taken as relative, the sensor's own motion in it; this is uncertain: the data set's author says "
+      "the Doppler is taken as relative, with the ego motion in it; this is uncertain: the data set's author says "
       "it was taken out, published work uses it as if not; the diagnosis checks it against the motion; a stated "
       "Doppler kind decides");
   recording.truth = named_truth(

@@ -35,7 +35,8 @@ fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& 
     return fs::file_size(file, unknown_size) > 0 && !unknown_size;
   });
   if (found == files.end()) {
-    throw DataError(fmt::format("{}: all *.bin files are empty: nothing tells what they are", folder.string()));
+    throw DataError(
+        fmt::format("{}: all *.bin files are empty: their record layout cannot be recognised", folder.string()));
   }
   return *found;
 }

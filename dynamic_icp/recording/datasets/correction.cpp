@@ -125,13 +125,13 @@ class CorrectedDataset final : public Dataset {
 }  // namespace
 
 void Correction::apply(const Correction& other) {
-  const auto take_over = [](auto& value, const auto& from) { value = from ? from : value; };
-  take_over(doppler_kind, other.doppler_kind);
-  take_over(doppler_sign, other.doppler_sign);
-  take_over(doppler_scale, other.doppler_scale);
-  take_over(point_scale, other.point_scale);
-  take_over(time_scale, other.time_scale);
-  take_over(columns, other.columns);
+  const auto assign = [](auto& value, const auto& from) { value = from ? from : value; };
+  assign(doppler_kind, other.doppler_kind);
+  assign(doppler_sign, other.doppler_sign);
+  assign(doppler_scale, other.doppler_scale);
+  assign(point_scale, other.point_scale);
+  assign(time_scale, other.time_scale);
+  assign(columns, other.columns);
 }
 
 void check(const Correction& correction) {

@@ -38,7 +38,7 @@ constexpr Layout kLayouts[] = {
     {"npz", "*.npz, or <name>.npy with <name>_dop.npy", find_npz, open_npz, nullptr, true},
     {"pcd", "*.pcd", find_pcd, open_pcd, nullptr, true},
     {"ply", "*.ply", find_ply, open_ply, nullptr, true},
-    {"bin", "a folder of *.bin whose records are told by their content", find_bin_folder, open_bin_folder},
+    {"bin", "a folder of *.bin whose record layout is recognised by content", find_bin_folder, open_bin_folder},
 };
 
 std::string looked_for() {

@@ -115,7 +115,7 @@ class FieldFinder {
       return std::nullopt;
     }
     if (!is_obvious(lower(found.front())) || found.size() > 1) {
-      std::string sentence = fmt::format("column '{}' is taken for {}", found.front(), key);
+      std::string sentence = fmt::format("using column '{}' as {}", found.front(), key);
       if (found.size() > 1) {
         sentence += fmt::format("; there is also: {}", fmt::join(std::span(found).subspan(1), ", "));
       }

@@ -15,9 +15,9 @@ namespace dynamic_icp::datasets {
 namespace {
 
 constexpr std::array<std::string_view, 4> kColumnNames = {"x", "y", "z", "doppler"};
-constexpr double kLeastPeriod_s = 1e-6;
-constexpr double kMostPeriod_s = 3600.0;
-constexpr double kMostScale = 1e9;
+constexpr double kMinPeriod_s = 1e-6;
+constexpr double kMaxPeriod_s = 3600.0;
+constexpr double kMaxScale = 1e9;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& text, std::string_view expected) {
   throw UsageError(fmt::format("{} is '{}', expected {}", name, text, expected));
@@ -69,7 +69,7 @@ std::string stored_columns(const std::array<int, 4>& columns) {
 
 void set(InputSettings& settings, const std::string& name, const std::string& text) {
   Correction& correction = settings.correction;
-  const auto scale = [&] { return number(name, text, 1.0 / kMostScale, kMostScale, ""); };
+  const auto scale = [&] { return number(name, text, 1.0 / kMaxScale, kMaxScale, ""); };
   if (name == "format") {
     settings.open.format = text;
   } else if (name.starts_with("field.")) {
@@ -77,7 +77,7 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
   } else if (name.starts_with("lidar.")) {
     settings.open.sensors.push_back(text);
   } else if (name == "period") {
-    settings.open.period_s = number(name, text, kLeastPeriod_s, kMostPeriod_s, " s");
+    settings.open.period_s = number(name, text, kMinPeriod_s, kMaxPeriod_s, " s");
   } else if (name == "doppler-sign") {
     correction.doppler_sign = is_second(name, text, "away", "towards") ? DopplerSign::kTowards : DopplerSign::kAway;
   } else if (name == "doppler-kind") {

@@ -66,10 +66,10 @@ std::vector<Truth> fitting_in(const fs::path& folder, const std::vector<Stamp>& 
       if (reason.empty()) {
         fitting.push_back({std::move(poses), path});
       } else {
-        assumptions.push_back(fmt::format("{}: is not taken for ground truth: {}", path.string(), reason));
+        assumptions.push_back(fmt::format("{}: is not used as ground truth: {}", path.string(), reason));
       }
     } catch (const DataError& error) {
-      assumptions.push_back(fmt::format("not taken for ground truth: {}", error.what()));
+      assumptions.push_back(fmt::format("not used as ground truth: {}", error.what()));
     }
   }
   return fitting;

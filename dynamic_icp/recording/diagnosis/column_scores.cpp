@@ -14,7 +14,7 @@
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr std::size_t kMostPoints = 30000;
+constexpr std::size_t kMaxPoints = 30000;
 constexpr double kFarthest_m = 1000.0;
 constexpr double kFarthestInCentimetres = 3e4;  // beyond, they are millimetres
 constexpr double kNearest_m = 0.5;
@@ -35,7 +35,7 @@ bool is_void(const Eigen::Vector3d& point, double doppler) {
 RawScan thinned(const RawScan& scan) {
   RawScan few;
   few.stamp = scan.stamp;
-  const std::size_t step = scan.points.size() / kMostPoints + 1;
+  const std::size_t step = scan.points.size() / kMaxPoints + 1;
   for (std::size_t i = 0; i < scan.points.size(); i += step) {
     if (!is_void(scan.points[i], scan.doppler[i])) {
       few.points.push_back(scan.points[i]);

@@ -41,8 +41,8 @@ View mean_view(const Evidence& evidence) {
 int up_axis(const View& view) {
   int flattest = 2;
   view.spread.minCoeff(&flattest);
-  const bool is_clear = view.spread[flattest] < kFlat && view.spread[flattest] < kClearlyFlat * view.spread[2];
-  return is_clear ? flattest : 2;
+  const bool is_unambiguous = view.spread[flattest] < kFlat && view.spread[flattest] < kClearlyFlat * view.spread[2];
+  return is_unambiguous ? flattest : 2;
 }
 
 /// The axis along which the sensor both looks and moves; nothing where there is none.

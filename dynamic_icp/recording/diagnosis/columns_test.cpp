@@ -11,13 +11,13 @@ namespace {
 
 TEST(Columns, ColumnsInAnotherOrderAreFound) {
   Recording first;
-  first.spoil = to_doppler_x_y_z;
+  first.perturb = to_doppler_x_y_z;
   const Finding order = diagnosis_of(first).of(Question::kColumns);
   EXPECT_EQ(order.verdict, Verdict::kWrong);
   EXPECT_EQ(order.fix, (Correction{.columns = std::array{1, 2, 3, 0}}));
   Recording upright;
   upright.has_truth = false;
-  upright.spoil = [](RawScan& raw, const Vector3d&) {  // stored x, z, y, Doppler
+  upright.perturb = [](RawScan& raw, const Vector3d&) {  // stored x, z, y, Doppler
     for (Vector3d& point : raw.points) {
       std::swap(point.y(), point.z());
     }

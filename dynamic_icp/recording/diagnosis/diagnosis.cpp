@@ -40,13 +40,13 @@ std::string_view to_string(Verdict verdict) { return kVerdicts[static_cast<std::
 
 const Finding& Diagnosis::of(Question question) const { return findings.at(static_cast<std::size_t>(question)); }
 
-Diagnosis diagnose(const datasets::Dataset& dataset, const DoctorConfig& config, const Workers& workers) {
+Diagnosis diagnose(const datasets::Dataset& dataset, const DiagnosisConfig& config, const Workers& workers) {
   const Evidence evidence = gather(dataset, config, workers);
   Diagnosis diagnosis;
   diagnosis.scans_looked_at = evidence.looks.size();
   diagnosis.period_s = evidence.period_s;
   const std::optional<NoDoppler> none = no_doppler(evidence);
-  diagnosis.has_doppler = !none || none->may_stand;
+  diagnosis.has_doppler = !none || none->may_be_static;
   for (const Asked& asked : kAsked) {
     diagnosis.findings.push_back(asked.ask(evidence));
   }

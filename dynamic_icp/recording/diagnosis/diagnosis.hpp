@@ -65,7 +65,7 @@ struct Diagnosis {
 };
 
 /// How closely to look.
-struct DoctorConfig {
+struct DiagnosisConfig {
   std::size_t begin = 0;  ///< of the scans [begin, end) that count; end is cut to the length
   std::size_t end = static_cast<std::size_t>(-1);
   std::size_t probes = 10;            ///< stretches of the recording looked at, evenly spread
@@ -77,6 +77,6 @@ struct DoctorConfig {
 /// or by matching scans (which takes no Doppler but to leave out what moves), and answers every question. Nothing is
 /// claimed that the evidence does not show beyond doubt: traffic, standing still, featureless scenes and missing truth
 /// end in kCannotTell. Throws what reading a scan throws. The same answers for any number of threads.
-Diagnosis diagnose(const datasets::Dataset& dataset, const DoctorConfig& config, const Workers& workers);
+Diagnosis diagnose(const datasets::Dataset& dataset, const DiagnosisConfig& config, const Workers& workers);
 
 }  // namespace dynamic_icp::diagnosis

@@ -36,17 +36,17 @@ TEST(Diagnosis, ApplyingTheFixesMakesTheDiagnosisClean) {
   const std::function<void(RawScan&, const Vector3d&)> faults[] = {flip, compensate, backwards_in_kmh, to_millimetres,
                                                                    to_doppler_x_y_z};
   for (const auto& fault : faults) {
-    const auto spoiled = [&] {
+    const auto perturbed = [&] {
       auto recording = std::make_unique<Recording>();
-      recording->spoil = fault;
+      recording->perturb = fault;
       return recording;
     };
     datasets::InputSettings settings;
-    for (const Finding& finding : diagnosis_of(spoiled(), {}).findings) {
+    for (const Finding& finding : diagnosis_of(perturbed(), {}).findings) {
       apply(finding.fix, settings);
     }
     EXPECT_NE(settings.correction, Correction{});
-    for (const Finding& finding : diagnosis_of(spoiled(), settings.correction).findings) {
+    for (const Finding& finding : diagnosis_of(perturbed(), settings.correction).findings) {
       EXPECT_NE(finding.verdict, Verdict::kWrong) << finding.sentence;
       EXPECT_NE(finding.verdict, Verdict::kSuspicious) << finding.sentence;
       EXPECT_EQ(finding.fix, Correction{}) << finding.sentence;
@@ -67,7 +67,7 @@ TEST(Diagnosis, AFixTakesInWhatWasCorrectedWrong) {
 
 TEST(Diagnosis, EmptyScansAreNoReasonToFail) {
   Recording recording;
-  recording.spoil = [](RawScan& raw, const Vector3d&) { raw = {raw.stamp, {}, {}, {}, {}, raw.doppler_kind, {}}; };
+  recording.perturb = [](RawScan& raw, const Vector3d&) { raw = {raw.stamp, {}, {}, {}, {}, raw.doppler_kind, {}}; };
   const Diagnosis diagnosis = diagnosis_of(recording);
   EXPECT_EQ(diagnosis.of(Question::kUnusablePoints).verdict, Verdict::kWrong);
   EXPECT_EQ(diagnosis.of(Question::kDopplerSign).verdict, Verdict::kCannotTell);

@@ -14,7 +14,7 @@
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kWorthTelling_mps = 0.08;
+constexpr double kWorthReporting_mps = 0.08;
 constexpr double kWellKnown_mps = 0.04;
 constexpr double kHalfLeft = 0.5;
 
@@ -97,7 +97,7 @@ Finding doppler_bias(const Evidence& evidence) {
   if (by_reference) {
     finding.evidence.emplace_back("bias_by_reference_mps", *by_reference);
   }
-  const bool is_told = std::abs(bias) > kWorthTelling_mps && std::abs(bias) > kCertain * error;
+  const bool is_told = std::abs(bias) > kWorthReporting_mps && std::abs(bias) > kCertain * error;
   if (is_told && by_reference && std::abs(*by_reference) < kHalfLeft * std::abs(bias)) {
     finding.sentence = fmt::format(
         "a constant error of {:+.2f} m/s (+- {:.2f}) would explain the Doppler, but so would a speed that is {:.1f} % "
@@ -111,9 +111,9 @@ Finding doppler_bias(const Evidence& evidence) {
         error);
   } else if (error < kWellKnown_mps) {
     finding.verdict = Verdict::kOk;
-    finding.sentence = fmt::format("no constant error beyond {:.2f} m/s", kWorthTelling_mps);
+    finding.sentence = fmt::format("no constant error beyond {:.2f} m/s", kWorthReporting_mps);
   } else {
-    finding.sentence = "a constant error cannot be told from a velocity here";
+    finding.sentence = "a constant error cannot be distinguished from a velocity here";
   }
   return finding;
 }

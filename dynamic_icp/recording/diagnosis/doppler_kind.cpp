@@ -21,7 +21,7 @@ Finding relative(const Evidence& evidence, double speed) {
   finding.sentence = fmt::format("relative: the static scene moves by {:.1f} m/s", speed);
   if (expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
-    finding.sentence += ", but the Doppler is said to be compensated";
+    finding.sentence += ", but the Doppler was declared compensated";
     finding.fix.doppler_kind = DopplerKind::kRelative;
   }
   return finding;
@@ -33,7 +33,7 @@ Finding compensated(const Evidence& evidence, const Comparison& reference) {
                                  reference.reference_speed_mps, reference_name(evidence, reference));
   if (!expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
-    finding.sentence += "; its own motion was taken out of the Doppler already";
+    finding.sentence += "; the Doppler is already ego-motion compensated";
     finding.fix.doppler_kind = DopplerKind::kCompensated;
   }
   return finding;
@@ -42,7 +42,7 @@ Finding compensated(const Evidence& evidence, const Comparison& reference) {
 /// Where nothing is measured nothing moves by it: as good as compensated, as long as no point is asked.
 Finding without_doppler(const Evidence& evidence, const NoDoppler& none) {
   Finding finding{Question::kDopplerKind, Verdict::kWrong, "there is no Doppler: " + none.sentence};
-  if (none.may_stand) {
+  if (none.may_be_static) {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = none.sentence + ": it stands still, or there is no Doppler";
   } else if (expects_compensated(evidence) && none.is_zero) {

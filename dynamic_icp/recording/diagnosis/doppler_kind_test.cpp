@@ -11,7 +11,7 @@ TEST(DopplerKindAnswer, CompensatedDopplerIsFoundWithAndWithoutGroundTruth) {
   for (const bool has_truth : {true, false}) {
     Recording recording;
     recording.has_truth = has_truth;
-    recording.spoil = compensate;
+    recording.perturb = compensate;
     const Diagnosis diagnosis = diagnosis_of(recording);
     EXPECT_EQ(diagnosis.of(Question::kDopplerKind).verdict, Verdict::kWrong) << has_truth;
     EXPECT_EQ(diagnosis.of(Question::kDopplerKind).fix, Correction{.doppler_kind = DopplerKind::kCompensated});
@@ -22,7 +22,7 @@ TEST(DopplerKindAnswer, CompensatedDopplerIsFoundWithAndWithoutGroundTruth) {
 TEST(DopplerKindAnswer, TheKindIsJudgedAgainstWhatTheLayoutSays) {
   Recording compensated;
   compensated.kind = DopplerKind::kCompensated;
-  compensated.spoil = compensate;
+  compensated.perturb = compensate;
   EXPECT_EQ(diagnosis_of(compensated).of(Question::kDopplerKind).verdict, Verdict::kOk);
   Recording relative;
   relative.kind = DopplerKind::kCompensated;
@@ -34,7 +34,7 @@ TEST(DopplerKindAnswer, AColumnOfZerosIsNoDoppler) {
     Recording recording;
     recording.path = synthetic::circle(speed_mps, 0.0);
     recording.has_truth = has_truth;
-    recording.spoil = [](RawScan& raw, const Vector3d&) { raw.doppler.assign(raw.doppler.size(), 0.0); };
+    recording.perturb = [](RawScan& raw, const Vector3d&) { raw.doppler.assign(raw.doppler.size(), 0.0); };
     const Diagnosis diagnosis = diagnosis_of(recording);
     const Finding& kind = diagnosis.of(Question::kDopplerKind);
     EXPECT_EQ(diagnosis.has_doppler, kind.verdict != Verdict::kWrong);
@@ -51,7 +51,7 @@ TEST(DopplerKindAnswer, AReflectanceIsNoDoppler) {
   for (const double speed_mps : {0.0, 9.0}) {
     Recording recording;
     recording.path = synthetic::circle(speed_mps, 0.0);
-    recording.spoil = [](RawScan& raw, const Vector3d&) {
+    recording.perturb = [](RawScan& raw, const Vector3d&) {
       for (std::size_t i = 0; i < raw.points.size(); ++i) {
         raw.doppler[i] = 0.5 + 0.45 * std::sin(12.9898 * static_cast<double>(i));
       }

@@ -70,7 +70,7 @@ Finding doppler_sign(const Evidence& evidence) {
     if (reference == &evidence.truth) {
       finding.sentence +=
           "; or points and Doppler are right and the sensor is turned by 180 degrees against that of the ground truth: "
-          "no scans could be matched to tell";
+          "no scans could be matched to decide";
     }
     finding.fix.doppler_sign = evidence.applied.doppler_sign == datasets::DopplerSign::kTowards
                                    ? datasets::DopplerSign::kAway

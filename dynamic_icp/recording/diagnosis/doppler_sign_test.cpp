@@ -11,7 +11,7 @@ TEST(DopplerSignAnswer, ATurnedSignIsFoundWithAndWithoutGroundTruth) {
   for (const bool has_truth : {true, false}) {
     Recording recording;
     recording.has_truth = has_truth;
-    recording.spoil = flip;
+    recording.perturb = flip;
     const Finding sign = diagnosis_of(recording).of(Question::kDopplerSign);
     EXPECT_EQ(sign.verdict, Verdict::kWrong) << has_truth << sign.sentence;
     EXPECT_EQ(sign.fix, (Correction{.doppler_sign = DopplerSign::kTowards}));
@@ -25,7 +25,7 @@ TEST(DopplerSignAnswer, ASmoothTunnelWithoutGroundTruthTellsNoSign) {
     recording.path = synthetic::circle(15.0, 0.0);
     recording.has_truth = false;
     if (is_flipped) {
-      recording.spoil = flip;
+      recording.perturb = flip;
     }
     const Finding sign = diagnosis_of(recording).of(Question::kDopplerSign);
     EXPECT_EQ(sign.verdict, Verdict::kCannotTell) << sign.sentence;
@@ -37,7 +37,7 @@ TEST(DopplerSignAnswer, WhereNoScansMatchASignMayBeATurnOfTheSensor) {
   Recording recording;
   recording.world = synthetic::tunnel();
   recording.path = synthetic::circle(15.0, 0.0);
-  recording.spoil = [](RawScan& raw, const Vector3d&) {  // back to front, against the ground truth
+  recording.perturb = [](RawScan& raw, const Vector3d&) {  // back to front, against the ground truth
     for (Vector3d& point : raw.points) {
       point = {-point.x(), -point.y(), point.z()};
     }
@@ -50,11 +50,11 @@ TEST(DopplerSignAnswer, WhereNoScansMatchASignMayBeATurnOfTheSensor) {
 }
 
 TEST(DopplerSignAnswer, WhatCannotBeToldIsSaidWithoutContradiction) {
-  Recording standing;
-  standing.path = synthetic::circle(0.0, 0.0);
-  EXPECT_NE(diagnosis_of(standing).of(Question::kDopplerSign).sentence.find("too slow to tell"), std::string::npos);
+  Recording stationary;
+  stationary.path = synthetic::circle(0.0, 0.0);
+  EXPECT_NE(diagnosis_of(stationary).of(Question::kDopplerSign).sentence.find("too slow to decide"), std::string::npos);
   Recording compensated;
-  compensated.spoil = compensate;
+  compensated.perturb = compensate;
   const std::string sentence = diagnosis_of(compensated).of(Question::kDopplerSign).sentence;
   EXPECT_EQ(sentence.find("too slow"), std::string::npos) << sentence;
   EXPECT_NE(sentence.find("m/s where the sensor moves at"), std::string::npos) << sentence;

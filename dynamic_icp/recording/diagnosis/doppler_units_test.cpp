@@ -11,7 +11,7 @@ namespace {
 
 TEST(DopplerUnits, KilometresPerHourAreFound) {
   Recording speed;
-  speed.spoil = [](RawScan& raw, const Vector3d&) {
+  speed.perturb = [](RawScan& raw, const Vector3d&) {
     for (double& doppler : raw.doppler) {
       doppler *= 3.6;
     }

@@ -14,15 +14,15 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr double kStretch_s = 0.8;
-constexpr std::size_t kMostSteps = 12;
+constexpr std::size_t kMaxSteps = 12;
 constexpr std::size_t kUnknownSteps = 6;
-constexpr double kLeastPeriod_s = 0.005;
-constexpr double kMostPeriod_s = 2.0;
+constexpr double kMinPeriod_s = 0.005;
+constexpr double kMaxPeriod_s = 2.0;
 constexpr std::size_t kColumnScans = 3;
 
 constexpr double kLongestTruthGap_s = 0.5;
-constexpr double kShortWay_m = 0.8;  // errors of some centimetres count too much
-constexpr double kLongWay_m = 2.5;   // beyond, what is seen changes
+constexpr double kShortTranslation_m = 0.8;  // errors of some centimetres count too much
+constexpr double kLongTranslation_m = 2.5;   // beyond, what is seen changes
 constexpr double kAgreed = 0.15;
 
 double median_period(const datasets::Dataset& dataset, std::size_t begin, std::size_t end) {
@@ -35,9 +35,9 @@ double median_period(const datasets::Dataset& dataset, std::size_t begin, std::s
 
 /// How many scans a stretch is long.
 std::size_t stretch_steps(double period_s, std::size_t scans) {
-  const bool plausible = period_s > kLeastPeriod_s && period_s < kMostPeriod_s;
+  const bool plausible = period_s > kMinPeriod_s && period_s < kMaxPeriod_s;
   std::size_t steps = plausible ? static_cast<std::size_t>(std::lround(kStretch_s / period_s)) : kUnknownSteps;
-  steps = std::clamp<std::size_t>(steps, 2, kMostSteps);
+  steps = std::clamp<std::size_t>(steps, 2, kMaxSteps);
   steps -= steps % 2;
   return std::min(steps, scans - 1);
 }
@@ -60,14 +60,14 @@ double dt_between(const Seen& a, const Seen& b) { return seconds_between(a.look.
 
 /// The way by the Doppler from one scan to another, in the axes of the first: the velocities on the way with their
 /// weights, turned evenly by what the reference turns.
-void add_doppler_way(Motion& motion, std::span<const Seen* const> on_the_way, std::span<const double> weights) {
+void add_doppler_translation(Motion& motion, std::span<const Seen* const> on_the_way, std::span<const double> weights) {
   motion.has_doppler = true;
   const Eigen::Vector3d turn = log_so3(motion.T_from_to.linear());
   for (std::size_t k = 0; k < on_the_way.size(); ++k) {
     const Seen& seen = *on_the_way[k];
     motion.has_doppler = motion.has_doppler && seen.look.has_velocity();
     const double share = motion.dt_s > 0.0 ? dt_between(*on_the_way[0], seen) / motion.dt_s : 0.0;
-    motion.doppler_way += weights[k] * motion.dt_s * (exp_so3(share * turn) * seen.look.ego.velocity_sensor);
+    motion.doppler_translation += weights[k] * motion.dt_s * (exp_so3(share * turn) * seen.look.ego.velocity_sensor);
   }
 }
 
@@ -104,10 +104,10 @@ std::optional<Motion> motion_by_truth(const Stretch& stretch, const formats::Tra
   motion.dt_s = dt_between(stretch.first, stretch.last);
   const double middle = dt_between(stretch.first, stretch.middle) / motion.dt_s;
   if (middle > 0.4 && middle < 0.6) {  // Simpson's rule
-    add_doppler_way(motion, std::array{&stretch.first, &stretch.middle, &stretch.last},
-                    std::array{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0});
+    add_doppler_translation(motion, std::array{&stretch.first, &stretch.middle, &stretch.last},
+                            std::array{1.0 / 6.0, 4.0 / 6.0, 1.0 / 6.0});
   } else {
-    add_doppler_way(motion, std::array{&stretch.first, &stretch.last}, std::array{0.5, 0.5});
+    add_doppler_translation(motion, std::array{&stretch.first, &stretch.last}, std::array{0.5, 0.5});
   }
   return motion;
 }
@@ -129,8 +129,10 @@ std::optional<Motion> motion_by_matching(const Stretch& stretch, const Workers& 
   }
   const auto way = [&](const Seen& to) { return step->translation().norm() * dt_between(stretch.first, to) / step_s; };
   const Seen* to = &stretch.second;
-  if (way(*to) < kShortWay_m) {
-    to = way(stretch.last) < kLongWay_m ? &stretch.last : way(stretch.middle) < kLongWay_m ? &stretch.middle : to;
+  if (way(*to) < kShortTranslation_m) {
+    to = way(stretch.last) < kLongTranslation_m     ? &stretch.last
+         : way(stretch.middle) < kLongTranslation_m ? &stretch.middle
+                                                    : to;
   }
   Motion motion;
   motion.dt_s = dt_between(stretch.first, *to);
@@ -144,7 +146,7 @@ std::optional<Motion> motion_by_matching(const Stretch& stretch, const Workers& 
     }
     motion.T_from_to = *farther;
   }
-  add_doppler_way(motion, std::array{&stretch.first, to}, std::array{0.5, 0.5});
+  add_doppler_translation(motion, std::array{&stretch.first, to}, std::array{0.5, 0.5});
   return motion;
 }
 
@@ -157,7 +159,7 @@ Comparison compare(const std::vector<Probe>& probes, std::optional<Motion> Probe
   std::vector<double> reference_speeds;
   std::vector<double> doppler_speeds;
   std::vector<double> ratios;
-  std::vector<double> turn_rates;
+  std::vector<double> angular_rates;
   std::vector<double> turned_deg;
   Eigen::Vector3d doppler_direction = Eigen::Vector3d::Zero();
   Eigen::Vector3d reference_direction = Eigen::Vector3d::Zero();
@@ -168,20 +170,20 @@ Comparison compare(const std::vector<Probe>& probes, std::optional<Motion> Probe
     }
     const Eigen::Vector3d way = motion->T_from_to.translation();
     reference_speeds.push_back(way.norm() / motion->dt_s);
-    doppler_speeds.push_back(motion->doppler_way.norm() / motion->dt_s);
-    turn_rates.push_back(rotation_angle(motion->T_from_to.linear()) / motion->dt_s);
+    doppler_speeds.push_back(motion->doppler_translation.norm() / motion->dt_s);
+    angular_rates.push_back(rotation_angle(motion->T_from_to.linear()) / motion->dt_s);
     if (reference_speeds.back() > kDirectionKnown_mps) {
-      ratios.push_back(motion->doppler_way.dot(way) / way.squaredNorm());
+      ratios.push_back(motion->doppler_translation.dot(way) / way.squaredNorm());
       reference_direction += way.normalized();
-      doppler_direction += motion->doppler_way.stableNormalized();
-      turned_deg.push_back(angle_deg(way, motion->doppler_way));
+      doppler_direction += motion->doppler_translation.stableNormalized();
+      turned_deg.push_back(angle_deg(way, motion->doppler_translation));
     }
   }
   comparison.motions = reference_speeds.size();
   comparison.moving = ratios.size();
   comparison.reference_speed_mps = quantile(reference_speeds, 0.5);
   comparison.doppler_speed_mps = quantile(doppler_speeds, 0.5);
-  comparison.turn_rate_rps = quantile(turn_rates, 0.5);
+  comparison.yaw_rate_rps = quantile(angular_rates, 0.5);
   if (!ratios.empty()) {
     comparison.ratio = quantile(ratios, 0.5);
     comparison.ratio_error = median_error(ratios);
@@ -254,7 +256,7 @@ std::optional<double> Evidence::doppler_speed_mps() const {
   return speeds.empty() ? std::nullopt : std::optional(quantile(std::move(speeds), 0.5));
 }
 
-Evidence gather(const datasets::Dataset& dataset, const DoctorConfig& config, const Workers& workers) {
+Evidence gather(const datasets::Dataset& dataset, const DiagnosisConfig& config, const Workers& workers) {
   Evidence evidence;
   evidence.dataset = &dataset;
   evidence.applied = config.applied;

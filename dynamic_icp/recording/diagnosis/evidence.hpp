@@ -25,8 +25,9 @@ inline constexpr double kDirectionKnown_mps = 1.5;  ///< faster, direction and s
 struct Motion {
   Eigen::Isometry3d T_from_to = Eigen::Isometry3d::Identity();  ///< pose of the later sensor in the axes of the earlier
   double dt_s = 0.0;                                            ///< by the stamps
-  Eigen::Vector3d doppler_way = Eigen::Vector3d::Zero();  ///< m, the same way by the Doppler, where it is relative
-  bool has_doppler = false;                               ///< every fit that `doppler_way` is made of holds
+  Eigen::Vector3d doppler_translation =
+      Eigen::Vector3d::Zero();  ///< m, the same way by the Doppler, where it is relative
+  bool has_doppler = false;     ///< every fit that `doppler_translation` is made of holds
 };
 
 /// As many scans of a stretch are looked at, one after the other in Evidence::looks.
@@ -49,7 +50,7 @@ struct Comparison {
   double ratio_error = 0.0;       ///< standard error of that median
   double turned_deg = 0.0;        ///< angle from the reference's direction to the Doppler's, of the mean directions
   double turned_error_deg = 0.0;  ///< standard error of the angles of the motions one by one
-  double turn_rate_rps = 0.0;     ///< median of the absolute rate of turn
+  double yaw_rate_rps = 0.0;      ///< median of the absolute rate of turn
 
   /// By the ratio: the Doppler moves the sensor as the reference does, or certainly not so.
   [[nodiscard]] bool is_same() const { return std::abs(ratio - 1.0) <= 0.08; }
@@ -82,6 +83,6 @@ struct Evidence {
   [[nodiscard]] std::optional<double> doppler_speed_mps() const;
 };
 
-Evidence gather(const datasets::Dataset& dataset, const DoctorConfig& config, const Workers& workers);
+Evidence gather(const datasets::Dataset& dataset, const DiagnosisConfig& config, const Workers& workers);
 
 }  // namespace dynamic_icp::diagnosis

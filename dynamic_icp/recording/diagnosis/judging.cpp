@@ -36,13 +36,13 @@ const Comparison* best_reference(const Evidence& evidence) {
   return points_are_better && evidence.matching.moving >= kEnough ? &evidence.matching : &evidence.truth;
 }
 
-constexpr std::size_t kFewestScans = 2;
-constexpr std::size_t kFewestValues = 200;
+constexpr std::size_t kMinScans = 2;
+constexpr std::size_t kMinValues = 200;
 constexpr double kOneSign = 0.001;  // share of the values that have the other one
 
 // Gaussian noise around a constant that leaves 0.1 % of the values with the other sign has a median deviation of 0.22
 // of that constant.
-constexpr double kLeastScatter = 0.3;
+constexpr double kMinScatter = 0.3;
 
 // A velocity explains most of the scatter of a relative Doppler.
 constexpr double kUnexplained = 0.6;
@@ -92,7 +92,7 @@ NoDoppler zeros(const Evidence& evidence, const Total& total) {
   NoDoppler none;
   none.is_zero = true;
   const Comparison* const reference = any_reference(evidence);
-  none.may_stand = reference != nullptr && reference->reference_speed_mps < kStandsStill_mps;
+  none.may_be_static = reference != nullptr && reference->reference_speed_mps < kStandsStill_mps;
   none.sentence = fmt::format("all {} values of {} scans are exactly zero", total.values, total.scans);
   if (reference != nullptr) {
     none.sentence += fmt::format(" while the sensor moves at {:.1f} m/s {}", reference->reference_speed_mps,
@@ -128,7 +128,7 @@ std::string why_unknown(const Evidence& evidence) {
       return fmt::format("only {} of {} motions {} could be compared", comparison->moving, comparison->motions,
                          reference_name(evidence, *comparison));
     }
-    return fmt::format("the sensor moves at {:.1f} m/s {}: too slow to tell", comparison->reference_speed_mps,
+    return fmt::format("the sensor moves at {:.1f} m/s {}: too slow to decide", comparison->reference_speed_mps,
                        reference_name(evidence, *comparison));
   }
   return evidence.dataset->ground_truth().empty()
@@ -169,7 +169,7 @@ std::optional<SpeedRatio> speed_ratio(const Evidence& evidence) {
 std::optional<NoDoppler> no_doppler(const Evidence& evidence) {
   const Total total = total_of(evidence);
   // Where the columns changed places the last one is another's, and `columns` says so.
-  if (total.scans < kFewestScans || total.values < kFewestValues || evidence.columns.doppler != 3) {
+  if (total.scans < kMinScans || total.values < kMinValues || evidence.columns.doppler != 3) {
     return std::nullopt;
   }
   if (total.zeros == total.values) {
@@ -180,7 +180,7 @@ std::optional<NoDoppler> no_doppler(const Evidence& evidence) {
   const double scatter = quantile(total.scatters, 0.5);
   const double left = quantile(total.left, 0.5);
   const bool is_one_sided = others <= kOneSign * static_cast<double>(total.values);
-  if (!is_one_sided || scatter < kLeastScatter * median || left < kUnexplained * scatter) {
+  if (!is_one_sided || scatter < kMinScatter * median || left < kUnexplained * scatter) {
     return std::nullopt;
   }
   const double unit = evidence.units.doppler;  // as stored

@@ -14,9 +14,9 @@ namespace {
 constexpr double kOffTruth_deg = 8.0;  // at walking pace in a jam a few degrees are noise
 constexpr double kOffAhead_deg = 8.0;
 constexpr double kOffAheadInTurns_deg = 15.0;  // the sensor swings out: it is not where the wheels are
-constexpr double kStraight_rps = 0.06;
+constexpr double kDeskewed_rps = 0.06;
 constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kDeviations = 3.0;
+constexpr double kSigmas = 3.0;
 constexpr double kWellKnown_deg = 5.0;  // a direction known no better is not told
 
 /// How well the mean direction is known: by the scatter of the stretches, each as one, for scans of a stretch err
@@ -66,7 +66,7 @@ Finding mounting(const Evidence& evidence) {
   Finding finding{Question::kMounting, Verdict::kCannotTell, ""};
   const Eigen::Vector3d direction = mean_direction(evidence);
   if (direction.norm() < 1e-6) {
-    finding.sentence = "the Doppler shows no motion to tell the mounting from";
+    finding.sentence = "the Doppler shows no motion from which to infer the mounting";
     return finding;
   }
   const double yaw_deg = std::atan2(direction.y(), direction.x()) / kDegree;
@@ -80,15 +80,16 @@ Finding mounting(const Evidence& evidence) {
   const double error_deg = direction_error_deg(evidence, direction);
   finding.evidence.emplace_back("direction_error_deg", error_deg);
   const Comparison* reference = evidence.reference();
-  const bool is_straight = reference != nullptr && reference->turn_rate_rps < kStraight_rps;
+  const bool is_straight = reference != nullptr && reference->yaw_rate_rps < kDeskewed_rps;
   if (error_deg > kWellKnown_deg) {
     finding.sentence = fmt::format(
-        "the direction in which the Doppler moves the sensor scatters too much to tell: {:.0f} degrees off its x axis, "
+        "the direction in which the Doppler moves the sensor scatters too much to decide: {:.0f} degrees off its x "
+        "axis, "
         "+- {:.0f}",
         ahead_deg, error_deg);
     return finding;
   }
-  if (off_truth && *off_truth > kOffTruth_deg + kDeviations * evidence.truth.turned_error_deg) {
+  if (off_truth && *off_truth > kOffTruth_deg + kSigmas * evidence.truth.turned_error_deg) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format(
         "points and ground truth have different axes: {:.0f} degrees between the directions in which they move",

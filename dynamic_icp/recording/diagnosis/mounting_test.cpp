@@ -14,7 +14,7 @@ namespace {
 TEST(Mounting, AnAngleIsOnlyToldWhereTheStretchesAgree) {
   Recording recording;
   recording.path = synthetic::circle(10.0, 0.0);
-  recording.spoil = [](RawScan& raw, const Vector3d&) {  // another angle after a while
+  recording.perturb = [](RawScan& raw, const Vector3d&) {  // another angle after a while
     const double yaw = seconds_between(synthetic::stamp_at(0.0), raw.stamp) < 1.2 ? 0.7 : -0.2;
     for (Vector3d& point : raw.points) {
       point = Eigen::AngleAxisd(yaw, Vector3d::UnitZ()) * point;

@@ -10,7 +10,7 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr double kLongestScan_s = 0.5;
-constexpr double kMostOverlap = 1.3;  // of the period: scans do not overlap much
+constexpr double kMaxOverlap = 1.3;  // of the period: scans do not overlap much
 constexpr double kBefore_s = 1e-3;
 
 }  // namespace
@@ -42,7 +42,7 @@ Finding point_times(const Evidence& evidence) {
     finding.verdict = Verdict::kSuspicious;
     finding.sentence = fmt::format(
         "from {:.3f} s, before the stamp, to {:.3f} s: stamps are not those of the first points", first, last);
-  } else if (evidence.period_s > 0.0 && last - first > kMostOverlap * evidence.period_s) {
+  } else if (evidence.period_s > 0.0 && last - first > kMaxOverlap * evidence.period_s) {
     finding.verdict = Verdict::kSuspicious;
     finding.sentence = fmt::format("a scan takes {:.3f} s, but scans follow each other every {:.3f} s", last - first,
                                    evidence.period_s);

@@ -9,7 +9,7 @@ namespace {
 
 TEST(PointUnits, MillimetresAreFound) {
   Recording points;
-  points.spoil = to_millimetres;
+  points.perturb = to_millimetres;
   const Diagnosis diagnosis = diagnosis_of(points);
   EXPECT_EQ(diagnosis.of(Question::kPointUnits).fix, Correction{.point_scale = 0.001});
   EXPECT_EQ(diagnosis.of(Question::kDopplerSign).verdict, Verdict::kOk) << "the rest is looked at in metres";
@@ -18,7 +18,7 @@ TEST(PointUnits, MillimetresAreFound) {
 TEST(PointUnits, CentimetresAndFeetAreToldByTheWay) {
   for (const auto& [per_metre, scale] : {std::pair(100.0, 0.01), std::pair(3.28084, 0.3048)}) {
     Recording points;
-    points.spoil = [per_metre = per_metre](RawScan& raw, const Vector3d&) {
+    points.perturb = [per_metre = per_metre](RawScan& raw, const Vector3d&) {
       for (Vector3d& point : raw.points) {
         point *= per_metre;
       }

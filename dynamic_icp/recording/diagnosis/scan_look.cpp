@@ -12,10 +12,10 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr double kFitting_mps = 0.5;
-constexpr double kStillDeviations = 4.0;
-constexpr double kLeastStill_mps = 0.3;
-constexpr double kLeastStaticShare = 0.2;
-constexpr double kMostDeviation_mps = 1.0;
+constexpr double kStaticSigmas = 4.0;
+constexpr double kMinStill_mps = 0.3;
+constexpr double kMinStaticShare = 0.2;
+constexpr double kMaxDeviation_mps = 1.0;
 
 void look_at_times(const RawScan& raw, ScanLook& look) {
   bool any = false;
@@ -71,14 +71,14 @@ double scatter_of(std::vector<double> values) {
 
 double median_error(const std::vector<double>& values) {
   constexpr double kErrorPerMad =
-      kDeviationPerMad * 1.2533;  // of the median of normal numbers, times the root of their count
+      kSigmaPerMad * 1.2533;  // of the median of normal numbers, times the root of their count
   return values.empty() ? 0.0 : kErrorPerMad * scatter_of(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
 bool ScanLook::has_velocity() const {
   const bool found = ego.status == ego_motion::EgoVelocityStatus::kConverged ||
                      ego.status == ego_motion::EgoVelocityStatus::kIterationLimit;
-  return found && static_share >= kLeastStaticShare && ego.covariance.trace() < kMostDeviation_mps * kMostDeviation_mps;
+  return found && static_share >= kMinStaticShare && ego.covariance.trace() < kMaxDeviation_mps * kMaxDeviation_mps;
 }
 
 ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still) {
@@ -94,7 +94,7 @@ ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still) {
   look.values = doppler_values(scan.doppler(), residuals);
   std::vector<std::uint32_t> fitting;
   std::size_t near = 0;
-  const double width = std::max(kLeastStill_mps, kStillDeviations * look.ego.inlier_rms_mps);
+  const double width = std::max(kMinStill_mps, kStaticSigmas * look.ego.inlier_rms_mps);
   for (std::uint32_t row = 0; row < residuals.size(); ++row) {
     const double residual = std::abs(residuals[row]);
     near += residual < kFitting_mps ? 1 : 0;

@@ -19,15 +19,15 @@ namespace {
 constexpr double kSourceVoxel_m = 0.8;
 constexpr std::size_t kFinePoints = 4000;
 constexpr double kFarthest_m = 100.0;
-constexpr std::size_t kFewestPoints = 200;
+constexpr std::size_t kMinPoints = 200;
 
 // The stamps may be wrong: the search never ends before some metres.
-constexpr double kLeastReach_m = 4.5;
-constexpr double kMostReach_m = 6.0;
+constexpr double kMinReach_m = 4.5;
+constexpr double kMaxReach_m = 6.0;
 
 constexpr double kWorstCost = 0.5;  // misfit of the best translation
 // The geometry must hold the way this well; its own covariance is a lower bound.
-constexpr double kTrustedDeviation_m = 0.02;
+constexpr double kTrustedSigma_m = 0.02;
 
 /// The points as they would have been seen at the stamp by a sensor that moves at a constant twist, by T_from_to in
 /// `dt_s`.
@@ -51,7 +51,7 @@ registration::Alignment align(const Scan& source, const registration::Target& la
 }
 
 /// Of the way, along itself, by the alignment's own covariance; large where there is none.
-double way_deviation(const registration::Alignment& alignment) {
+double translation_sigma(const registration::Alignment& alignment) {
   if (!alignment.covariance) {
     return 1e3;
   }
@@ -76,7 +76,7 @@ std::optional<Eigen::Isometry3d> refined(const Scan& earlier, const Scan& later,
       return std::nullopt;
     }
     T = found.T_target_source;
-    if (gate_m == kGates_m[1] && (way_deviation(found) > kTrustedDeviation_m ||
+    if (gate_m == kGates_m[1] && (translation_sigma(found) > kTrustedSigma_m ||
                                   registration::misfit(source, target.target(), T, workers) > kWorstCost)) {
       return std::nullopt;
     }
@@ -92,13 +92,13 @@ std::optional<Eigen::Isometry3d> match_scans(const Scan& earlier, const Scan& la
                                              std::span<const Eigen::Vector3d> axes, const Workers& workers) {
   const Scan from = in_reach(earlier);
   const Scan to = in_reach(later);
-  if (from.size() < kFewestPoints || to.size() < kFewestPoints) {
+  if (from.size() < kMinPoints || to.size() < kMinPoints) {
     return std::nullopt;
   }
   const registration::PreparedTarget target = registration::search_target(to, workers);
   const Scan thin = preprocess::voxel_grid(from, {kSourceVoxel_m}, workers);
   const registration::InitialTranslation found = registration::search_translation(
-      thin, target.target(), dt_s, {{axes.begin(), axes.end()}, kLeastReach_m, kMostReach_m}, workers);
+      thin, target.target(), dt_s, {{axes.begin(), axes.end()}, kMinReach_m, kMaxReach_m}, workers);
   if (found.cost > kWorstCost || !found.is_unambiguous) {
     return std::nullopt;
   }
@@ -109,7 +109,7 @@ std::optional<Eigen::Isometry3d> match_scans(const Scan& earlier, const Scan& la
                                              const Eigen::Isometry3d& T_start, const Workers& workers) {
   const Scan from = in_reach(earlier);
   const Scan to = in_reach(later);
-  if (from.size() < kFewestPoints || to.size() < kFewestPoints) {
+  if (from.size() < kMinPoints || to.size() < kMinPoints) {
     return std::nullopt;
   }
   return refined(from, to, dt_s, T_start.inverse(), workers);

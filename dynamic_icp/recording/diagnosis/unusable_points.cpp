@@ -28,7 +28,7 @@ Finding unusable_points(const Evidence& evidence) {
       {"points", points}, {"not_finite", not_finite}, {"implausible", implausible}, {"at_the_origin", at_origin}};
   if (points == 0.0) {
     finding.verdict = Verdict::kWrong;
-    finding.sentence = "the scans looked at are empty";
+    finding.sentence = "the sampled scans are empty";
     return finding;
   }
   const double share = (not_finite + implausible + at_origin) / points;

@@ -13,7 +13,7 @@ namespace {
 
 TEST(UnusablePoints, PointsThatCannotBeUsedAreCounted) {
   Recording recording;
-  recording.spoil = [](RawScan& raw, const Vector3d&) {
+  recording.perturb = [](RawScan& raw, const Vector3d&) {
     for (std::size_t i = 0; i < raw.points.size(); i += 4) {
       raw.points[i].setZero();
       raw.doppler[i + 1] = std::numeric_limits<double>::quiet_NaN();

@@ -19,7 +19,7 @@ namespace {
 
 using Words = std::vector<std::string_view>;
 
-constexpr std::size_t kMostNumbersOfAPoint = 1U << 20U;
+constexpr std::size_t kMaxNumbersOfAPoint = 1U << 20U;
 // No file has that many but a damaged one; each is looked up among the others by its name.
 constexpr std::size_t kMaxFields = 1024;
 
@@ -153,8 +153,8 @@ class HeaderReader {
       if (field.count == 0) {
         fail(entry("COUNT").line, fmt::format("field '{}' has COUNT 0, expected at least 1", printable(field.name)));
       }
-      if (field.count > kMostNumbersOfAPoint || (numbers += field.count) > kMostNumbersOfAPoint) {
-        fail(entry("COUNT").line, fmt::format("more than {} numbers of a point", kMostNumbersOfAPoint));
+      if (field.count > kMaxNumbersOfAPoint || (numbers += field.count) > kMaxNumbersOfAPoint) {
+        fail(entry("COUNT").line, fmt::format("more than {} numbers of a point", kMaxNumbersOfAPoint));
       }
       const auto same_name = [&](const PcdField& other) { return other.name == field.name; };
       if (!field.is_padding() && std::any_of(header_.fields.begin(), header_.fields.end(), same_name)) {

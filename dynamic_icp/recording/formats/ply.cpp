@@ -149,16 +149,16 @@ class Reader {
   /// Takes memory for the records, if the file is long enough for so many.
   void reserve(PlyElement& element, const std::vector<PlyType>& count_types) {
     const bool ascii = encoding_ == Encoding::kAscii;
-    std::size_t least_bytes = 0;  // of a record
+    std::size_t min_bytes = 0;  // of a record
     for (std::size_t i = 0; i < count_types.size(); ++i) {
       const PlyType first = element.columns[i].is_list ? count_types[i] : element.columns[i].type;
-      least_bytes += ascii ? 2 : traits(first).bytes;  // a digit and a blank
+      min_bytes += ascii ? 2 : traits(first).bytes;  // a digit and a blank
     }
     const std::size_t room = rest_.size() + (ascii ? 1 : 0);  // the last line may have no end
-    if (least_bytes == 0 ? element.count > 0 : element.count > room / least_bytes) {
+    if (min_bytes == 0 ? element.count > 0 : element.count > room / min_bytes) {
       throw DataError(fmt::format("{}: {} records of element '{}', expected at most {}: the file has {} bytes left",
-                                  origin_.string(), element.count, element.name,
-                                  least_bytes == 0 ? 0 : room / least_bytes, rest_.size()));
+                                  origin_.string(), element.count, element.name, min_bytes == 0 ? 0 : room / min_bytes,
+                                  rest_.size()));
     }
     for (PlyColumn& column : element.columns) {
       column.values.reserve(element.count);

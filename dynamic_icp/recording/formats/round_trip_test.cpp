@@ -53,12 +53,12 @@ NpyArray any_array(std::size_t rows, std::size_t columns, std::size_t types) {
   return array;
 }
 
-std::vector<NamedArray> any_table(std::size_t most_columns, std::size_t types) {
+std::vector<NamedArray> any_table(std::size_t max_columns, std::size_t types) {
   const std::size_t rows = below(12);
   std::vector<NamedArray> table;
   const std::size_t columns = 1 + below(5);
   for (std::size_t k = 0; k < columns; ++k) {
-    table.push_back({fmt::format("column_{}", k), any_array(rows, 1 + below(most_columns), types)});
+    table.push_back({fmt::format("column_{}", k), any_array(rows, 1 + below(max_columns), types)});
   }
   return table;
 }

@@ -32,7 +32,7 @@ std::optional<TwistRow> twist(const JsonRow& row) {
   return TwistRow{.angular = twist.vector("angular"), .linear = twist.vector("linear")};
 }
 
-std::vector<Vector6d> unknown_directions(const JsonRow& row) {
+std::vector<Vector6d> unobservable_directions(const JsonRow& row) {
   std::vector<Vector6d> directions;
   if (row.has("degenerate")) {
     for (const JsonRow::Json& entry : row.list("degenerate")) {
@@ -58,7 +58,7 @@ FrameRow frame_row(const JsonRow& row) {
   frame.fitness = row.number("fitness");
   frame.inlier_rmse = row.number("inlier_rmse");
   frame.information_ratio = number_if_any(row, "information_ratio");
-  frame.unknown_directions = unknown_directions(row);
+  frame.unobservable_directions = unobservable_directions(row);
   frame.twist = twist(row);
   frame.doppler_bias = row.has("doppler_bias") ? row.number("doppler_bias") : 0.0;
   const JsonRow::Json& stages = row.get("ms");

@@ -40,7 +40,7 @@ struct FrameRow {
   double fitness = 0.0;
   double inlier_rmse = 0.0;                                  ///< m
   double information_ratio = 0.0;                            ///< of the least known direction to the best known one
-  std::vector<Vector6d> unknown_directions;                  ///< of the pose, [rotation; translation], unit length
+  std::vector<Vector6d> unobservable_directions;             ///< of the pose, [rotation; translation], unit length
   std::optional<TwistRow> twist;                             ///< where the method states one
   double doppler_bias = 0.0;                                 ///< m/s, constant error that was found
   std::vector<std::pair<std::string, double>> milliseconds;  ///< per stage and "total"

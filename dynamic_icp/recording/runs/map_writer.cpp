@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr double kMostVoxels = 1 << 30;  // from the origin along an axis, see VoxelHashMap
+constexpr double kMaxVoxels = 1 << 30;  // from the origin along an axis, see VoxelHashMap
 
 double checked(double voxel_size_m) {
   if (!(voxel_size_m >= MapWriter::kMinVoxelSize_m && voxel_size_m <= MapWriter::kMaxVoxelSize_m)) {
@@ -69,7 +69,7 @@ void MapWriter::add(const odometry::Frame& frame) {
   for (const Eigen::Vector3d& point : frame.static_points) {
     in_world.emplace_back(frame.T_world_sensor * point);
     // Written so that NaN fails as well. One voxel is kept in hand for rounding.
-    if (!((in_world.back().array().abs() < (kMostVoxels - 1.0) * voxel_size_m_).all())) {
+    if (!((in_world.back().array().abs() < (kMaxVoxels - 1.0) * voxel_size_m_).all())) {
       throw DataError(
           fmt::format("the scan at {} s has a static point that lies {} m from the first scan: too far out "
                       "for a map of voxels of {} m",

@@ -21,7 +21,7 @@ constexpr std::size_t kProbes = 4;
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
                                const ScansToCheck& scans, bool needs_doppler, const FixInWords& fix_in_words) {
   const auto fix_of = [&](const diagnosis::Finding& finding) { return fix_in_words ? fix_in_words(finding) : ""; };
-  diagnosis::DoctorConfig config;
+  diagnosis::DiagnosisConfig config;
   config.begin = scans.begin;
   config.end = std::min(scans.end, scans.begin + kScans);
   config.probes = kProbes;

@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
 Json sweep_json(const SweepRecord& sweep) {
-  Json json = {{"times", sweep.times()}, {"duration_s", nullptr}, {"undone", sweep.undone()}};
+  Json json = {{"times", sweep.times()}, {"duration_s", nullptr}, {"deskewed", sweep.deskewed()}};
   if (sweep.duration_s()) {
     json["duration_s"] = *sweep.duration_s();
   }

@@ -31,7 +31,7 @@ std::optional<MapWriter> make_map(const RunSettings& settings) {
   }
   check_map_file(*settings.map_file);
   if (settings.method != "dynamic-icp") {
-    throw UsageError(fmt::format("only dynamic-icp tells static points from moving ones, {} does not: it makes no map",
+    throw UsageError(fmt::format("only dynamic-icp separates static from moving points, {} does not: it makes no map",
                                  settings.method));
   }
   return MapWriter(settings.map_voxel_m);
@@ -119,9 +119,8 @@ class Run {
     const fs::path map_file = map_ ? map_destination(*settings_.map_file, settings_.output, output.path()) : fs::path();
     const fs::path map_in_run =
         formats::lies_in(map_file, output.path()) ? map_file.lexically_relative(output.path()) : "";
-    const std::unique_ptr<odometry::Odometry> odometry =
-        odometry::make_odometry(settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind()},
-                                settings_.threads);
+    const std::unique_ptr<odometry::Odometry> odometry = odometry::make_odometry(
+        settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind()}, settings_.threads);
     std::vector<std::string> assumptions = dataset_->assumptions();
     for (const std::string& assumption : odometry->assumptions()) {
       assumptions.push_back(assumption);

@@ -20,7 +20,8 @@ motion::SweepConfig sweep_config(const RunFiles& run) {
       set_field(known, field.key, text);
     }
   }
-  config.undo = text_of(run.run, "sweep.undone") == "true";
+  // Runs of version 0.1 say "undone".
+  config.deskew = text_of(run.run, "sweep.deskewed") == "true" || text_of(run.run, "sweep.undone") == "true";
   return config;
 }
 
@@ -64,11 +65,11 @@ ScanAsRun scan_as_run(const RunFiles& run, std::size_t frame, const RawScan& raw
   const motion::SweepConfig sweep = sweep_config(run);
   const std::optional<RawScan> retimed = motion::retimed(raw, sweep);
   Scan measured = Scan::from_raw(retimed ? *retimed : raw, {.max_m = max_range_m}, workers);
-  if (!sweep.undo) {
-    return {.scan = std::move(measured), .motion = std::nullopt, .sweep_undone = false};
+  if (!sweep.deskew) {
+    return {.scan = std::move(measured), .motion = std::nullopt, .is_deskewed = false};
   }
   const std::optional<motion::SweepMotion> motion = sweep_motion(run, frame);
-  return {.scan = at_stamp(run, frame, measured, motion, workers), .motion = motion, .sweep_undone = true};
+  return {.scan = at_stamp(run, frame, measured, motion, workers), .motion = motion, .is_deskewed = true};
 }
 
 }  // namespace dynamic_icp::runs

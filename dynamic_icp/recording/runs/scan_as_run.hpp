@@ -16,8 +16,8 @@ namespace dynamic_icp::runs {
 struct ScanAsRun {
   Scan scan;  ///< points where they would have been measured at the stamp, where the run took the sweep out of them
   std::optional<motion::SweepMotion> motion;  ///< during the scan; empty where the run took no sweep out of it or
-                                                    ///< states no twist
-  bool sweep_undone = false;
+                                              ///< states no twist
+  bool is_deskewed = false;
 };
 
 /// A scan of the recording as the run had it in this frame: with the times of points that its configuration declares,

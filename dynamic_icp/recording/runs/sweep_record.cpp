@@ -11,7 +11,7 @@ void SweepRecord::add(const odometry::Frame& frame, const RawScan& scan) {
   const motion::SweepReport report = frame.sweep.value_or(motion::sweep_in_data(scan));
   first = first.value_or(report);
   same_times = same_times && report.times == first->times;
-  all_undone = all_undone && report.undone;
+  all_deskewed = all_deskewed && report.deskewed;
 }
 
 std::string SweepRecord::times() const {

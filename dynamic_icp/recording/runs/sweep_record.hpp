@@ -5,8 +5,8 @@
 #include <optional>
 #include <string>
 
-#include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/motion/sweep_times.hpp"
+#include "dynamic_icp/method/odometry/frame.hpp"
 
 namespace dynamic_icp::runs {
 
@@ -14,10 +14,10 @@ namespace dynamic_icp::runs {
 struct SweepRecord {
   std::optional<motion::SweepReport> first;
   bool same_times = true;
-  bool all_undone = true;
+  bool all_deskewed = true;
 
   void add(const odometry::Frame& frame, const RawScan& scan);
-  [[nodiscard]] bool undone() const { return first && all_undone; }
+  [[nodiscard]] bool deskewed() const { return first && all_deskewed; }
   /// "in the data", "declared", "none" or "mixed".
   [[nodiscard]] std::string times() const;
   [[nodiscard]] std::optional<double> duration_s() const { return first ? first->duration_s : std::nullopt; }

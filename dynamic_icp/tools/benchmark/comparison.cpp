@@ -12,7 +12,7 @@
 namespace dynamic_icp::benchmark {
 namespace {
 
-constexpr std::size_t kMostSequencesAsColumns = 6;
+constexpr std::size_t kMaxSequencesAsColumns = 6;
 
 /// A sequence in a comparison: the cells of all variants.
 struct Block {
@@ -137,7 +137,7 @@ Table comparison(const BenchmarkResults& results, const std::vector<Variant>& va
     return table;
   }
   const std::vector<Block> blocks = blocks_of(results, variants);
-  if (results.info.sequences.size() <= kMostSequencesAsColumns) {
+  if (results.info.sequences.size() <= kMaxSequencesAsColumns) {
     lay_out_by_variant(table, variants, blocks);
   } else {
     lay_out_by_sequence(table, variants, blocks);

@@ -13,9 +13,9 @@ std::vector<GroundView> arrange_panels(const Region& region, std::size_t count, 
   const bool stacked = count < 2 || aspect > kLong;
   const double columns = stacked ? 1.0 : static_cast<double>(count);
   const double panel_width = (width - spacing.margin * (columns + 1.0)) / columns;
-  const double least_height = stacked ? 190.0 : 300.0;
-  const double most_height = stacked ? 420.0 : 620.0;
-  const double panel_height = std::clamp(panel_width / aspect, least_height, most_height);
+  const double min_height = stacked ? 190.0 : 300.0;
+  const double max_height = stacked ? 420.0 : 620.0;
+  const double panel_height = std::clamp(panel_width / aspect, min_height, max_height);
   Region shown = region;
   drawing::make_aspect_equal({0.0, 0.0, panel_width, panel_height}, shown.x, shown.y);
   std::vector<GroundView> panels;

@@ -14,7 +14,7 @@
 namespace dynamic_icp::figures {
 namespace {
 
-constexpr std::size_t kMostNamed = 16;  // more labels would hide the scene
+constexpr std::size_t kMaxNamed = 16;  // more labels would hide the scene
 
 /// An object with its place in the picture.
 struct Mark {
@@ -87,7 +87,7 @@ void draw_object_marks(drawing::Svg& svg, const drawing::Theme& theme, const Gro
   const drawing::TextStyle style{.colour = theme.ink, .size = 13.0, .bold = true, .halo = theme.panel};
   const std::string own = "sensor · " + speed_text(view.ego_velocity);
   svg.text(places.place({origin.x - 6.0, origin.y - 6.0, 12.0, 12.0}, own, style.size), own, style);
-  for (std::size_t k = 0; k < std::min(marks.size(), kMostNamed); ++k) {
+  for (std::size_t k = 0; k < std::min(marks.size(), kMaxNamed); ++k) {
     const std::string text = fmt::format("{} · {}", marks[k].object.id, speed_text(marks[k].object.velocity));
     svg.text(places.place(marks[k].box, text, style.size), text, style);
   }

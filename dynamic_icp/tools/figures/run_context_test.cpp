@@ -73,11 +73,11 @@ TEST(RunContext, MendsTheRecordingAsTheRunDid) {
   const std::string format = R"("format":"dicp")";
   run.insert(run.find(format), R"("options":{"doppler-sign":"towards","point-scale":"0.5"},)");
   folder.write("run/run.json", run);
-  const Scan mended = context_of(folder, 3).scan->scan;
-  ASSERT_EQ(mended.size(), as_stored.size());
-  for (std::size_t i = 0; i < mended.size(); ++i) {
-    EXPECT_EQ(mended.doppler()[i], -as_stored.doppler()[i]);
-    EXPECT_EQ(mended.points()[i], Eigen::Vector3d(0.5 * as_stored.points()[i]));
+  const Scan corrected = context_of(folder, 3).scan->scan;
+  ASSERT_EQ(corrected.size(), as_stored.size());
+  for (std::size_t i = 0; i < corrected.size(); ++i) {
+    EXPECT_EQ(corrected.doppler()[i], -as_stored.doppler()[i]);
+    EXPECT_EQ(corrected.points()[i], Eigen::Vector3d(0.5 * as_stored.points()[i]));
   }
 }
 

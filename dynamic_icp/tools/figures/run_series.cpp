@@ -119,8 +119,8 @@ std::vector<RunSeries> run_series(const runs::RunFiles& run, const std::optional
   all.push_back(
       make_series({"iterations", "Iterations", "number", ""}, registration(run, &runs::FrameRow::iterations)));
   all.back().panel.whole_numbers = true;
-  all.push_back(make_series({"inlier_rmse", "Inlier RMSE", "inlier RMSE", "m"},
-                            registration(run, &runs::FrameRow::inlier_rmse)));
+  all.push_back(
+      make_series({"inlier_rmse", "Inlier RMSE", "inlier RMSE", "m"}, registration(run, &runs::FrameRow::inlier_rmse)));
   all.push_back(
       make_series({"fitness", "Fitness", "share of points matched", ""}, registration(run, &runs::FrameRow::fitness)));
   all.push_back(make_series({"degeneracy", "Degeneracy: information ratio (eigenvalues)", "information ratio", ""},

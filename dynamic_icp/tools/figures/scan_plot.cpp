@@ -23,9 +23,9 @@ namespace {
 constexpr PanelSpacing kSpacing;
 constexpr double kWidth = 1120.0;  // px
 constexpr double kFoot = 78.0;     // px below the panels, for the scales
-constexpr std::size_t kMostDots = 13'000;
+constexpr std::size_t kMaxDots = 13'000;
 
-/// The rows to draw: thinned just as far as it takes to stay within kMostDots.
+/// The rows to draw: thinned just as far as it takes to stay within kMaxDots.
 std::vector<std::uint32_t> rows_to_draw(const Scan& scan, const GroundView& ground) {
   double cell_m = std::max(0.1, 1.3 / ground.pixels_per_metre());
   while (true) {
@@ -33,7 +33,7 @@ std::vector<std::uint32_t> rows_to_draw(const Scan& scan, const GroundView& grou
     std::erase_if(rows, [&](std::uint32_t row) {
       return !ground.region.contains(scan.points()[row].x(), scan.points()[row].y());
     });
-    if (rows.size() <= kMostDots) {
+    if (rows.size() <= kMaxDots) {
       return rows;
     }
     cell_m *= 1.25;
@@ -144,7 +144,7 @@ void draw_foot(drawing::Svg& svg, const drawing::Theme& theme, const GroundView&
   const double text_right = right - scales.ring_m * ground.pixels_per_metre() - 24.0;
   const drawing::TextStyle style{.colour = theme.muted, .size = 12.0, .anchor = drawing::Anchor::kEnd};
   svg.text({text_right, top - 7.0}, note, style);
-  svg.text({text_right, top + 9.0}, "arrows: the way covered in 1 s", style);
+  svg.text({text_right, top + 9.0}, "arrows: displacement in 1 s", style);
   svg.text({text_right, top + 25.0}, fmt::format("rings: every {} m", drawing::compact_number(scales.ring_m)), style);
 }
 
@@ -168,7 +168,7 @@ std::vector<PanelContent> panel_contents(const ScanView& view) {
   std::vector<PanelContent> contents = {
       {"Measured Doppler", "every point comes with its radial velocity", view.scan.doppler()}};
   if (view.ego_velocity.allFinite()) {
-    contents.push_back({"Own motion taken out", "what is still coloured moves by itself",
+    contents.push_back({"Ego-motion compensated", "remaining colour = object motion",
                         ego_motion::compensated_doppler(view.scan, view.ego_velocity)});
   }
   return contents;

@@ -96,8 +96,8 @@ drawing::Range field_of_view(const Scan& scan) {
 
 std::vector<std::uint32_t> rows_on_object(const ScanView& view, const std::vector<double>& compensated,
                                           const runs::ObjectRow& object) {
-  constexpr double kStillMps = 0.5;  // slower points count as standing still
-  const double tolerance = std::max(kStillMps, 0.1 * object.velocity.norm());
+  constexpr double kStationary_mps = 0.5;  // slower points count as standing still
+  const double tolerance = std::max(kStationary_mps, 0.1 * object.velocity.norm());
   std::vector<std::uint32_t> rows;
   for (std::size_t i = 0; i < view.scan.size(); ++i) {
     if (!view.labels.empty()) {
@@ -109,7 +109,7 @@ std::vector<std::uint32_t> rows_on_object(const ScanView& view, const std::vecto
     // The centroid is a mean: a point of the object can be a whole extent away from it.
     const Eigen::Vector3d away = (view.scan.points()[i] - object.centroid).cwiseAbs() - object.extent;
     const double expected = view.scan.directions()[i].dot(object.velocity);
-    if (away.maxCoeff() <= 0.0 && std::abs(compensated[i]) > kStillMps &&
+    if (away.maxCoeff() <= 0.0 && std::abs(compensated[i]) > kStationary_mps &&
         std::abs(compensated[i] - expected) <= tolerance) {
       rows.push_back(static_cast<std::uint32_t>(i));
     }

@@ -167,8 +167,8 @@ drawing::Svg series_plot(const std::vector<double>& times, const std::vector<Pan
 
 bool spans_decades(const std::vector<double>& values) {
   const std::vector<double> positive = positive_values(values);
-  constexpr std::size_t kFewest = 3;
-  return positive.size() >= kFewest &&
+  constexpr std::size_t kMin = 3;
+  return positive.size() >= kMin &&
          *std::max_element(positive.begin(), positive.end()) > kTowering * quantile(positive, 0.5);
 }
 

@@ -40,7 +40,7 @@ std::uint8_t object_label(std::size_t place) {
 }
 
 /// Whether the method of the run tells moving points from static ones at all.
-bool tells_motion(const RunFiles& run) { return runs::text_of(run.run, "method") == "dynamic-icp"; }
+bool shows_motion(const RunFiles& run) { return runs::text_of(run.run, "method") == "dynamic-icp"; }
 
 bool moves(double compensated) { return std::abs(compensated) > kMoving_mps; }
 
@@ -51,7 +51,7 @@ std::vector<std::uint8_t> saved_labels(const RunFiles& run, std::size_t frame, c
   for (std::size_t k = 0; k < run.objects[frame].size(); ++k) {
     label_of_object.emplace(run.objects[frame][k].id, object_label(k));
   }
-  const bool tells = tells_motion(run);
+  const bool tells = shows_motion(run);
   std::vector<std::uint8_t> labels(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
     const std::int32_t label = saved[scan.records()[i]];
@@ -67,7 +67,7 @@ std::vector<std::uint8_t> saved_labels(const RunFiles& run, std::size_t frame, c
 std::vector<std::uint8_t> guessed_labels(const RunFiles& run, std::size_t frame, const Scan& scan,
                                          const std::vector<double>& compensated) {
   std::vector<std::uint8_t> labels(scan.size(), kStatic);
-  if (!tells_motion(run)) {
+  if (!shows_motion(run)) {
     return labels;
   }
   std::transform(compensated.begin(), compensated.end(), labels.begin(),
@@ -135,7 +135,7 @@ ShownScan show_scan(const RunFiles& run, std::size_t frame, const RawScan& raw, 
   shown.labels = saved ? saved_labels(run, frame, scan, *saved, shown.compensated)
                        : guessed_labels(run, frame, scan, shown.compensated);
   shown.points = scan.points();
-  if (seen.sweep_undone && scan.has_times()) {
+  if (seen.is_deskewed && scan.has_times()) {
     put_objects_at_stamp(run, frame, scan.times(), shown);
   }
   shown.doppler = scan.doppler();

@@ -29,7 +29,7 @@ constexpr double kWidth = 1120.0;  // px
 constexpr double kMargin = 20.0;
 constexpr double kHead = 48.0;  // above each panel: title and legend
 constexpr double kLowerHeight = 330.0;
-constexpr std::size_t kMostDots = 5000;  // of a panel
+constexpr std::size_t kMaxDots = 5000;  // of a panel
 
 constexpr std::size_t kMovingColour = 1;  // in the order of the theme: also "raw" and "target"
 constexpr std::size_t kGoodColour = 2;    // "predicted", "source after alignment"
@@ -100,7 +100,7 @@ class Sheet {
       }
     }
     std::vector<Pixel> dots;
-    for (const std::uint32_t row : spread_rows(seen, kMostDots)) {
+    for (const std::uint32_t row : spread_rows(seen, kMaxDots)) {
       dots.push_back(view_.at(seen[row]));
     }
     svg_.dots(dots, diameter, colour);

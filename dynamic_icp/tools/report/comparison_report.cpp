@@ -73,12 +73,12 @@ std::optional<figures::RunTruth> truth_of(const RunFiles& run, std::vector<std::
 class RunList {
  public:
   explicit RunList(std::size_t runs)
-      : most_frames_(std::max<std::size_t>(2, kMostFramesCompared / std::max<std::size_t>(1, runs))) {}
+      : max_frames_(std::max<std::size_t>(2, kMaxFramesCompared / std::max<std::size_t>(1, runs))) {}
 
   /// Returns the place of the run.
   std::size_t add(const RunFiles& run, const std::string& name, std::vector<std::string>& notes) {
-    thinned_ += run.frames.size() > most_frames_ ? 1 : 0;
-    runs_.push_back(run_data(run, truth_of(run, notes), name, most_frames_));
+    thinned_ += run.frames.size() > max_frames_ ? 1 : 0;
+    runs_.push_back(run_data(run, truth_of(run, notes), name, max_frames_));
     return runs_.size() - 1;
   }
 
@@ -87,13 +87,13 @@ class RunList {
       notes.push_back(
           fmt::format("{} of {} runs show {} of their scans, evenly spread, in paths and plots; tables and "
                       "summaries hold all.",
-                      thinned_, runs_.size(), most_frames_));
+                      thinned_, runs_.size(), max_frames_));
     }
     return std::move(runs_);
   }
 
  private:
-  std::size_t most_frames_;
+  std::size_t max_frames_;
   std::size_t thinned_ = 0;
   Json runs_ = Json::array();
 };
@@ -142,7 +142,7 @@ PageContent comparison_report(const std::vector<fs::path>& folders) {
   for (const fs::path& folder : folders) {
     runs.push_back(runs::read_run(folder));
   }
-  const std::vector<std::string> names = telling_names(runs);
+  const std::vector<std::string> names = distinguishing_names(runs);
   std::vector<std::string> notes = {
       "Scans are not shown where runs are compared: the report of a single run has them."};
   RunList list(runs.size());

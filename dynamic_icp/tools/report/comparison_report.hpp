@@ -10,7 +10,7 @@
 namespace dynamic_icp::report {
 
 /// Frames that all runs of a page share among them: with more, each run shows so many of its frames, evenly spread.
-inline constexpr std::size_t kMostFramesCompared = 40'000;
+inline constexpr std::size_t kMaxFramesCompared = 40'000;
 
 /// The page of several runs side by side, those over the same recording in a group; without scans. Throws DataError
 /// when a folder is not that of a finished run.

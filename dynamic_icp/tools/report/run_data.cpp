@@ -73,7 +73,7 @@ Json object(const ObjectRow& row) {
 
 Json directions(const FrameRow& frame) {
   Json texts = Json::array();
-  for (const Vector6d& direction : frame.unknown_directions) {
+  for (const Vector6d& direction : frame.unobservable_directions) {
     texts.push_back(direction_text(direction));
   }
   return texts;
@@ -156,8 +156,8 @@ Facts origin(const RunFiles& run) {
 }  // namespace
 
 Json run_data(const RunFiles& run, const std::optional<figures::RunTruth>& truth, const std::string& name,
-              std::size_t most_frames) {
-  const std::vector<std::size_t> kept = spread_frames(run.frames.size(), most_frames);
+              std::size_t max_frames) {
+  const std::vector<std::size_t> kept = spread_frames(run.frames.size(), max_frames);
   return {{"name", name},
           {"facts", pairs(facts_of(run))},
           {"command", runs::text_of(run.run, "command")},

@@ -11,9 +11,9 @@
 
 namespace dynamic_icp::report {
 
-/// An entry of "runs" (docs/report.md) without scans and map. With more than `most_frames` frames only so many, evenly
+/// An entry of "runs" (docs/report.md) without scans and map. With more than `max_frames` frames only so many, evenly
 /// spread, go into its columns and plots.
 Json run_data(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth, const std::string& name,
-              std::size_t most_frames = static_cast<std::size_t>(-1));
+              std::size_t max_frames = static_cast<std::size_t>(-1));
 
 }  // namespace dynamic_icp::report

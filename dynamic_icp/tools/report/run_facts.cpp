@@ -55,7 +55,7 @@ std::string folder_name(const std::filesystem::path& folder) {
   return std::filesystem::absolute(folder / "").lexically_normal().parent_path().filename().string();
 }
 
-std::vector<std::string> telling_names(const std::vector<RunFiles>& runs) {
+std::vector<std::string> distinguishing_names(const std::vector<RunFiles>& runs) {
   std::vector<std::string> names(runs.size());
   for (const char* key : {"method", "preset", "ablation"}) {
     const bool differs = std::any_of(runs.begin(), runs.end(),
@@ -150,7 +150,7 @@ std::string direction_text(const Vector6d& direction) {
   }
   const std::string components = fmt::format("({}, {}, {})", drawing::compact_number(axis.x()),
                                              drawing::compact_number(axis.y()), drawing::compact_number(axis.z()));
-  return (is_shift ? "position along " : "turn about ") + components;
+  return (is_shift ? "position along " : "rotation about ") + components;
 }
 
 }  // namespace dynamic_icp::report

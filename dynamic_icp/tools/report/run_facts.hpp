@@ -20,7 +20,7 @@ std::string name_of(const runs::RunFiles& run);
 std::string folder_name(const std::filesystem::path& folder);
 
 /// What tells the runs apart: method, preset and ablation as far as they differ; else their folders.
-std::vector<std::string> telling_names(const std::vector<runs::RunFiles>& runs);
+std::vector<std::string> distinguishing_names(const std::vector<runs::RunFiles>& runs);
 
 /// Method, preset, ablation and version, as far as the run states them.
 Facts facts_of(const runs::RunFiles& run);

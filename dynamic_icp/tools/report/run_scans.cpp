@@ -157,7 +157,7 @@ std::vector<std::size_t> frames_kept_whole(const RunFiles& run, const std::optio
   std::vector<std::size_t> whole = choice.whole;
   if (choice.choose_whole) {
     double room = kWholeShare * budget_bytes;
-    for (const std::size_t frame : telling_frames(run, truth)) {
+    for (const std::size_t frame : informative_frames(run, truth)) {
       room -= kBytesPerPoint * run.frames[frame].points;
       if (room >= 0.0) {
         whole.push_back(frame);

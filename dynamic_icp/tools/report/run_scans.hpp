@@ -45,7 +45,7 @@ struct RunScans {
 };
 
 /// Reads the recording again, two scans in memory at a time, and thins it to the budget: first points, spread over
-/// space, those on objects before others; where fewer than kFewestPoints are left to a scan, scans as well. The result
+/// space, those on objects before others; where fewer than kMinPoints are left to a scan, scans as well. The result
 /// does not depend on the number of threads. Throws UsageError when a frame of `choice.whole` does not exist, DataError
 /// when the recording is not the one of the run.
 RunScans keep_scans(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth,

@@ -129,7 +129,7 @@ TEST(RunScans, StayWithinTheBudget) {
     EXPECT_TRUE(bytes_of(kept) > budget / 2 || all_whole) << "and use it: " << bytes_of(kept);
     EXPECT_EQ(kept.notes.empty(), all_whole && kept.scans.size() == drive.frames);
     for (const KeptScan& scan : kept.scans) {
-      EXPECT_TRUE(scan.points > kFewestPoints / 2) << scan.points << " points show no scene";
+      EXPECT_TRUE(scan.points > kMinPoints / 2) << scan.points << " points show no scene";
     }
   }
 }

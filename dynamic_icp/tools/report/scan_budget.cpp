@@ -50,7 +50,7 @@ std::vector<std::size_t> spread_frames(std::size_t n, std::size_t count) {
   return frames;
 }
 
-std::vector<std::size_t> telling_frames(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth) {
+std::vector<std::size_t> informative_frames(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth) {
   std::vector<std::size_t> frames;
   if (run.frames.empty()) {
     return frames;
@@ -87,10 +87,10 @@ KeptFrames kept_frames(std::span<const std::size_t> points, std::span<const std:
   std::size_t share = even_share(points_of_others, total);
   const bool any_is_thinned =
       std::any_of(points_of_others.begin(), points_of_others.end(), [&](std::size_t n) { return n > share; });
-  if (share < kFewestPoints && any_is_thinned) {
+  if (share < kMinPoints && any_is_thinned) {
     std::vector<std::size_t> fewer;
     std::vector<std::size_t> points_of_fewer;
-    for (const std::size_t place : spread_frames(others.size(), total / kFewestPoints)) {
+    for (const std::size_t place : spread_frames(others.size(), total / kMinPoints)) {
       fewer.push_back(others[place]);
       points_of_fewer.push_back(points_of_others[place]);
     }

@@ -12,7 +12,7 @@
 namespace dynamic_icp::report {
 
 /// Fewer points do not show a scene: where the budget gives a scan less, scans are left out instead.
-inline constexpr std::size_t kFewestPoints = 2000;
+inline constexpr std::size_t kMinPoints = 2000;
 
 /// The largest number of points per scan for which all scans together stay within `total` points, where no scan gives
 /// more than it has.
@@ -23,7 +23,7 @@ std::vector<std::size_t> spread_frames(std::size_t n, std::size_t count);
 
 /// The frames worth a whole scan, ascending and at most a handful: most points on objects, largest errors, the first
 /// that was degenerate, the first that was lost, the first and the middle one.
-std::vector<std::size_t> telling_frames(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth);
+std::vector<std::size_t> informative_frames(const runs::RunFiles& run, const std::optional<figures::RunTruth>& truth);
 
 /// Which scans a page keeps.
 struct KeptFrames {
@@ -31,7 +31,7 @@ struct KeptFrames {
   std::size_t points = 0;           ///< of each of the others, as far as they have so many
 };
 
-/// Divides `total` points among the scans that are not kept `whole`: all of them where each gets kFewestPoints, else
+/// Divides `total` points among the scans that are not kept `whole`: all of them where each gets kMinPoints, else
 /// fewer. `points` are those of each scan in the recording.
 KeptFrames kept_frames(std::span<const std::size_t> points, std::span<const std::size_t> whole, std::size_t total);
 

@@ -51,7 +51,7 @@ TEST(ScanBudget, ThinsPointsFirstThenScans) {
   EXPECT_EQ(all.points, 3000u);
   const KeptFrames some = kept_frames(points, Counts{}, 100'000);
   EXPECT_EQ(some.frames.size(), 50u);
-  EXPECT_GE(some.points, kFewestPoints);
+  EXPECT_GE(some.points, kMinPoints);
   EXPECT_LE(some.frames.size() * some.points, 100'000u);
   const Counts small(100, 500);
   EXPECT_EQ(kept_frames(small, Counts{}, 50'000).frames.size(), 100u) << "small scans are no reason to leave any out";
@@ -85,9 +85,9 @@ TEST(ScanBudget, TellingFramesAreThoseThatWentWrong) {
   truth.translation_error[7] = 0.5;
   truth.rotation_error.assign(20, 0.01);
   truth.rotation_error[8] = 0.5;
-  EXPECT_EQ(telling_frames(run, truth), (Counts{0, 4, 7, 8, 10, 15, 18}));
-  EXPECT_EQ(telling_frames(run, std::nullopt), (Counts{0, 4, 10, 15, 18}));
-  EXPECT_TRUE(telling_frames({}, std::nullopt).empty());
+  EXPECT_EQ(informative_frames(run, truth), (Counts{0, 4, 7, 8, 10, 15, 18}));
+  EXPECT_EQ(informative_frames(run, std::nullopt), (Counts{0, 4, 10, 15, 18}));
+  EXPECT_TRUE(informative_frames({}, std::nullopt).empty());
 }
 
 }  // namespace

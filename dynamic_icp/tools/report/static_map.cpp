@@ -6,7 +6,7 @@
 
 namespace dynamic_icp::report {
 
-StaticMap::StaticMap(std::size_t most_points) : most_points_(most_points), voxels_(kFinestCell_m, 1) {}
+StaticMap::StaticMap(std::size_t max_points) : max_points_(max_points), voxels_(kFinestCell_m, 1) {}
 
 void StaticMap::add(std::span<const Eigen::Vector3d> points, const Eigen::Isometry3d& T_world_sensor) {
   constexpr double kReach_m = 1e8;  // cells can be counted up to there
@@ -19,13 +19,13 @@ void StaticMap::add(std::span<const Eigen::Vector3d> points, const Eigen::Isomet
     }
   }
   voxels_.add(in_world);
-  limit(most_points_);
+  limit(max_points_);
 }
 
-void StaticMap::limit(std::size_t most_points) {
+void StaticMap::limit(std::size_t max_points) {
   constexpr double kGrowth = 1.25;
   constexpr double kCoarsest_m = 1e6;  // one cell for all that was seen: an empty limit cannot be kept
-  while (voxels_.size() > most_points && cell_m_ < kCoarsest_m) {
+  while (voxels_.size() > max_points && cell_m_ < kCoarsest_m) {
     cell_m_ *= kGrowth;
     spatial::VoxelHashMap coarser(cell_m_, 1);
     coarser.add(voxels_.points());

@@ -18,21 +18,21 @@ class StaticMap {
  public:
   static constexpr double kFinestCell_m = 0.1;
 
-  /// Cells grow by a fourth whenever there would be more than `most_points`.
-  explicit StaticMap(std::size_t most_points);
+  /// Cells grow by a fourth whenever there would be more than `max_points`.
+  explicit StaticMap(std::size_t max_points);
 
   /// Adds points (m, sensor frame) at the pose. Those farther than 100,000 km from the start are left out.
   void add(std::span<const Eigen::Vector3d> points, const Eigen::Isometry3d& T_world_sensor);
 
-  /// Makes the map smaller still: at most `most_points`.
-  void limit(std::size_t most_points);
+  /// Makes the map smaller still: at most `max_points`.
+  void limit(std::size_t max_points);
 
   [[nodiscard]] double cell_m() const { return cell_m_; }
   /// m, spread along Morton's curve, so that neighbours follow each other.
   [[nodiscard]] std::vector<Eigen::Vector3d> points() const;
 
  private:
-  std::size_t most_points_;
+  std::size_t max_points_;
   double cell_m_ = kFinestCell_m;
   spatial::VoxelHashMap voxels_;
 };

@@ -20,9 +20,9 @@ enum Part : std::uint64_t { kEgoSpeed, kEgoSway, kParkedCars, kTrees, kHouses };
 constexpr double kAisle = 17.0;  // m between two aisles
 
 /// Up one aisle and down the next, again and again.
-std::shared_ptr<const world::Route> make_route(double way_m) {
+std::shared_ptr<const world::Route> make_route(double path_m) {
   std::vector<world::RoutePiece> pieces = {{7.0, 0.0, 0.0}};
-  for (double length = 0.0; length < way_m; length += 120.0) {
+  for (double length = 0.0; length < path_m; length += 120.0) {
     for (const double across : {3.0, 50.0, 3.0, 50.0}) {
       const std::vector<world::RoutePiece> bend = world::turn(0.5 * pi, 6.0, 3.0);
       pieces.insert(pieces.end(), bend.begin(), bend.end());
@@ -33,12 +33,12 @@ std::shared_ptr<const world::Route> make_route(double way_m) {
 }
 
 /// Rows of cars side by side wherever the drive leaves room.
-void add_rows(world::TriangleMesh& mesh, const world::Route& route, double way_m, const RandomSource& random) {
+void add_rows(world::TriangleMesh& mesh, const world::Route& route, double path_m, const RandomSource& random) {
   for (int row = -3; row <= 4; ++row) {
     for (int place = -22; place <= 34; ++place) {
       const auto which = static_cast<std::uint64_t>((row + 10) * 1000 + place + 100);
       const Vector2d position(2.7 * place, 0.5 * kAisle + kAisle * 0.5 * row);
-      if (!is_clear_of(route, -15.0, std::min(way_m, 130.0) + 130.0, position, 4.2)) {
+      if (!is_clear_of(route, -15.0, std::min(path_m, 130.0) + 130.0, position, 4.2)) {
         continue;
       }
       const world::Route spot({}, position, 0.0);
@@ -50,12 +50,12 @@ void add_rows(world::TriangleMesh& mesh, const world::Route& route, double way_m
 }  // namespace
 
 Scene build_car_park(const SceneRequest& request) {
-  const double way_m = request.speed_mps * request.duration_s;
-  const auto route = make_route(way_m);
+  const double path_m = request.speed_mps * request.duration_s;
+  const auto route = make_route(path_m);
   Scene scene;
   world::TriangleMesh& mesh = scene.world.statics;
   add_ground(mesh, {-150.0, -150.0}, {200.0, 150.0});
-  add_rows(mesh, *route, way_m, request.random);
+  add_rows(mesh, *route, path_m, request.random);
   const world::Route north({}, {-60.0, 62.0}, 0.0);
   const world::Route south({}, {-60.0, -52.0}, 0.0);
   const world::Route east({}, {95.0, -50.0}, 0.5 * pi);

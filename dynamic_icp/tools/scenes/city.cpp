@@ -48,7 +48,7 @@ struct Junction {
   double y = 0.0;                              ///< where the turn is over
 };
 
-Junction make_junction(double way_m) {
+Junction make_junction(double path_m) {
   std::vector<world::RoutePiece> pieces = {{kApproach, 0.0, 0.0}};
   const std::vector<world::RoutePiece> bend = world::turn(-0.5 * std::numbers::pi, 10.0, 6.0);
   pieces.insert(pieces.end(), bend.begin(), bend.end());
@@ -61,12 +61,12 @@ Junction make_junction(double way_m) {
   junction.first = std::make_shared<const world::Route>(std::vector<world::RoutePiece>{});
   const Vector2d north(junction.x, kHalfBlock);
   junction.second = std::make_shared<const world::Route>(
-      std::vector<world::RoutePiece>{{2.0 * kHalfBlock + way_m, 0.0, 0.0}}, north, -0.5 * std::numbers::pi);
+      std::vector<world::RoutePiece>{{2.0 * kHalfBlock + path_m, 0.0, 0.0}}, north, -0.5 * std::numbers::pi);
   return junction;
 }
 
-void add_blocks(world::TriangleMesh& mesh, const Junction& junction, double way_m) {
-  const double far_south = -kHalfBlock - way_m;
+void add_blocks(world::TriangleMesh& mesh, const Junction& junction, double path_m) {
+  const double far_south = -kHalfBlock - path_m;
   const double west = junction.x + kRightKerb;
   const double east = junction.x + kLeftKerb;
   const double far_east = junction.x + kHalfBlock;
@@ -92,8 +92,8 @@ void add_street_sides(world::TriangleMesh& mesh, const world::Route& lane, doubl
                   random.fork(kParkedCars).fork(1));
 }
 
-void add_statics(world::TriangleMesh& mesh, const Junction& junction, double way_m, const RandomSource& random) {
-  add_blocks(mesh, junction, way_m);
+void add_statics(world::TriangleMesh& mesh, const Junction& junction, double path_m, const RandomSource& random) {
+  add_blocks(mesh, junction, path_m);
   const double after_first = junction.x + kLeftFront;
   add_street_sides(mesh, *junction.first, -70.0, junction.x + kRightFront, 6.0, random.fork(0));
   add_street_sides(mesh, *junction.first, after_first, junction.x + 160.0, junction.x + 160.0, random.fork(1));
@@ -102,7 +102,7 @@ void add_statics(world::TriangleMesh& mesh, const Junction& junction, double way
   const double north_end = kHalfBlock - kLeftFront - kCornerDepth;
   const double south_begin = kHalfBlock - kRightFront + kCornerDepth;
   add_street_sides(mesh, *junction.second, 0.0, north_end, north_end, random.fork(2));
-  add_street_sides(mesh, *junction.second, south_begin, 2.0 * kHalfBlock + way_m, 2.0 * kHalfBlock + way_m,
+  add_street_sides(mesh, *junction.second, south_begin, 2.0 * kHalfBlock + path_m, 2.0 * kHalfBlock + path_m,
                    random.fork(3));
 }
 
@@ -165,11 +165,11 @@ void add_traffic(world::World& world, const Junction& junction, const SceneReque
 }  // namespace
 
 Scene build_city(const SceneRequest& request) {
-  const double way_m = request.speed_mps * request.duration_s;
-  const Junction junction = make_junction(way_m);
+  const double path_m = request.speed_mps * request.duration_s;
+  const Junction junction = make_junction(path_m);
   const world::SpeedProfile speed = turning_speed(request.speed_mps, junction.turn_end_m - kApproach);
   Scene scene;
-  add_statics(scene.world.statics, junction, way_m, request.random);
+  add_statics(scene.world.statics, junction, path_m, request.random);
   add_traffic(scene.world, junction, request, speed);
   scene.vehicle = world::drive(junction.drive, speed, {}, world::spring_sway(1.0, request.random.fork(kEgoSway)));
   return scene;

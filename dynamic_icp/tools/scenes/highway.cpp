@@ -25,13 +25,13 @@ constexpr double kRail = 14.0;
 constexpr double kBegin = -120.0;
 
 /// Long bends to the left and to the right in turn.
-std::shared_ptr<const world::Route> make_route(double way_m) {
+std::shared_ptr<const world::Route> make_route(double path_m) {
   constexpr double kCurvature = 1.0 / 900.0;
   constexpr double kRamp = 120.0;
   constexpr double kArc = 250.0;
   std::vector<world::RoutePiece> pieces = {{60.0, 0.0, 0.0}};
   double side = 1.0;
-  for (double length = 0.0; length < way_m + 500.0; length += 2.0 * kRamp + kArc) {
+  for (double length = 0.0; length < path_m + 500.0; length += 2.0 * kRamp + kArc) {
     pieces.push_back({kRamp, 0.0, side * kCurvature});
     pieces.push_back({kArc, side * kCurvature, side * kCurvature});
     pieces.push_back({kRamp, side * kCurvature, 0.0});

@@ -20,10 +20,10 @@ constexpr double kLaneWidth = 3.3;
 constexpr double kBegin = -60.0;
 constexpr double kSight = 260.0;
 
-std::shared_ptr<const world::Route> make_route(double way_m) {
+std::shared_ptr<const world::Route> make_route(double path_m) {
   constexpr double kCurvature = 1.0 / 350.0;
   return std::make_shared<const world::Route>(std::vector<world::RoutePiece>{
-      {10.0, 0.0, 0.0}, {60.0, 0.0, kCurvature}, {way_m + kSight, kCurvature, kCurvature}});
+      {10.0, 0.0, 0.0}, {60.0, 0.0, kCurvature}, {path_m + kSight, kCurvature, kCurvature}});
 }
 
 void add_statics(world::TriangleMesh& mesh, const world::Route& route, const RandomSource& random) {
@@ -52,8 +52,8 @@ world::SpeedProfile stop_and_go(double mean_mps, double duration_s, const Random
 }  // namespace
 
 Scene build_jam(const SceneRequest& request) {
-  const double way_m = request.speed_mps * request.duration_s;
-  const auto route = make_route(way_m);
+  const double path_m = request.speed_mps * request.duration_s;
+  const auto route = make_route(path_m);
   Scene scene;
   add_statics(scene.world.statics, *route, request.random);
   const RoadUserShapes shapes = add_road_user_shapes(scene.world);

@@ -16,10 +16,10 @@ enum Part : std::uint64_t { kEgoSpeed, kWaves, kGrain, kTrees, kRocks };
 
 constexpr double kSight = 90.0;  // m: ground around the drive
 
-std::shared_ptr<const world::Route> make_route(double way_m) {
+std::shared_ptr<const world::Route> make_route(double path_m) {
   std::vector<world::RoutePiece> pieces = {{8.0, 0.0, 0.0}};
   double side = 1.0;
-  for (double length = 0.0; length < way_m + 20.0; length += 60.0) {
+  for (double length = 0.0; length < path_m + 20.0; length += 60.0) {
     for (const world::RoutePiece& piece : world::turn(side * 0.9, 22.0, 10.0)) {
       pieces.push_back(piece);
     }
@@ -29,16 +29,16 @@ std::shared_ptr<const world::Route> make_route(double way_m) {
   return std::make_shared<const world::Route>(pieces);
 }
 
-Eigen::AlignedBox2d bounds_of(const world::Route& route, double way_m) {
+Eigen::AlignedBox2d bounds_of(const world::Route& route, double path_m) {
   Eigen::AlignedBox2d box;
-  for (double s = 0.0; s <= way_m; s += 1.0) {
+  for (double s = 0.0; s <= path_m; s += 1.0) {
     box.extend(route.at(s).position);
   }
   return box;
 }
 
 /// Trees and rocks, at random wherever the drive leaves room.
-void add_growth(world::TriangleMesh& mesh, const world::Terrain& terrain, const world::Route& route, double way_m,
+void add_growth(world::TriangleMesh& mesh, const world::Terrain& terrain, const world::Route& route, double path_m,
                 const Eigen::AlignedBox2d& area, const RandomSource& random) {
   constexpr double kCell = 8.0;
   std::uint64_t i = 0;
@@ -46,7 +46,7 @@ void add_growth(world::TriangleMesh& mesh, const world::Terrain& terrain, const 
     for (double x = area.min().x() + 5.0; x < area.max().x() - 5.0; x += kCell) {
       const RandomSource own = random.fork(kTrees).fork(i++);
       const Vector2d position(x + own.uniform(1, 0.0, kCell), y + own.uniform(2, 0.0, kCell));
-      if (own.uniform(0) < 0.35 || !is_clear_of(route, -10.0, way_m + 20.0, position, 4.0)) {
+      if (own.uniform(0) < 0.35 || !is_clear_of(route, -10.0, path_m + 20.0, position, 4.0)) {
         continue;
       }
       const Eigen::Isometry3d T(Eigen::Translation3d(position.x(), position.y(), terrain.height_m(position) - 0.2));
@@ -65,16 +65,16 @@ void add_growth(world::TriangleMesh& mesh, const world::Terrain& terrain, const 
 }  // namespace
 
 Scene build_off_road(const SceneRequest& request) {
-  const double way_m = request.speed_mps * request.duration_s;
-  const auto route = make_route(way_m);
+  const double path_m = request.speed_mps * request.duration_s;
+  const auto route = make_route(path_m);
   const auto terrain = std::make_shared<const world::Terrain>(1.3, request.random.fork(kWaves));
-  Eigen::AlignedBox2d area = bounds_of(*route, way_m);
+  Eigen::AlignedBox2d area = bounds_of(*route, path_m);
   area.min().array() -= kSight;
   area.max().array() += kSight;
   Scene scene;
   scene.world.statics = painted(terrain->mesh(area.min(), area.max(), 0.8, 0.025, request.random.fork(kGrain)),
                                 world::reflectivity::kGrass);
-  add_growth(scene.world.statics, *terrain, *route, way_m, area, request.random);
+  add_growth(scene.world.statics, *terrain, *route, path_m, area, request.random);
   const world::SpeedProfile speed =
       world::wandering_speed(request.speed_mps, 0.1, request.duration_s, request.random.fork(kEgoSpeed));
   scene.vehicle = world::drive(route, speed, {},

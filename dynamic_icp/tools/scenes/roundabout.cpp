@@ -28,12 +28,12 @@ struct Way {
   Vector2d center;
 };
 
-Way make_way(double way_m) {
+Way make_way(double path_m) {
   std::vector<world::RoutePiece> pieces = {{kApproach, 0.0, 0.0}};
   const std::vector<world::RoutePiece> aside = world::turn(-0.7, 12.0, 5.0);
   pieces.insert(pieces.end(), aside.begin(), aside.end());
   pieces.push_back({5.0, 0.0, 1.0 / kRadius});
-  pieces.push_back({way_m + 120.0, 1.0 / kRadius, 1.0 / kRadius});
+  pieces.push_back({path_m + 120.0, 1.0 / kRadius, 1.0 / kRadius});
   Way way;
   way.route = std::make_shared<const world::Route>(pieces);
   const world::RoutePoint on_ring = way.route->at(way.route->length_m() - 1.0);

@@ -16,22 +16,23 @@ const std::vector<SceneKind>& scene_kinds() {
       {"street", "straight street between house fronts; cars ahead in the next lane and oncoming", 13.0, build_street},
       {"city", "right turn at a junction behind a turning car; crossing cars, pedestrians", 8.0, build_city},
       {"highway", "long bends between guard rails, few planes; fast traffic both ways", 27.0, build_highway},
-      {"tunnel", "smooth straight tube: nothing to hold on to along the way", 20.0, build_tunnel},
+      {"tunnel", "smooth straight tube: translation along it is unobservable by geometry", 20.0, build_tunnel},
       {"curved-walls", "smooth walls in long bends, no features", 14.0, build_curved_walls},
       {"bridge", "equal posts and portals at equal distances", 16.0, build_bridge},
-      {"jam", "seven lanes of stop and go: almost all that is seen moves", 3.0, build_jam},
+      {"traffic-jam", "seven lanes of stop and go: almost all that is seen moves", 3.0, build_jam, "jam"},
       {"roundabout", "round and round at 0.6 rad/s behind other cars", 7.8, build_roundabout},
-      {"car-park", "slow turns between parked cars, nothing moves", 3.5, build_car_park},
+      {"parking", "slow turns between parked cars, no dynamic objects", 3.5, build_car_park, "car-park"},
       {"off-road", "winding over rough ground between trees: pitching and rolling", 6.0, build_off_road},
-      {"standing", "the vehicle stands in the street while traffic passes", 0.0, build_street},
+      {"stationary", "stationary vehicle in the street while traffic passes", 0.0, build_street, "standing"},
   };
   return kinds;
 }
 
 const SceneKind& find_scene(std::string_view name) {
   const std::vector<SceneKind>& kinds = scene_kinds();
-  const auto kind =
-      std::find_if(kinds.begin(), kinds.end(), [&](const SceneKind& scene) { return scene.name == name; });
+  const auto kind = std::find_if(kinds.begin(), kinds.end(), [&](const SceneKind& scene) {
+    return scene.name == name || (!name.empty() && scene.former_name == name);
+  });
   if (kind == kinds.end()) {
     std::string names;
     for (const SceneKind& scene : kinds) {

@@ -34,6 +34,7 @@ struct SceneKind {
   std::string description;
   double speed_mps = 0.0;  ///< default speed of the vehicle
   std::function<Scene(const SceneRequest& request)> build;
+  std::string former_name = {};  ///< up to version 0.1; understood for one release more
 };
 
 /// All kinds of scenes that come with the program, in the order in which they are listed.

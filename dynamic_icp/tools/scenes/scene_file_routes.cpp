@@ -84,7 +84,7 @@ Routes read_routes(const YamlMap& file) {
     NamedRoute named;
     named.route = std::make_shared<const world::Route>(pieces, start, heading_rad);
     for (const world::RoutePiece& piece : pieces) {
-      named.least_curvature = std::min({named.least_curvature, piece.curvature_begin, piece.curvature_end});
+      named.min_curvature = std::min({named.min_curvature, piece.curvature_begin, piece.curvature_end});
       named.greatest_curvature = std::max({named.greatest_curvature, piece.curvature_begin, piece.curvature_end});
     }
     routes.emplace(name, std::move(named));
@@ -102,7 +102,7 @@ const NamedRoute& read_route(const YamlMap& map, const Routes& routes) {
 
 double read_lateral(const YamlMap& map, std::string_view key, const NamedRoute& route, double fallback) {
   const double lateral_m = map.number(key, kPosition, fallback);
-  const double bend = std::max(lateral_m * route.least_curvature, lateral_m * route.greatest_curvature);
+  const double bend = std::max(lateral_m * route.min_curvature, lateral_m * route.greatest_curvature);
   if (bend >= 1.0) {
     map.fail(key, fmt::format("is {:g}, expected less than the radius of the route's bends, which is {:g}", lateral_m,
                               std::abs(lateral_m) / bend));

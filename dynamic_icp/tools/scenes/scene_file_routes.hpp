@@ -26,7 +26,7 @@ double radians(double degrees);
 /// A route of a scene file, with the range of its curvature (1/m).
 struct NamedRoute {
   std::shared_ptr<const world::Route> route;
-  double least_curvature = 0.0;
+  double min_curvature = 0.0;
   double greatest_curvature = 0.0;
 };
 

@@ -24,8 +24,8 @@ using formats::Limits;
 using formats::YamlMap;
 using world::TriangleMesh;
 
-constexpr double kMostThings = 2e4;    // of one row
-constexpr double kMostVertices = 4e6;  // of one part
+constexpr double kMaxThings = 2e4;    // of one row
+constexpr double kMaxVertices = 4e6;  // of one part
 
 /// Where the copies of a solid stand: one at `position_m`, or `count` of them along a route.
 std::vector<Isometry3d> read_places(const YamlMap& map, const Routes& routes) {
@@ -39,7 +39,7 @@ std::vector<Isometry3d> read_places(const YamlMap& map, const Routes& routes) {
   const double s_m = map.number("s_m", kPosition);
   const double lateral_m = map.number("lateral_m", kPosition, 0.0);
   const Eigen::Translation3d up(0.0, 0.0, map.number("z_m", kPosition, 0.0));
-  const int count = map.whole_number("count", {1, kMostThings}, 1);
+  const int count = map.whole_number("count", {1, kMaxThings}, 1);
   const double spacing_m = count > 1 ? map.number("spacing_m", kLength) : map.number("spacing_m", kLength, 1.0);
   std::vector<Isometry3d> places;
   for (int i = 0; i < count; ++i) {
@@ -103,8 +103,7 @@ StaticPart read_ribbon(const YamlMap& map, const Routes& routes) {
     map.fail("profile_m", "has one point, expected at least two points [lateral, height]");
   }
   const double step_m = map.number("step_m", {0.05, 1e4}, 2.0);
-  const auto [begin_m, end_m] =
-      read_stretch(map, "step_m", step_m, kMostVertices / static_cast<double>(profile.size()));
+  const auto [begin_m, end_m] = read_stretch(map, "step_m", step_m, kMaxVertices / static_cast<double>(profile.size()));
   return [=, route = route.route, begin = begin_m, end = end_m](TriangleMesh& mesh, const RandomSource&) {
     add_ribbon(mesh, *route, begin, end, step_m, profile);
   };
@@ -115,7 +114,7 @@ Row read_row(const YamlMap& map, double closest_m) {
   Row row;
   row.lateral_m = map.number("lateral_m", kPosition);
   row.spacing_m = map.number("spacing_m", {closest_m, kFarthest});
-  std::tie(row.begin_m, row.end_m) = read_stretch(map, "spacing_m", row.spacing_m, kMostThings);
+  std::tie(row.begin_m, row.end_m) = read_stretch(map, "spacing_m", row.spacing_m, kMaxThings);
   return row;
 }
 
@@ -156,9 +155,9 @@ StaticPart read_terrain(const YamlMap& map, const Routes&) {
   const Eigen::AlignedBox2d area = read_area(map);
   const double cell_m = map.number("cell_m", {0.05, 100.0}, 1.0);
   const double cells = (area.sizes() / cell_m).prod();
-  if (cells > kMostVertices) {
+  if (cells > kMaxVertices) {
     map.fail("cell_m", fmt::format("is {:g}, expected at least {:g} for this area", cell_m,
-                                   std::sqrt(area.sizes().prod() / kMostVertices)));
+                                   std::sqrt(area.sizes().prod() / kMaxVertices)));
   }
   const double roughness = map.number("roughness", {0.0, 10.0}, 1.0);
   const double grain_m = map.number("grain_m", {0.0, 10.0}, 0.0);

@@ -173,9 +173,9 @@ TEST_F(SceneFile, TerrainRollsAboutItsHeightAndDependsOnTheSeed) {
 TEST_F(SceneFile, RowsStandBesideTheRoute) {
   struct Case {
     const char* line;
-    double least_lateral;
-    double most_lateral;
-    double least_height;
+    double min_lateral;
+    double max_lateral;
+    double min_height;
   };
   for (const Case& row : {Case{"houses: {spacing_m: 12, lateral_m: 9", 7.5, 23.0, 8.0},
                           Case{"trees: {spacing_m: 9, jitter_m: 1, lateral_m: 9", 7.0, 11.0, 4.0},
@@ -189,9 +189,9 @@ TEST_F(SceneFile, RowsStandBesideTheRoute) {
     EXPECT_GT(box.min().x(), 21.0 - 5.0) << row.line;
     EXPECT_LT(box.max().x(), 101.0 + 5.0) << row.line;
     EXPECT_GT(box.sizes().x(), 40.0) << row.line;
-    EXPECT_GT(box.min().y(), 2.0 + row.least_lateral) << row.line;
-    EXPECT_LT(box.max().y(), 2.0 + row.most_lateral) << row.line;
-    EXPECT_GT(box.max().z(), row.least_height) << row.line;
+    EXPECT_GT(box.min().y(), 2.0 + row.min_lateral) << row.line;
+    EXPECT_LT(box.max().y(), 2.0 + row.max_lateral) << row.line;
+    EXPECT_GT(box.max().z(), row.min_height) << row.line;
     EXPECT_EQ(scene.world.statics.reflectivity, std::vector<float>(scene.world.statics.triangles.size(), 0.5f));
   }
 }
@@ -251,7 +251,7 @@ TEST_F(SceneFile, FreeBodiesSpinAboutAxesOfTheWorld) {
       "[1, 2, 3], yaw_deg: 90, velocity_mps: [1, 0, -1], spin_dps: [0, 45, 0]}}\n");
   const world::MotionState state = scene.world.bodies[0].trajectory(2.0);
   EXPECT_TRUE(state.T_world_body.translation().isApprox(Vector3d(3.0, 2.0, 1.0)));
-  // After 2 s: a quarter turn about y, on top of a quarter turn about z.
+  // After 2 s: a quarter rotation about y, on top of a quarter rotation about z.
   EXPECT_LT((state.T_world_body.linear().col(0) - Vector3d::UnitY()).norm(), 1e-12);
   EXPECT_LT((state.T_world_body.linear().col(2) - Vector3d::UnitX()).norm(), 1e-12);
   EXPECT_EQ(state.angular_velocity_world, Vector3d(0.0, 45.0 * pi / 180.0, 0.0));

@@ -21,6 +21,12 @@ TEST(Scenes, AreNamedOnceAndFound) {
   }
 }
 
+TEST(Scenes, NamesOfTheLastReleaseAreUnderstood) {
+  EXPECT_EQ(&find_scene("jam"), &find_scene("traffic-jam"));
+  EXPECT_EQ(&find_scene("car-park"), &find_scene("parking"));
+  EXPECT_EQ(&find_scene("standing"), &find_scene("stationary"));
+}
+
 TEST(Scenes, UnknownNameIsRefusedWithTheKnownOnes) {
   try {
     find_scene("moon");

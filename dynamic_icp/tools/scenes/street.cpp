@@ -40,8 +40,8 @@ constexpr double kSightAfterDrive = 130.0;
 constexpr double kAfterBend = 90.0;
 
 /// Straight for the whole drive; then a bend whose houses close the view, and cars come round it.
-std::shared_ptr<const world::Route> make_route(double way_m) {
-  std::vector<world::RoutePiece> pieces = {{way_m + kSightAfterDrive, 0.0, 0.0}};
+std::shared_ptr<const world::Route> make_route(double path_m) {
+  std::vector<world::RoutePiece> pieces = {{path_m + kSightAfterDrive, 0.0, 0.0}};
   const std::vector<world::RoutePiece> bend = world::turn(-0.5 * std::numbers::pi, 50.0, 20.0);
   pieces.insert(pieces.end(), bend.begin(), bend.end());
   pieces.push_back({kAfterBend, 0.0, 0.0});

@@ -24,8 +24,8 @@ constexpr double kLane = 1.8;     // m from the middle of the road
 constexpr double kBegin = -60.0;  // m along the route
 constexpr double kSight = 300.0;
 
-std::shared_ptr<const world::Route> straight_route(double way_m) {
-  return std::make_shared<const world::Route>(std::vector<world::RoutePiece>{{way_m + kSight, 0.0, 0.0}});
+std::shared_ptr<const world::Route> straight_route(double path_m) {
+  return std::make_shared<const world::Route>(std::vector<world::RoutePiece>{{path_m + kSight, 0.0, 0.0}});
 }
 
 /// One lane ahead of the vehicle with its speed, and one towards it.
@@ -76,10 +76,10 @@ Scene build_tunnel(const SceneRequest& request) {
 
 Scene build_curved_walls(const SceneRequest& request) {
   constexpr double kRadius = 90.0;
-  const double way_m = request.speed_mps * request.duration_s;
+  const double path_m = request.speed_mps * request.duration_s;
   std::vector<world::RoutePiece> pieces = {{10.0, 0.0, 0.0}, {30.0, 0.0, 1.0 / kRadius}};
   // An S of long arcs: it never closes into a circle.
-  for (double length = 0.0; length < way_m + kSight; length += 260.0) {
+  for (double length = 0.0; length < path_m + kSight; length += 260.0) {
     pieces.push_back({100.0, 1.0 / kRadius, 1.0 / kRadius});
     pieces.push_back({30.0, 1.0 / kRadius, -1.0 / kRadius});
     pieces.push_back({100.0, -1.0 / kRadius, -1.0 / kRadius});

@@ -129,7 +129,7 @@ TEST_F(AevaScenesLayoutFiles, CloudsHoldTheScans) {
 TEST_F(AevaScenesLayoutFiles, CompensatedDopplerIsThatOfASensorAtRest) {
   const Simulation simulation(scenes::find_scene("street"), two_sensors());
   const json sequence = sequence_of(simulation);
-  std::size_t at_rest = 0;
+  std::size_t static_frame = 0;
   std::size_t moving = 0;
   for (std::size_t i = 0; i < simulation.size(); ++i) {
     for (std::size_t sensor = 0; sensor < 2; ++sensor) {
@@ -142,7 +142,7 @@ TEST_F(AevaScenesLayoutFiles, CompensatedDopplerIsThatOfASensorAtRest) {
         if (scan.bodies[k] == 0) {
           ASSERT_NEAR(cloud.velocity[k], 0.0, 2e-6);
           ASSERT_EQ(cloud.classes[k], 0);
-          ++at_rest;
+          ++static_frame;
         } else {
           moving += std::abs(cloud.velocity[k]) > 0.5 ? 1 : 0;
           ASSERT_NE(cloud.classes[k], 0);
@@ -150,7 +150,7 @@ TEST_F(AevaScenesLayoutFiles, CompensatedDopplerIsThatOfASensorAtRest) {
       }
     }
   }
-  EXPECT_GT(at_rest, 1000U);
+  EXPECT_GT(static_frame, 1000U);
   EXPECT_GT(moving, 20U);
 }
 

@@ -114,7 +114,7 @@ TEST_P(EveryScene, PosesAreTheIntegralOfTheTwist) {
 }
 
 TEST_P(EveryScene, SpeedIsTheOneAskedFor) {
-  const int steps = 140;  // 14 s: two waves of the jam
+  const int steps = 140;  // 14 s: two waves of the traffic jam
   double sum = 0.0;
   for (int i = 0; i < steps; ++i) {
     sum += simulation_.scene().vehicle(0.1 * i).velocity_world.head<2>().norm() / steps;
@@ -188,7 +188,7 @@ TEST(Street, CarsAheadAndOncomingAreSeenForMostOfTheDrive) {
 }
 
 TEST(Jam, MostOfWhatIsSeenMoves) {
-  const scenes::SceneKind& kind = scenes::find_scene("jam");
+  const scenes::SceneKind& kind = scenes::find_scene("traffic-jam");
   const Simulation simulation(kind, default_config(kind));
   const SimulatedFrame frame = simulation.frame(30, Workers(2));
   std::size_t moving = 0;

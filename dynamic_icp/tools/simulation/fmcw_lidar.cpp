@@ -34,7 +34,7 @@ ConfigFields fields(FmcwLidarConfig& config) {
        "full width of the beam; at edges the stronger surface returns, or a mixture of both"},
       {"range_resolution_m", &config.range_resolution_m, 0.0, 100.0, "m",
        "two surfaces in one beam that are nearer to each other than this give one mixed return between them"},
-      {"rain_rate", &config.rain_rate, 0.0, 1.0, "", "share of rays that meet a drop within a long way"},
+      {"rain_rate", &config.rain_rate, 0.0, 1.0, "", "share of rays that meet a drop at long range"},
       {"rain_range_m", &config.rain_range_m, 0.1, 100.0, "m", "mean distance of the drops that are seen"},
       {"range_noise_m", &config.range_noise_m, 0.0, 10.0, "m", "standard deviation of the range"},
       {"range_step_m", &config.range_step_m, 0.0, 1.0, "m", "ranges are multiples of this; 0: any"},

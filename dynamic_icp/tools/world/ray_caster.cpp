@@ -71,7 +71,7 @@ const char* reason_of(RTCError error) {
     case RTC_ERROR_UNSUPPORTED_CPU:
       return "it does not support this processor";
     default:
-      return "for a reason that it does not tell";
+      return "without giving a reason";
   }
 }
 

@@ -16,7 +16,7 @@
 namespace dynamic_icp::tracking {
 
 /// What one scan shows of one object, in world axes.
-struct Sighting {
+struct Detection {
   std::vector<Eigen::Vector3d> points;      ///< m, where each was measured
   std::vector<Eigen::Vector3d> directions;  ///< lines of sight, unit
   std::vector<double> radial;               ///< m/s, radial velocities over ground
@@ -28,10 +28,10 @@ struct Sighting {
 };
 
 /// The rows of the scan (at least one) as a sighting; of many an evenly spread part, for more would not make it better.
-Sighting make_sighting(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
-                       const SensorMotion& sensor, const RangeImage* view);
+Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
+                         const SensorMotion& sensor, const RangeImage* view);
 
 /// The points where they would be seen at the mean time if all moved with `velocity` (m/s, world).
-Sighting at_mean_time(Sighting sighting, const Eigen::Vector3d& velocity);
+Detection at_mean_time(Detection detection, const Eigen::Vector3d& velocity);
 
 }  // namespace dynamic_icp::tracking

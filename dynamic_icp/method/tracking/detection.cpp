@@ -1,0 +1,42 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/detection.hpp"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace dynamic_icp::tracking {
+namespace {
+
+constexpr std::size_t kMaxPoints = 500;
+
+}  // namespace
+
+Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
+                         const SensorMotion& sensor, const RangeImage* view) {
+  Detection detection;
+  const std::size_t stride = std::max<std::size_t>(1, (rows.size() + kMaxPoints - 1) / kMaxPoints);
+  for (std::size_t i = 0; i < rows.size(); i += stride) {
+    const std::uint32_t row = rows[i];
+    const double time = scan.has_times() ? scan.times()[row] : 0.0;
+    detection.points.push_back(sensor.T_world_sensor * scan.points()[row]);
+    detection.directions.push_back(sensor.direction_world(scan.directions()[row], time));
+    detection.radial.push_back(radial[row]);
+    detection.times.push_back(time);
+    detection.mean_time_s += time;
+  }
+  detection.mean_time_s /= static_cast<double>(detection.points.size());
+  detection.sensor = sensor.position(detection.mean_time_s);
+  detection.T_sensor_world = sensor.T_world_sensor.inverse();
+  detection.view = view;
+  return detection;
+}
+
+Detection at_mean_time(Detection detection, const Eigen::Vector3d& velocity) {
+  for (std::size_t i = 0; i < detection.points.size(); ++i) {
+    detection.points[i] += (detection.mean_time_s - detection.times[i]) * velocity;
+  }
+  return detection;
+}
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,68 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/detection.hpp"
+
+#include <numeric>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+/// `n` points ahead, measured one after the other over a tenth of a second.
+Scan scan_of(std::size_t n) {
+  RawScan raw;
+  for (std::size_t i = 0; i < n; ++i) {
+    raw.points.emplace_back(10.0, 0.01 * static_cast<double>(i), 1.0);
+    raw.doppler.push_back(0.0);
+    raw.times.push_back(0.1 * static_cast<double>(i) / static_cast<double>(n));
+  }
+  return Scan::from_raw(raw);
+}
+
+SensorMotion left_turn_at(const Vector3d& position) {
+  SensorMotion sensor;
+  sensor.T_world_sensor.translation() = position;
+  sensor.T_world_sensor.linear() = Eigen::AngleAxisd(0.5, Vector3d::UnitZ()).toRotationMatrix();
+  sensor.velocity_world = Vector3d(4.0, 0.0, 0.0);
+  return sensor;
+}
+
+TEST(Detection, IsInTheWorldAndKeepsTheChosenRows) {
+  const Scan scan = scan_of(20);
+  std::vector<double> radial(20);
+  std::iota(radial.begin(), radial.end(), 0.0);
+  const std::vector<std::uint32_t> rows = {3, 7, 11};
+  const SensorMotion sensor = left_turn_at({100.0, 50.0, 0.0});
+  const Detection detection = make_detection(scan, radial, rows, sensor, nullptr);
+  ASSERT_EQ(detection.points.size(), 3u);
+  EXPECT_NEAR(detection.mean_time_s, (scan.times()[3] + scan.times()[7] + scan.times()[11]) / 3.0, 1e-15);
+  for (std::size_t k = 0; k < 3; ++k) {
+    EXPECT_TRUE(detection.points[k].isApprox(sensor.T_world_sensor * scan.points()[rows[k]]));
+    EXPECT_TRUE(detection.directions[k].isApprox(sensor.T_world_sensor.linear() * scan.directions()[rows[k]], 1e-12));
+    EXPECT_EQ(detection.radial[k], static_cast<double>(rows[k]));
+    EXPECT_EQ(detection.times[k], scan.times()[rows[k]]);
+  }
+  EXPECT_TRUE(detection.sensor.isApprox(Vector3d(100.0 + 4.0 * detection.mean_time_s, 50.0, 0.0)));
+  EXPECT_TRUE((detection.T_sensor_world * detection.points[0]).isApprox(scan.points()[3], 1e-12));
+}
+
+TEST(Detection, OfManyRowsAnEvenPartFromEndToEnd) {
+  const Scan scan = scan_of(5000);
+  std::vector<std::uint32_t> rows(5000);
+  std::iota(rows.begin(), rows.end(), 0U);
+  const Detection detection = make_detection(scan, std::vector<double>(5000, 1.0), rows, SensorMotion{}, nullptr);
+  EXPECT_LE(detection.points.size(), 500u);
+  EXPECT_GE(detection.points.size(), 250u);
+  const double step = detection.times[1] - detection.times[0];
+  for (std::size_t k = 1; k < detection.times.size(); ++k) {
+    EXPECT_NEAR(detection.times[k] - detection.times[k - 1], step, 1e-12);
+  }
+  EXPECT_LT(scan.times().back() - detection.times.back(), step);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
