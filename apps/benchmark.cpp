@@ -55,7 +55,7 @@ struct BenchmarkOptions {
 };
 
 benchmark::Program this_program() {
-  // The running program itself, even when its file is replaced while the benchmark goes on.
+  // The running program itself, even when its file is replaced while the benchmark continues.
   const fs::path path = "/proc/self/exe";
   return {path, std::string(version()), benchmark::file_checksum(path), benchmark::describe_processor()};
 }

@@ -21,7 +21,7 @@ class RandomSource {
   [[nodiscard]] std::uint64_t bits(std::uint64_t stream) const;                       ///< 64 random bits
   [[nodiscard]] double uniform(std::uint64_t stream) const;                           ///< in [0, 1)
   [[nodiscard]] double uniform(std::uint64_t stream, double low, double high) const;  ///< in [low, high)
-  [[nodiscard]] double normal(std::uint64_t stream) const;                            ///< mean 0, deviation 1
+  [[nodiscard]] double normal(std::uint64_t stream) const;                            ///< mean 0, standard deviation 1
 
  private:
   std::uint64_t key_;

@@ -170,7 +170,7 @@ double naive_select(NaiveTree& tree, std::size_t cluster, bool allow_root) {
 }
 
 struct NaiveResult {
-  std::vector<std::int64_t> clusters;  // by point: any number that tells the clusters apart, -1 for noise
+  std::vector<std::int64_t> clusters;  // by point: any number that distinguishes the clusters, -1 for noise
   std::vector<double> probabilities;
   std::map<std::int64_t, double> stabilities;
 };

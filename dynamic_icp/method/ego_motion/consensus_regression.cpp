@@ -18,9 +18,9 @@ namespace {
 
 constexpr std::size_t kMinPoints = 3;
 constexpr std::size_t kRowsForHypotheses = 600;  // a share of 0.3 is then known to 0.02
-constexpr std::size_t kRowsForModes = 2500;      // and the few modes that remain are told apart by twice that
+constexpr std::size_t kRowsForModes = 2500;      // and the few modes that remain are distinguished by twice that
 constexpr int kMaxSteps = 20;
-constexpr double kStepToleranceMps = 3e-4;  // a tenth of the deviation of a good estimate
+constexpr double kStepToleranceMps = 3e-4;  // a tenth of the standard deviation of a good estimate
 constexpr double kUnobservableSigma_mps =
     2.0;                                 // who knows a component no better than this knows it better by any prior
 constexpr double kFloorMps = 1e-3;       // errors of all lines of sight together: 0.003 degrees at 20 m/s
@@ -130,7 +130,7 @@ void remove_duplicates(const DopplerRows& consensus_set, double width_mps, std::
 }
 
 /// Modes that differ by more than the width of a vote, refined for the velocity alone: as long as half of what counts
-/// may be a crowd, a free acceleration and bias would bend towards it.
+/// may be dynamic outliers, a free acceleration and bias would bend towards it.
 std::vector<VelocityMode> coarse_modes(const ConsensusSet& consensus_set, const EgoPrior& prior,
                                        const DopplerModel& model, const ConsensusRegressionConfig& config,
                                        const Workers& workers) {
@@ -156,7 +156,7 @@ std::vector<VelocityMode> coarse_modes(const ConsensusSet& consensus_set, const 
   return modes;
 }
 
-/// Splits a mode into what the noise can tell apart, such as the static scene and a crowd that creeps.
+/// Splits a mode into what the noise can tell apart, such as the static scene and dynamic outliers that creep.
 std::vector<VelocityMode> split_mode(const ConsensusSet& consensus_set, const VelocityMode& mode,
                                      const DopplerModel& model, const ConsensusRegressionConfig& config,
                                      double noise_mps, const Workers& workers) {
@@ -176,9 +176,10 @@ std::vector<VelocityMode> split_mode(const ConsensusSet& consensus_set, const Ve
   return parts;
 }
 
-/// What the priors say of a mode, as a factor of its votes. Acceleration and bias within two deviations cost nothing;
-/// beyond, a mode that needs them bends through the static scene and a crowd. The velocity prior is only a bonus:
-/// it decides between modes of similar support and cannot hold a velocity that the scan does not bear out.
+/// What the priors say of a mode, as a factor of its support. Acceleration and bias within two standard deviations cost
+/// nothing; beyond, a mode that needs them bends through the static scene and dynamic outliers. The velocity prior is
+/// only a bonus: it decides between modes of similar support and cannot hold a velocity that the scan does not bear
+/// out.
 double prior_factor(const EgoPrior& prior, const DopplerModel& model, const Vector7d& x, double weight) {
   const double deviation2 = (x - model.prior).cwiseAbs2().dot(model.information.diagonal());
   const double plausible = std::exp(-kPriorDecay * std::max(0.0, deviation2 - kFreeSigmas2));
@@ -324,7 +325,8 @@ ConfigFields fields(ConsensusRegressionConfig& config) {
       {"cell_size_m", &config.cell_size_m, 0.01, 100.0, "m",
        "edge of the cubes over which the consensus on the static scene is weighted"},
       {"hypotheses", &config.hypotheses, 8, 100'000, "", "velocities tried, each from three points"},
-      {"inlier_threshold_mps", &config.inlier_threshold_mps, 0.01, 10.0, "m/s", "inlier threshold of a velocity hypothesis"},
+      {"inlier_threshold_mps", &config.inlier_threshold_mps, 0.01, 10.0, "m/s",
+       "inlier threshold of a velocity hypothesis"},
       {"tukey_cutoff", &config.tukey_cutoff, 2.0, 20.0, "", "Tukey cutoff in standard deviations of the noise"},
       {"min_noise_mps", &config.min_noise_mps, 1e-4, 1.0, "m/s", "smallest standard deviation of static Doppler"},
       {"max_noise_mps", &config.max_noise_mps, 1e-3, 10.0, "m/s", "largest standard deviation of static Doppler"},

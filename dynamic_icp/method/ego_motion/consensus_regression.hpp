@@ -18,12 +18,12 @@ struct ConsensusRegressionConfig {
   int hypotheses = 256;                ///< velocities tried, each from three points
   double inlier_threshold_mps = 0.35;  ///< residuals below this agree with a hypothesis
   double tukey_cutoff = 4.0;           ///< Tukey cutoff in standard deviations of the noise
-  double min_noise_mps = 0.01;         ///< bounds of the deviation of the Doppler of one static point,
+  double min_noise_mps = 0.01;         ///< bounds of the standard deviation of the Doppler of one static point,
   double max_noise_mps = 0.25;         ///< which is estimated from each scan
   double surface_noise_mps =
       0.015;                  ///< standard deviation of the error that all Doppler values of one cell have in common
   double prior_weight = 0.5;  ///< a hypothesis gains up to this share of its support by agreeing with the prior
-  double ambiguity_ratio = 0.85;  ///< ambiguous: a second velocity has this share of the votes of the first
+  double ambiguity_ratio = 0.85;  ///< ambiguous: a second velocity has this share of the support of the first
   double min_support = 0.1;  ///< no velocity: the best one has a smaller share of all votes, weighed with the priors
 };
 
@@ -43,9 +43,9 @@ struct EgoPrior {
 ///
 /// 1. Velocities from samples of three points are voted on. Half of all votes is spread over the cells of space, half
 ///    over the farthest cell of each direction (see `elect`), so it takes no prior and no mounting to find the static
-///    scene. Modes of the votes are refined and split as finely as the noise allows. The mode with the most votes wins;
-///    agreement with the prior velocity adds to the votes, but never more than `prior_weight`, so a wrong prior is
-///    outvoted.
+///    scene. Modes of the support are refined and split as finely as the noise allows. The mode with the most support
+///    wins; agreement with the prior velocity adds to the votes, but never more than `prior_weight`, so a wrong prior
+///    is outvoted.
 /// 2. v, acceleration a during a sweep and Doppler bias b minimise, jointly over all points near the winner,
 ///      sum_cells W_c sum_i rho(s_i + u_i . (v + a dt_i) - b) / sigma^2 + prior of v, a and b,
 ///    with Tukey's rho, sigma from differences between neighbouring points, and a weight W_c of each cell that vanishes

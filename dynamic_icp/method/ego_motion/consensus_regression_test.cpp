@@ -130,7 +130,8 @@ TEST(ConsensusRegression, ThreePointsAreSolvedWithAWideCovariance) {
     raw.doppler.push_back(-point.normalized().dot(v));
   }
   const EgoVelocity ego = estimate(Scan::from_raw(raw));
-  // Nothing tells the noise of three points, nor a bias: each deviation is that of one point and of the bias at least.
+  // Nothing tells the noise of three points, nor a bias: each standard deviation is that of one point and of the bias
+  // at least.
   EXPECT_LT((ego.velocity_sensor - v).norm(), 0.05);
   EXPECT_GT(ego.covariance.diagonal().minCoeff(), 0.2 * 0.2);
   EXPECT_TRUE(ego.covariance.allFinite());
@@ -160,7 +161,7 @@ TEST(ConsensusRegression, IsCloseToLeastSquaresInAStaticScene) {
   }
   const Eigen::Vector4d expected = J.colPivHouseholderQr().solve(s);
   const EgoVelocity ego = estimate(scan);
-  // Tukey's estimate differs from least squares by a fraction of the deviation of either.
+  // Tukey's estimate differs from least squares by a fraction of the standard deviation of either.
   const Eigen::Matrix4d covariance = 0.05 * 0.05 * (J.transpose() * J).inverse();
   const Vector3d difference = ego.velocity_sensor - expected.head<3>();
   EXPECT_LT(difference.dot(covariance.topLeftCorner<3, 3>().inverse() * difference), 1.0);

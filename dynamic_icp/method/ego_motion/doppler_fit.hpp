@@ -25,8 +25,8 @@ struct FitStep {
   Eigen::Matrix3d open = Eigen::Matrix3d::Zero();  ///< projector onto the directions of v that are not observed
 };
 
-/// Solves for the step from x. A direction of v whose deviation, given everything else unknown too, would exceed
-/// `unobservable_sigma_mps` is not observed: no step is made along it.
+/// Solves for the step from x. A direction of v whose standard deviation, given everything else unknown too, would
+/// exceed `unobservable_sigma_mps` is not observed: no step is made along it.
 FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& model, double unobservable_sigma_mps);
 
 /// Covariance of x by the sandwich formula, from gradients summed over the direction sectors: residuals within a

@@ -45,15 +45,15 @@ DopplerRows sort_into_cells(const Scan& scan, double cell_size_m, const Workers&
 void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, spatial::CellOrder& order,
                      DopplerRows& rows);
 
-/// Rows that vote on what stands still, and the weight of each vote; the weights sum to one.
+/// Rows that vote on what is static, and the weight of each vote; the weights sum to one.
 struct ConsensusSet {
   DopplerRows rows;  ///< one row per cell
   std::vector<double> weights;
 };
 
-/// One row of each of at most `most` cells, evenly over all cells. Half of the votes is spread evenly over the cells:
-/// the static scene fills more space than a crowd. The other half goes to the farthest cell of each direction sector:
-/// whatever moves has something static behind it, so what encloses the scene is static far more often than not,
+/// One row of each of at most `most` cells, evenly over all cells. Half of the support is spread evenly over the cells:
+/// the static scene fills more space than dynamic outliers. The other half goes to the farthest cell of each direction
+/// sector: whatever moves has something static behind it, so what encloses the scene is static far more often than not,
 /// wherever and however the sensor is mounted.
 ConsensusSet sample(const DopplerRows& rows, std::size_t most);
 

@@ -21,7 +21,7 @@ Scan random_scan(unsigned seed, std::size_t n, double extent_m) {
   RawScan raw;
   for (std::size_t i = 0; i < n; ++i) {
     raw.points.emplace_back(extent_m * Vector3d(uniform(random), uniform(random), uniform(random)));
-    raw.doppler.push_back(static_cast<double>(i));  // tells the rows apart
+    raw.doppler.push_back(static_cast<double>(i));  // distinguishes the rows
     raw.times.push_back(0.05 + 0.05 * uniform(random));
   }
   return Scan::from_raw(raw);

@@ -24,9 +24,10 @@ inline double residual(const DopplerRows& rows, std::size_t i, const Vector7d& x
 
 /// How far residuals count.
 struct RobustScale {
-  double noise_mps = 0.1;    ///< deviation of the Doppler of one static point
-  double cutoff_mps = 0.4;   ///< beyond it a point has no weight (Tukey)
-  double surface_mps = 0.0;  ///< deviation of what the points of one cell have in common; 0: cells are not judged
+  double noise_mps = 0.1;   ///< standard deviation of the Doppler of one static point
+  double cutoff_mps = 0.4;  ///< beyond it a point has no weight (Tukey)
+  double surface_mps =
+      0.0;  ///< standard deviation of what the points of one cell have in common; 0: cells are not judged
 };
 
 /// Weighted sums over the rows, in units of the noise: H = sum w J J^T / noise^2 with J = de/dx, and so on.

@@ -8,10 +8,10 @@
 namespace dynamic_icp::ego_motion {
 
 struct DriftConfig {
-  double start_acceleration_mps2 = 3.0;  ///< deviation of the acceleration at the first scan
-  double start_bias_mps = 0.2;           ///< deviation of the Doppler bias at the first scan
-  double jerk_mps3 = 5.0;                ///< deviation of the change of acceleration
-  double bias_drift_mps = 0.003;         ///< deviation of the change of the bias in one second
+  double start_acceleration_mps2 = 3.0;  ///< standard deviation of the acceleration at the first scan
+  double start_bias_mps = 0.2;           ///< standard deviation of the Doppler bias at the first scan
+  double jerk_mps3 = 5.0;                ///< standard deviation of the change of acceleration
+  double bias_drift_mps = 0.003;         ///< standard deviation of the change of the bias in one second
 };
 
 ConfigFields fields(DriftConfig& config);
@@ -29,8 +29,8 @@ EgoPrior predict(const EgoVelocity& ego, double dt_s, const DriftConfig& config)
 /// `start_bias_mps` or less; half of all sensors have none at all. How much more likely that is by now follows from the
 /// filter's estimate alone (Savage and Dickey): odds = N(0; bias, variance) / N(0; 0, start_bias^2). The result is the
 /// mean and covariance of both cases, the filter's estimate and the same given that the bias is zero (within 5 mm/s).
-/// Where velocity and bias can be told apart this changes nothing; in a narrow view, in a jam, or in the first scan of
-/// a sweep it keeps a bias that nobody has seen from spoiling the velocity.
+/// Where velocity and bias can be distinguished this changes nothing; in a narrow view, in a jam, or in the first scan
+/// of a sweep it keeps a bias that nobody has seen from spoiling the velocity.
 ///
 /// For use, not for the filter: what it is given is to be carried on.
 EgoVelocity average_over_bias_models(const EgoVelocity& filtered, const DriftConfig& config);

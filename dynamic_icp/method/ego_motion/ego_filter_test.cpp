@@ -108,7 +108,7 @@ TEST(WeighCalibration, IsRightOnAverage) {
   const DriftConfig config;
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
-  constexpr double kSeen = 0.06;  // deviation of what the data say of the bias
+  constexpr double kSeen = 0.06;  // standard deviation of what the data say of the bias
   double squares = 0.0;
   double stated = 0.0;
   constexpr int kDraws = 20000;

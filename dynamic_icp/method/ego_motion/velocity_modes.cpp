@@ -16,8 +16,8 @@
 namespace dynamic_icp::ego_motion {
 namespace {
 
-constexpr std::size_t kLanes = 8;    // hypotheses that are counted together, one per lane
-constexpr double kMinShare = 0.4;    // of the votes of the best; a mode of three noisy rows has lost some to the noise
+constexpr std::size_t kLanes = 8;  // hypotheses that are counted together, one per lane
+constexpr double kMinShare = 0.4;  // of the support of the best; a mode of three noisy rows has lost some to the noise
 constexpr std::uint64_t kDraws = 5;  // rows looked at for the second and the third row of a sample
 
 // Without a pull towards the start a sample in a plane would have no solution; velocities of 100 m/s are free of it.

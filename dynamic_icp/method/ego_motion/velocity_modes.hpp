@@ -16,7 +16,7 @@ namespace dynamic_icp::ego_motion {
 /// A velocity that many rows agree on.
 struct VelocityMode {
   Vector7d x = Vector7d::Zero();
-  double inlier_weight = 0.0;  ///< share of the votes, in [0, 1]
+  double inlier_weight = 0.0;  ///< share of the support, in [0, 1]
 };
 
 /// How modes are looked for.
@@ -29,13 +29,13 @@ struct ModeSearch {
   std::uint64_t seed = 0;
 };
 
-/// The modes of the votes near or far from `start`, best first: hypotheses are exact for three rows, drawn so that
+/// The modes of the support near or far from `start`, best first: hypotheses are exact for three rows, drawn so that
 /// their lines of sight spread; they have a and b of `start`. `start` itself is one. Hypotheses that predict almost
 /// the same Doppler as a better one are left out. Always at least one mode; the same for any number of threads.
 std::vector<VelocityMode> find_modes(const ConsensusSet& consensus_set, const Vector7d& start, const ModeSearch& search,
                                      const Workers& workers);
 
-/// Share of the votes for x: weighted mean of max(0, 1 - (e/width)^2).
+/// Share of the support for x: weighted mean of max(0, 1 - (e/width)^2).
 double inlier_weight(const ConsensusSet& consensus_set, const Vector7d& x, double width_mps);
 
 /// How different states look to the sensor, whatever its field of view.

@@ -46,9 +46,9 @@ struct MapAlignment {
   std::size_t on_planes = 0;  ///< with a patch of the map
   double matched = 0.0;       ///< sum of the kernel's weights: points that agree
   double rms_m = 0.0;         ///< distance of those from their planes
-  double chi = 0.0;           ///< the same over its predicted deviation: 1 where the noise model is right
-  /// m, deviation of patches from planes: what the mean distances of the points on the patches scatter more than noise
-  /// and the errors of the fits explain. Nothing when too few patches tell.
+  double chi = 0.0;           ///< the same over its predicted standard deviation: 1 where the noise model is right
+  /// m, standard deviation of patches from planes: what the mean distances of the points on the patches scatter more
+  /// than noise and the errors of the fits explain. Nothing when too few patches tell.
   std::optional<double> model_sigma_m;
 };
 

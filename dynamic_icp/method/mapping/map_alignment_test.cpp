@@ -72,7 +72,7 @@ Eigen::Isometry3d pose(const Vector3d& rotation, const Vector3d& translation) {
   return T;
 }
 
-/// A prior that is off by the deviations it states.
+/// A prior that is off by the standard deviations it states.
 MotionPrior prior_around(const Eigen::Isometry3d& truth, const Vector3d& rotation_off, const Vector3d& position_off) {
   MotionPrior prior;
   prior.R_map_sensor = exp_so3(rotation_off) * truth.linear();
@@ -115,7 +115,8 @@ TEST(AlignToMap, LeavesToTheDopplerWhatATunnelLeavesOpen) {
 }
 
 TEST(AlignToMap, TurnsTheDisplacementWithTheScan) {
-  // The prior is turned by 0.1 rad, and so is the displacement it expects; in a tunnel only the turn found can mend it.
+  // The prior is turned by 0.1 rad, and so is the displacement it expects; in a tunnel only the rotation found can mend
+  // it.
   Hall tunnel;
   tunnel.has_ends = false;
   const Eigen::Isometry3d truth = pose({0.0, 0.0, 0.05}, {2.0, 0.0, 0.0});
@@ -140,7 +141,7 @@ TEST(AlignToMap, FindsTheTurnWithinASweep) {
   EXPECT_LT(rotation_error(found, truth), 5e-4);
   EXPECT_LT((found.T_map_sensor.translation() - truth.translation()).norm(), 5e-3);
   EXPECT_LT((found.sweep.omega - sweep.omega).norm(), 0.02);
-  // The change of the turn within one sweep is hardly seen: it is as far off as the covariance says.
+  // The change of the rotation within one sweep is hardly seen: it is as far off as the covariance says.
   const Vector3d alpha_error = found.sweep.alpha - sweep.alpha;
   EXPECT_LT(alpha_error.dot(found.covariance.block<3, 3>(9, 9).ldlt().solve(alpha_error)), 16.0);
   EXPECT_LT(alpha_error.norm(), 0.5);

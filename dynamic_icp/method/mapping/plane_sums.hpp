@@ -42,7 +42,7 @@ struct PlaneSums {
   PlaneSums& operator+=(const PlaneSums& other);
 };
 
-/// How the rows are weighted: with Tukey's kernel, `kernel` deviations wide and at least `gate_m`.
+/// How the rows are weighted: with Tukey's kernel, `kernel` standard deviations wide and at least `gate_m`.
 struct PlaneWeights {
   double kernel = 3.0;
   double gate_m = 0.0;

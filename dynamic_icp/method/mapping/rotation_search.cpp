@@ -13,7 +13,7 @@ namespace {
 // An alignment finds its way back from about this far.
 constexpr double kStep_rad = 2.5 * std::numbers::pi / 180.0;
 
-// Starts lie within so many deviations of the prior.
+// Starts lie within so many standard deviations of the prior.
 constexpr double kReach = 2.5;
 
 constexpr double kCandidateGate_m = 2.0;

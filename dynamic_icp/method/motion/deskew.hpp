@@ -22,7 +22,7 @@ struct TimeSpan {
 TimeSpan time_span(const Scan& scan);
 
 /// Deskews many points: the poses at a few times, and from the nearest of them a straight step. Exact to the
-/// square of the turn within half an interval, far below a tenth of a millimetre.
+/// square of the rotation within half an interval, far below a tenth of a millimetre.
 class Deskewer {
  public:
   /// For points with times within this span.

@@ -38,7 +38,7 @@ TEST(QuadratureWeights, IntegrateQuadraticsExactlyAtUnequalSteps) {
   EXPECT_NEAR(sum, F(1.12) - F(1.0), 1e-10);
 }
 
-/// A roundabout: constant speed forward, constant rate of turn.
+/// A roundabout: constant speed forward, constant angular velocity.
 struct Circle {
   double omega = 0.6;  // rad/s
   double speed = 8.0;  // m/s

@@ -10,7 +10,7 @@
 namespace dynamic_icp::motion {
 namespace {
 
-// Keeps information invertible where there is none: deviations of a kilometre and of a thousand radians.
+// Keeps information invertible where there is none: standard deviations of a kilometre and of a thousand radians.
 constexpr double kMinInformation = 1e-6;
 
 Eigen::Matrix3d inverse(const Eigen::Matrix3d& matrix) { return matrix.ldlt().solve(Eigen::Matrix3d::Identity()); }

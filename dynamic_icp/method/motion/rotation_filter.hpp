@@ -33,8 +33,8 @@ RotationState predict(const RotationState& state, double dt_s, const RotationFil
 RotationState updated(RotationState found, const RotationState& predicted, double duration_s,
                       const RotationFilterConfig& config);
 
-// Standard deviation of the error at the begin of a sweep of 1 s (angle, rad, and angular velocity, rad/s) of a
-// parabola that least squares fit to a rotation angle whose acceleration does a random walk of 1 rad/s^2 over the
+// Standard deviation of the error at the begin of a sweep of 1 s (angle, rad, and angular velocity, rad/s) of
+// a parabola that least squares fit to a rotation angle whose acceleration does a random walk of 1 rad/s^2 over the
 // sweep: sqrt(1/9240) and sqrt(52/3465) where the points are spread evenly over the sweep, here by simulation. Over
 // another duration they grow with its square and with the duration.
 inline constexpr double kParabolaMisfit_rad = 0.0102;

@@ -24,7 +24,8 @@ TEST(RotationFilter, FollowsAConstantTurn) {
 }
 
 TEST(RotationFilter, LinearisesItsOwnPrediction) {
-  // The covariance of a small deviation that goes through the prediction, against the difference of two predictions.
+  // The covariance of a small standard deviation that goes through the prediction, against the difference of two
+  // predictions.
   RotationFilterConfig config;
   RotationState state = first_rotation_state(config);
   state.R_map_sensor = exp_so3(Vector3d(0.2, -0.1, 0.7));
@@ -44,7 +45,7 @@ TEST(RotationFilter, LinearisesItsOwnPrediction) {
     Vector9d change;
     change << log_so3(moved_later.R_map_sensor * later.R_map_sensor.transpose()), moved_later.omega - later.omega,
         moved_later.alpha - later.alpha;
-    // With only this deviation in the covariance, what comes out is change change^T plus the driving noise.
+    // With only this standard deviation in the covariance, what comes out is change change^T plus the driving noise.
     RotationState sure = state;
     sure.covariance.setZero();
     RotationState one = sure;
@@ -65,7 +66,7 @@ TEST(RotationFilter, KeepsTheDeviationOfTheAngularAcceleration) {
   EXPECT_TRUE(state.covariance.ldlt().isPositive());
 }
 
-/// A prediction whose errors are independent, with the deviations 1e-3 rad, 1e-2 rad/s and 0.1 rad/s^2.
+/// A prediction whose errors are independent, with the standard deviations 1e-3 rad, 1e-2 rad/s and 0.1 rad/s^2.
 RotationState diagonal_prediction() {
   RotationState predicted = first_rotation_state({});
   predicted.R_map_sensor = exp_so3(Vector3d(0.2, -0.1, 0.7));
@@ -84,7 +85,8 @@ TEST(RotationFilter, AdaptsTheProcessNoiseToTheInnovation) {
     found.alpha += deviations * 0.1 * Vector3d::UnitZ();
     return updated(found, predicted, 0.1, {}).process_noise;
   };
-  // Three of nine coordinates err by so many deviations: the normalised innovation squared is deviations^2 / 3.
+  // Three of nine coordinates err by so many standard deviations: the normalised innovation squared is standard
+  // deviations^2 / 3.
   EXPECT_NEAR(noise_after(std::sqrt(3.0)), 2.0, 1e-6) << "as expected: no change";
   EXPECT_NEAR(noise_after(0.0), 0.8 * 2.0, 1e-9);
   EXPECT_NEAR(noise_after(3.0), 2.0 * (1.0 + 0.2 * (3.0 - 1.0)), 1e-6);

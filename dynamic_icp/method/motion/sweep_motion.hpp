@@ -8,8 +8,8 @@
 
 namespace dynamic_icp::motion {
 
-/// How the sensor moves while it takes a scan: velocity and rate of turn, both changing linearly. All vectors are in
-/// the axes of the sensor, which turn with it; tau is in s after the stamp of the scan.
+/// How the sensor moves while it takes a scan: velocity and angular velocity, both changing linearly. All vectors are
+/// in the axes of the sensor, which turn with it; tau is in s after the stamp of the scan.
 struct SweepMotion {
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();         ///< rad/s at the stamp
   Eigen::Vector3d alpha = Eigen::Vector3d::Zero();         ///< rad/s^2: omega(tau) = omega + alpha tau

@@ -15,7 +15,7 @@ namespace dynamic_icp::motion {
 
 /// What is done about the time a scan takes.
 struct SweepConfig {
-  bool deskew = true;                     ///< off: every scan counts as taken at its stamp (ablation "no-deskew")
+  bool deskew = true;                   ///< off: every scan counts as taken at its stamp (ablation "no-deskew")
   double declared_duration_s = 0.0;     ///< where points have no times: the scan takes so long, column by column; 0: no
   bool declared_left_to_right = false;  ///< order of these columns; off: from right to left, azimuth growing
 };
@@ -43,7 +43,7 @@ SweepReport sweep_in_data(const RawScan& raw);
 /// What a method finds and does that undoes sweeps as configured.
 SweepReport sweep_as_configured(const RawScan& raw, const SweepConfig& config);
 
-/// The scan with the times that count, where these are not its own: declared ones, or none when no sweep is undone.
+/// The scan with the times that count, where these are not its own: declared ones, or none when no sweep is deskewed.
 /// Nothing where the scan can be used as it is.
 std::optional<RawScan> retimed(const RawScan& raw, const SweepConfig& config);
 

@@ -33,7 +33,7 @@ TEST(PointDisplacement, AddsTranslationAndChordOfTheRotation) {
 TEST(AdaptiveThreshold, IsTheInitialOneUntilSomethingIsKnown) {
   AdaptiveThreshold threshold(2.0, 0.1, 100.0);
   EXPECT_EQ(threshold.sigma_m(), 2.0);
-  threshold.observe(motion({0.05, 0, 0}), 10.0);  // moved, but the deviation is below 0.1 m
+  threshold.observe(motion({0.05, 0, 0}), 10.0);  // moved, but the standard deviation is below 0.1 m
   EXPECT_EQ(threshold.sigma_m(), 2.0);
 }
 

@@ -19,7 +19,7 @@ inline constexpr double kUnmodelledAcceleration_mps2 = 3.0;
 /// For assumptions().
 std::string compensated_doppler_note();
 
-/// The frame in which the static scene of such a scan stands still: no velocity, with the scatter of the points that do
+/// The frame in which the static scene of such a scan is static: no velocity, with the scatter of the points that do
 /// not move by half a metre per second.
 ego_motion::EgoVelocity static_frame(const Scan& scan);
 

@@ -13,7 +13,7 @@
 namespace dynamic_icp::odometry {
 namespace {
 
-// The voxel grid tells 2^20 cells apart in each direction.
+// The voxel grid distinguishes 2^20 cells in each direction.
 constexpr double kMaxVoxels = 1 << 20;
 
 [[noreturn]] void throw_unknown(const char* what, std::string_view name, const std::vector<std::string_view>& known) {

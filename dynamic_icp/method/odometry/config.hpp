@@ -73,7 +73,7 @@ struct EgoMotionConfig {
   ego_motion::DopplerRegressionConfig regression;  ///< read, and among the fields, only without consensus
   ego_motion::ConsensusRegressionConfig consensus;
   ego_motion::DriftConfig drift;
-  double static_sigmas = 4.0;  ///< a point moves only beyond so many deviations of the static Doppler
+  double static_sigmas = 4.0;  ///< a point moves only beyond so many standard deviations of the static Doppler
 };
 
 /// Dynamic-ICP beyond the paper, with a local map: preset `default`.
@@ -86,7 +86,7 @@ struct MapOdometryConfig {
   motion::RotationFilterConfig rotation;
   bool track_objects = true;  ///< off: moving points are left out (ablation "no-dpp")
   tracking::TrackerConfig tracking;
-  bool use_displacement = true;           ///< the way between scans from the Doppler, as a term of the alignment
+  bool use_displacement = true;  ///< the translation between scans from the Doppler, as a term of the alignment
   double displacement_sigma_mps = 0.003;  ///< error of the integrated velocity over the time between two scans
   bool search_start = true;               ///< try several turns for the first pair of scans
   double lost_match = 0.5;                ///< lost when less than this share of the usual number of points fits

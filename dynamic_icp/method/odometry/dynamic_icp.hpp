@@ -31,7 +31,7 @@ class DynamicIcp final : public Odometry {
   DynamicIcp(DynamicIcp&&) noexcept;
   DynamicIcp& operator=(DynamicIcp&&) noexcept;
 
-  /// Takes the next scan. Throws DataError when its stamp is not later than that of the scan before; the state is
+  /// Takes the next scan. Throws DataError when its stamp is not later than that of the previous scan; the state is
   /// unchanged then. A scan that cannot be aligned is no error: its frame says so and carries the predicted motion, and
   /// the next usable scan is aligned to the last usable one.
   Frame process(const RawScan& raw) override;

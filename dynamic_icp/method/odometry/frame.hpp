@@ -76,7 +76,7 @@ struct Frame {
   std::size_t points_used = 0;  ///< after range crop and voxel grid
   Scan::Dropped dropped;
   std::optional<motion::SweepReport> sweep;  ///< empty for methods that never look at times
-  /// Points that stand still, thinned, in the sensor frame at the stamp (m): what a map is made of. Empty for methods
+  /// Points that are static, thinned, in the sensor frame at the stamp (m): what a map is made of. Empty for methods
   /// that do not tell them from moving ones.
   std::vector<Eigen::Vector3d> static_points;
   /// Per point of the scan as read: -1 not used (dropped, not kept by the voxel grid, or moving without an object),

@@ -24,10 +24,10 @@ ThinnedScan thin(const Scan& scan, double map_voxel_size_m);
 /// as evenly spaced; stamps only have to increase.
 ///
 /// Rules and defaults are those of its authors' releases 0.2.10 to 1.2.0. In details it is not their program: voxels
-/// are told apart by rounding down, also below zero, and keep the first point in the order of the scan; a point without
-/// neighbours has no correspondence; steps are taken about the predicted pose instead of the origin of the world, so
-/// that the stopping rule means the same all along a drive; deskewing begins with the third scan instead of the fourth;
-/// fewer than 6 correspondences are a failure.
+/// are distinguished by rounding down, also below zero, and keep the first point in the order of the scan; a point
+/// without neighbours has no correspondence; steps are taken about the predicted pose instead of the origin of the
+/// world, so that the stopping rule means the same all along a drive; deskewing begins with the third scan instead of
+/// the fourth; fewer than 6 correspondences are a failure.
 ///
 /// What its frames say:
 ///   - The pose is that of the sensor in the frame of the first usable scan. For a scan that is deskewed it is the pose

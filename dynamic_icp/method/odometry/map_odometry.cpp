@@ -35,11 +35,11 @@ constexpr double kExactPosition = 1e12;
 // The usual share of points that agree with the map follows the last scans with this weight for the newest.
 constexpr double kUsualMatchGain = 0.2;
 
-// So does the deviation of patches from planes; below the least no surface is trusted.
+// So does the standard deviation of patches from planes; below the least no surface is trusted.
 constexpr double kModelSigmaGain = 0.2;
 constexpr double kMinModelDeviation_m = 0.001;
 
-// With the first turn known the first scan is made straight and the second aligned again: each round leaves about
+// With the first turn known the first scan is deskewed and the second aligned again: each round leaves about
 // a tenth of the error.
 constexpr int kDeskewRounds = 4;
 constexpr double kDeskewGate_m = 0.5;
@@ -73,7 +73,7 @@ ego_motion::VelocityFilterConfig filter_for(const EgoMotionConfig& config, const
   return filter;
 }
 
-/// Those of `rows` that stand still.
+/// Those of `rows` that are static.
 std::vector<std::uint32_t> still_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
   std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
   return rows;
@@ -149,7 +149,7 @@ void MapOdometry::thin_and_sort(const RawScan& raw, Frame& frame) {
   frame.points_used = memory_.thinned.size();
 }
 
-/// The velocity of the sensor at this scan, and the points that stand still.
+/// The velocity of the sensor at this scan, and the points that are static.
 MapOdometry::ScanState MapOdometry::tell_static_from_moving() {
   const Scan& whole = memory_.whole;
   ScanState now;
@@ -342,7 +342,7 @@ void MapOdometry::mark_lost(const ScanState& now, const mapping::MotionPrior& pr
   state_->sweep.omega = sweep.omega;
 }
 
-/// The first scan was laid down as if the sensor did not turn. With the turn that the second shows it is laid down
+/// The first scan was laid down as if the sensor did not turn. With the rotation that the second shows it is laid down
 /// again, until both agree.
 mapping::MapAlignment MapOdometry::align_second(const ScanState& now, const mapping::MotionPrior& prior) {
   mapping::MapAlignment found =

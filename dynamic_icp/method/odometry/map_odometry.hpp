@@ -24,8 +24,8 @@
 namespace dynamic_icp::odometry {
 
 /// Preset `default` of Dynamic-ICP. The Doppler of the static scene gives the velocity, and the velocities of three
-/// scans the way from one to the next; the static points, aligned to a local map of planes, give the turn and hold the
-/// position. Moving objects are tracked beside it. See docs/method.md, "Beyond the paper".
+/// scans the translation from one to the next; the static points, aligned to a local map of planes, give the turn and
+/// hold the position. Moving objects are tracked beside it. See docs/method.md, "Beyond the paper".
 ///
 /// The same scans give the same bits for any number of threads.
 class MapOdometry final : public Odometry {

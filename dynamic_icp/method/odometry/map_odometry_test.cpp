@@ -36,7 +36,7 @@ void expect_starts(const Sensor& sensor, double max_m, double max_deg) {
 
 TEST(MapOdometry, StartsAtAnySpeedAndTurn) { expect_starts(Sensor{}, 0.003, 0.03); }
 
-// The first scan of a sweep has to be made straight by what the second shows: the first pair is known less well.
+// The first scan of a sweep has to be deskewed by what the second shows: the first pair is known less well.
 TEST(MapOdometry, StartsAtAnySpeedAndTurnInASweep) { expect_starts(sweeping(), 0.015, 0.08); }
 
 TEST(MapOdometry, FollowsALivelyDrive) {
@@ -53,7 +53,7 @@ TEST(MapOdometry, FollowsALivelyDrive) {
   }
 }
 
-// The same sweeps with the times of their points, with declared times, as if taken in an instant, and not undone.
+// The same sweeps with the times of their points, with declared times, as if taken in an instant, and not deskewed.
 TEST(MapOdometry, UndoesSweeps) {
   Drive drive{street_with_cars(), agile(10.0), sweeping()};
   const MotionError timed = rms_error(drive, drive.run(with_ablation(), 14), 4);
@@ -218,7 +218,7 @@ TEST(MapOdometry, SearchesForTheFirstTurn) {
   EXPECT_GT(error_of(drive, drive.run(with_ablation("no-search"), 2).back(), 0, 1).turn_deg, 1.0);
 }
 
-// Where most of what is seen creeps, the median velocity is that of the crowd.
+// Where most of what is seen creeps, the median velocity is that of dynamic outliers.
 TEST(MapOdometry, ConsensusFindsTheStaticSceneInACrowd) {
   Drive drive{street(), circle(4.0, 0.0), {}};
   for (int k = 0; k < 6; ++k) {

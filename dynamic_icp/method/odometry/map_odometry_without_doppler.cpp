@@ -37,7 +37,7 @@ ego_motion::EgoVelocity MapOdometry::first_velocity(const ScanState& now) const 
                      kFirstTranslation_m * kFirstTranslation_m * Eigen::Matrix3d::Identity());
 }
 
-/// Without a Doppler that tells: the sensor goes on as it moved last, as well as that is known.
+/// Without a Doppler that tells: the sensor continues as it moved last, as well as that is known.
 void MapOdometry::predict_constant_velocity(const ScanState& now, mapping::MotionPrior& prior) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
   const Eigen::Isometry3d T_now_last = motion::motion_of(state_->rotation.omega, now.ego.velocity_sensor, -dt_s);
@@ -47,7 +47,7 @@ void MapOdometry::predict_constant_velocity(const ScanState& now, mapping::Motio
                                  dt_s * dt_s * prior.R_map_sensor * now.ego.covariance * prior.R_map_sensor.transpose();
 }
 
-/// Two rounds without a Doppler that tells: the motion that the first one finds makes the sweep straight for the
+/// Two rounds without a Doppler that tells: the motion that the first one finds deskews the scan for the
 /// second.
 mapping::MapAlignment MapOdometry::align_with_found_velocity(const ScanState& now, mapping::MotionPrior prior,
                                                              const mapping::MapAlignConfig& config) const {
@@ -61,7 +61,7 @@ mapping::MapAlignment MapOdometry::align_with_found_velocity(const ScanState& no
   return mapping::align_to_map(now.static_points, map_, prior, config, workers_);
 }
 
-/// A scan that cannot be used, or one after a long gap: the last motion goes on.
+/// A scan that cannot be used, or one after a long gap: the last motion continues.
 void MapOdometry::predict_only(double stamp_s, FrameStatus status, Frame& frame) const {
   const double dt_s = std::min(stamp_s - state_->stamp_s, kMaxPrediction_s);
   const Eigen::Isometry3d T_target_source =
@@ -109,7 +109,7 @@ std::vector<Eigen::Vector3d> MapOdometry::unobservable_directions(const Eigen::M
   return directions;
 }
 
-/// Along directions that nothing holds the even motion goes on, whatever the noise of normals says.
+/// Along directions that nothing holds the even motion continues, whatever the noise of normals says.
 void MapOdometry::keep_predicted_where_unobservable(const mapping::MotionPrior& prior, const Eigen::Matrix3d& observed,
                                                     mapping::MapAlignment& found) const {
   const Eigen::Vector3d expected = prior.displacement_fixed + found.T_map_sensor.linear() * prior.displacement_rotated;

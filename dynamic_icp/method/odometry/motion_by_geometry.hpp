@@ -23,7 +23,7 @@ class MotionByGeometry {
   /// T_target_source of the same motion over `time_s`; there must be one.
   [[nodiscard]] Eigen::Isometry3d predicted(double time_s) const { return exp_se3(time_s * *twist_); }
 
-  /// Takes over the motion of a frame that was found, or that goes on from one that was.
+  /// Takes over the motion of a frame that was found, or that continues from one that was.
   void update(const Frame& frame, double dt_s);
 
   /// Aligns without a Doppler term, from the given start; before the first motion is known from one that is searched

@@ -21,7 +21,7 @@ class Odometry {
  public:
   virtual ~Odometry() = default;
 
-  /// Takes the next scan. Throws DataError when its stamp is not later than that of the scan before, and
+  /// Takes the next scan. Throws DataError when its stamp is not later than that of the previous scan, and
   /// std::invalid_argument when its columns differ in length; the state is unchanged then. No number in a scan makes it
   /// throw: what cannot be a measurement is dropped and counted, and all numbers of the frame are finite. A scan that
   /// cannot be aligned is no error: its frame says so.

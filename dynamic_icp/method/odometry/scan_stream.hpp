@@ -48,7 +48,7 @@ class ScanStream {
   double since_any_s_ = 0.0;
 };
 
-/// Whether a scan with this obstacle takes no part: the reference and the state stay those of the scan before.
+/// Whether a scan with this obstacle takes no part: the reference and the state stay those of the previous scan.
 bool is_skipped(FrameStatus obstacle);
 
 }  // namespace dynamic_icp::odometry

@@ -60,8 +60,8 @@ class CorrespondenceSearch {
 
   Correspondences find(const Eigen::Isometry3d& T_target_source);
 
-  /// The same for some of the rows, for who goes on with them directly: moves groups [begin, end) to a pose and brings
-  /// their partners up to date. Different groups may be located at the same time.
+  /// The same for some of the rows, for who continues with them directly: moves groups [begin, end) to a pose and
+  /// brings their partners up to date. Different groups may be located at the same time.
   void locate(const Eigen::Isometry3d& T_target_source, std::size_t begin, std::size_t end);
   /// The source, four points a group, neighbours near each other.
   [[nodiscard]] const std::vector<SourceRows>& groups() const { return groups_; }

@@ -195,7 +195,7 @@ TEST_F(JointInformation, OfAllStaticDopplerIsAboutTheVelocitiesAlone) {
 }
 
 TEST_F(JointInformation, AnAccelerationPriorTellsTwoAxesOfTheTurn) {
-  const double change = 3.0 * kDt;  // m/s, deviation of the change of velocity
+  const double change = 3.0 * kDt;  // m/s, standard deviation of the change of velocity
   MatrixXd difference(3, 9);
   difference << Matrix3d::Zero(), -Matrix3d::Identity(), Matrix3d::Identity();
   const MatrixXd information = marginal(H_ + difference.transpose() * difference / (change * change), 3);

@@ -13,8 +13,8 @@ namespace dynamic_icp::spatial {
 /// that are not wanted: for searches that start from more than a point, or go by more than distance.
 ///
 /// `reach(node)` is a lower bound of what counts, such as the distance to the node's box: no greater for a node than
-/// for any of its descendants. `wanted(node, reach)` is asked when the turn of the node has come, so that it can make
-/// use of what `visit` has found by then; what is not wanted is left out with all its descendants.
+/// for any of its descendants. `wanted(node, reach)` is asked when the turn of the node has come, so that it can
+/// make use of what `visit` has found by then; what is not wanted is left out with all its descendants.
 template <class Reach, class Wanted, class Visit>
 void visit_nearest_first(const KdTree& tree, const Reach& reach, const Wanted& wanted, const Visit& visit) {
   struct Waiting {

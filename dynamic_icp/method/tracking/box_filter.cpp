@@ -195,7 +195,7 @@ AxisView BoxFilter::look_along(int axis, const Detection& detection) const {
   return view;
 }
 
-/// The box from this sighting and, where ends are hidden, what is known of its size.
+/// The box from this detection and, where ends are hidden, what is known of its size.
 void BoxFilter::make_box(const Detection& detection, const TrackConfig& config) {
   const Eigen::Matrix3d axes = upright_axes(yaw_);
   const Vector3d known = box_sigma_rad_ < kUsableDirection_rad ? size_ : Vector3d::Zero();

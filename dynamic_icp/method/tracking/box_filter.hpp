@@ -20,33 +20,33 @@ struct AxisView {
   bool high_end = false;
 };
 
-/// One opinion about a moving body: a filter for the motion of the centre of its box, and the box.
+/// One hypothesis about a moving body: a filter for the motion of the centre of its box, and the box.
 ///
 /// The box is anchored at the ends that are seen. Ends that are hidden, by the body itself, by something before it or
 /// by the edge of the field of view, only say how large it is at least. When the box grows the true ends stay where
 /// they are and the centre moves, without a trace in the velocity: parts that come into view are no motion.
 class BoxFilter {
  public:
-  /// From a first sighting with at least one point, at its mean time. `yaw`: the direction in which, or against which,
+  /// From a first detection with at least one point, at its mean time. `yaw`: the direction in which, or against which,
   /// the body is taken to move, as vehicles move along their sides. Without it nothing is assumed.
   BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const TrackConfig& config);
 
   /// Moves the state on by `dt_s` seconds, which may be negative.
   void predict(double dt_s, const TrackConfig& config);
 
-  /// Takes in another sighting; the state must be that of its mean time.
+  /// Takes in another detection; the state must be that of its mean time.
   void correct(const Detection& detection, const TrackConfig& config);
 
   [[nodiscard]] const MotionFilter& motion() const { return motion_; }
   [[nodiscard]] OrientedBox box() const;  ///< world
 
-  /// How well the opinion has explained what was seen; comparable between opinions about the same sightings.
+  /// How well the hypothesis has explained what was seen; comparable between hypotheses about the same detections.
   [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
 
   /// Deviation of the direction of the velocity, rad; pi for what stands.
   [[nodiscard]] double direction_sigma() const;
 
-  /// Spread of the last sighting's radial velocities about those of a rigid body, m/s.
+  /// Spread of the last detection's radial velocities about those of a rigid body, m/s.
   [[nodiscard]] double spread_mps() const { return spread_mps_; }
 
   /// Root mean square of the radial velocities of a rigid body that explains them best, m/s.

@@ -10,13 +10,13 @@ namespace dynamic_icp::tracking {
 
 /// What the Doppler of one scan says about a rigid body. All of its points obey r(u) = u . W with
 ///   W = V - Omega x c,
-/// V the velocity of its reference point, c that point seen from the sensor and Omega its rate of turn: the Doppler
+/// V the velocity of its reference point, c that point seen from the sensor and Omega its angular velocity: the Doppler
 /// cannot tell V from the turning. W is well known along the line of sight, and across it only as far as the body
 /// fills an angle. The information matrix says how well.
 struct ClusterVelocity {
   Eigen::Vector3d W = Eigen::Vector3d::Zero();            ///< m/s, axes of the lines of sight
   Eigen::Matrix3d information = Eigen::Matrix3d::Zero();  ///< inverse covariance of W, (s/m)^2; may be singular
-  double spread_mps = 0.0;                                ///< robust deviation of the residuals
+  double spread_mps = 0.0;                                ///< robust standard deviation of the residuals
   double signal_mps = 0.0;                                ///< root mean square of u . W over the points
 };
 

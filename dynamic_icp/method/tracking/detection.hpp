@@ -27,7 +27,8 @@ struct Detection {
   const RangeImage* view = nullptr;                                  ///< of the whole scan; none: nothing is hidden
 };
 
-/// The rows of the scan (at least one) as a sighting; of many an evenly spread part, for more would not make it better.
+/// The rows of the scan (at least one) as a detection; of many an evenly spread part, for more would not make it
+/// better.
 Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
                          const SensorMotion& sensor, const RangeImage* view);
 

@@ -28,7 +28,7 @@ struct Expectation {
   Eigen::Vector3d W;             ///< m/s: its points have the radial velocities u . W
   Eigen::Matrix3d W_covariance;  ///< (m/s)^2
   double gate_m = 0.0;           ///< distance from the box at which points may still be its own
-  double gate_mps = 0.0;         ///< deviation of their radial velocities, beyond the uncertainty of W
+  double gate_mps = 0.0;         ///< difference of their radial velocities, beyond the uncertainty of W
 
   /// `predicted` is the track at the stamp.
   Expectation(const Track& predicted, const SensorMotion& sensor, const TrackerConfig& config);

@@ -15,10 +15,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-// Measurements more than this many deviations off count as if they were just so many off (Huber's influence).
+// Measurements more than this many standard deviations off count as if they were just so many off (Huber's influence).
 constexpr double kLargestInnovation = 3.0;
 constexpr double kWorstSquare = 16.0;     // of a normalised residual, for the likelihood: all may happen
-constexpr double kMinInformation = 1e-4;  // (s/m)^2: a deviation of 100 m/s
+constexpr double kMinInformation = 1e-4;  // (s/m)^2: a standard deviation of 100 m/s
 
 const Vector3d kUp = Vector3d::UnitZ();
 

@@ -19,7 +19,7 @@ constexpr double kMax = 2.0;       // new objects are not wider than so many veh
 constexpr double kSplinter = 0.1;  // a track with this share of the points of another may be a part of it
 constexpr double kSplinterVelocity_mps = 2.0;
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
-constexpr std::size_t kMinPoints = 3;  // of a sighting: a velocity has three unknowns
+constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
 
 double sweep_duration(const Scan& scan) {
   return scan.times().empty() ? 0.0 : *std::max_element(scan.times().begin(), scan.times().end());
@@ -44,7 +44,7 @@ void place_cells(TrackingInput& input) {
 /// A track with what is known of it besides its motion.
 struct ObjectTracker::Entry {
   std::int64_t id;
-  Track track;      ///< at the mean time of its last sighting
+  Track track;      ///< at the mean time of its last detection
   Track predicted;  ///< at the stamp of the present scan, with what that scan shows
   bool confirmed = false;
   int age = 0;
@@ -278,7 +278,7 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
       expectations.emplace_back(newborn.back().predicted, input.sensor, config_);
     }
   }
-  // Where many points stand still, some that seem to move are errors of measurement.
+  // Where many points are static, some that seem to move are errors of measurement.
   std::vector<std::size_t> contradictions(newborn.size(), 0);
   visit_static_points(input, expectations, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
     contradictions[i] += contradicts(expectations[i].W.dot(direction), input.radial[row], config_) ? 1 : 0;
@@ -329,7 +329,7 @@ void ObjectTracker::delete_tracks() {
     if (same == living.end()) {
       living.push_back(std::move(entry));
     } else if (entry.members.size() > same->members.size()) {
-      // The name of the older one goes on with the state of what is seen more of.
+      // The name of the older one continues with the state of what is seen more of.
       same->track = entry.track;
       same->predicted = entry.predicted;
       same->members = std::move(entry.members);

@@ -40,7 +40,7 @@ class ObjectTracker {
   /// The points of the scan are where they were measured, in the sensor frame at its stamp (deskewed); lines of sight
   /// are as measured. `radial`: for each row the velocity of the point itself along its line of sight over ground
   /// (m/s). `is_moving`: for each row nonzero where that is too much for noise. Throws std::invalid_argument when
-  /// these differ in length or are not finite, and when the stamp is not later than that of the scan before.
+  /// these differ in length or are not finite, and when the stamp is not later than that of the previous scan.
   std::vector<TrackedObject> update(const Scan& scan, std::span<const double> radial,
                                     std::span<const std::uint8_t> is_moving, const Eigen::Isometry3d& T_world_sensor,
                                     const Workers& workers);

@@ -13,8 +13,8 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
-constexpr double kLogHopeless = -8.0;    // relative to the best opinion
-constexpr int kDecisionDetections = 10;  // after so many the best opinion stays alone
+constexpr double kLogHopeless = -8.0;    // relative to the best hypothesis
+constexpr int kDecisionDetections = 10;  // after so many the best hypothesis stays alone
 
 }  // namespace
 

@@ -13,17 +13,17 @@ namespace dynamic_icp::tracking {
 /// One object over time.
 ///
 /// At first sight the Doppler leaves open how much of what is seen across the line of sight is turning, and the sides
-/// leave open which of them is the front. So a track begins with several opinions, each with its own direction, and
-/// drops those that explain the next sightings worse.
+/// leave open which of them is the front. So a track begins with several hypotheses, each with its own direction, and
+/// drops those that explain the next detections worse.
 class Track {
  public:
-  /// From a first sighting with at least one point, in a scan `stamp_s` after any origin of time.
+  /// From a first detection with at least one point, in a scan `stamp_s` after any origin of time.
   Track(const Detection& detection, double stamp_s, const TrackConfig& config);
 
   /// Moves the state to `time_s`.
   void predict(double time_s, const TrackConfig& config);
 
-  /// Takes in another sighting; the state is then that of its mean time.
+  /// Takes in another detection; the state is then that of its mean time.
   void correct(const Detection& detection, double stamp_s, const TrackConfig& config);
 
   [[nodiscard]] double time_s() const { return time_s_; }
@@ -31,7 +31,7 @@ class Track {
   [[nodiscard]] const MotionFilter& motion() const { return best().motion(); }
   [[nodiscard]] OrientedBox box() const { return best().box(); }
 
-  /// Of the velocity, about that of the best opinion, with the disagreement of the others: (m/s)^2, world.
+  /// Of the velocity, about that of the best hypothesis, with the disagreement of the others: (m/s)^2, world.
   [[nodiscard]] Eigen::Matrix3d velocity_covariance() const;
 
  private:

@@ -17,9 +17,9 @@ struct TrackConfig {
   double face_sigma_m = 0.04;        ///< of a side of the box, at the sensor
   double face_sigma_growth = 0.002;  ///< m per metre of range
   double yaw_sigma_rad = 0.05;       ///< between the sides of a body and its motion
-  double prior_speed_mps = 20.0;     ///< deviation of either horizontal part of a velocity
-  double prior_climb_mps = 0.7;      ///< deviation of the vertical part: objects move nearly horizontally
-  double prior_yaw_rate_rps = 0.2;   ///< deviation
+  double prior_speed_mps = 20.0;     ///< standard deviation of either horizontal part of a velocity
+  double prior_climb_mps = 0.7;      ///< standard deviation of the vertical part: objects move nearly horizontally
+  double prior_yaw_rate_rps = 0.2;   ///< standard deviation
   double vehicle_width_m = 1.4;      ///< what is at least so wide is taken for a vehicle ...
   double largest_width_m = 2.6;      ///< no vehicle is wider
   double vehicle_length_m = 4.2;     ///< ... at least so long, though the end may be hidden
@@ -37,7 +37,7 @@ struct TrackerConfig {
   int confirm_anyway_scans = 3;       ///< ... or have been observed in so many scans
   int coast_scans = 5;                ///< a confirmed track is kept for so many scans without points
   double max_spread_mps = 0.4;        ///< points whose velocities differ more from those of a rigid body are no object
-  double same_velocity_mps = 0.2;     ///< still points in a new object's box contradict it when they deviate more
+  double same_velocity_mps = 0.2;     ///< static points in a new object's box contradict it when they deviate more
   double min_speed_mps = 0.5;         ///< what is slower counts as standing
   double gate_m = 0.5;                ///< points of an object lie so near to its predicted box, beyond its uncertainty
   double gate_mps = 0.5;              ///< and have so nearly its predicted radial velocity, beyond its uncertainty

@@ -18,7 +18,7 @@ struct UnitGuess {
 
 /// How well each of the four columns is explained as the Doppler of a static scene whose points are the other three.
 struct ColumnScores {
-  /// m/s, |s + u.v| of the points, 30 % are below, median over the scans: of what stands still even in traffic. What is
+  /// m/s, |s + u.v| of the points, 30 % are below, median over the scans: of what is static even in traffic. What is
   /// a Doppler scatters by centimetres per second, moving or standing, with the sensor's motion in it or not; a
   /// coordinate scatters by metres.
   std::array<double, 4> residual = {0.0, 0.0, 0.0, 0.0};

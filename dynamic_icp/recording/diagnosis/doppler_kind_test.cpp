@@ -61,7 +61,7 @@ TEST(DopplerKindAnswer, AReflectanceIsNoDoppler) {
     EXPECT_EQ(diagnosis.of(Question::kColumns).verdict, Verdict::kWrong);
     EXPECT_EQ(diagnosis.of(Question::kDopplerUnits).verdict, Verdict::kCannotTell);
   }
-  // All of one sign as well: noise around a constant error, of a sensor that stands still.
+  // All of one sign as well: noise around a constant error, of a sensor that is static.
   Recording biased;
   biased.path = synthetic::circle(0.0, 0.0);
   biased.sensor.bias_mps = 0.5;

@@ -72,7 +72,7 @@ void add_doppler_translation(Motion& motion, std::span<const Seen* const> on_the
 }
 
 /// The pose at a time. Nothing where the trajectory has none within half a second before and after; at its very end the
-/// last pose goes on as the last two moved.
+/// last pose continues as the last two moved.
 std::optional<Eigen::Isometry3d> pose_at(const formats::Trajectory& truth, Stamp stamp) {
   if (truth.size() < 2) {
     return std::nullopt;

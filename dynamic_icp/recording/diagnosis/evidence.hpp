@@ -50,7 +50,7 @@ struct Comparison {
   double ratio_error = 0.0;       ///< standard error of that median
   double turned_deg = 0.0;        ///< angle from the reference's direction to the Doppler's, of the mean directions
   double turned_error_deg = 0.0;  ///< standard error of the angles of the motions one by one
-  double yaw_rate_rps = 0.0;      ///< median of the absolute rate of turn
+  double yaw_rate_rps = 0.0;      ///< median of the absolute angular velocity
 
   /// By the ratio: the Doppler moves the sensor as the reference does, or certainly not so.
   [[nodiscard]] bool is_same() const { return std::abs(ratio - 1.0) <= 0.08; }

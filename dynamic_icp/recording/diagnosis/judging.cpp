@@ -40,8 +40,8 @@ constexpr std::size_t kMinScans = 2;
 constexpr std::size_t kMinValues = 200;
 constexpr double kOneSign = 0.001;  // share of the values that have the other one
 
-// Gaussian noise around a constant that leaves 0.1 % of the values with the other sign has a median deviation of 0.22
-// of that constant.
+// Gaussian noise around a constant that leaves 0.1 % of the values with the other sign has a median standard deviation
+// of 0.22 of that constant.
 constexpr double kMinScatter = 0.3;
 
 // A velocity explains most of the scatter of a relative Doppler.

@@ -46,7 +46,7 @@ struct NoDoppler {
   std::string sentence;                                  ///< what it is instead, and by what numbers
   std::vector<std::pair<std::string, double>> evidence;  ///< numbers by name
   bool is_zero = false;                                  ///< a column of zeros; else other numbers
-  bool may_be_static = false;                            ///< zeros would also be those of a sensor that stands still
+  bool may_be_static = false;                            ///< zeros would also be those of a sensor that is static
 };
 
 /// Nothing where the last column may be a Doppler. Zeros in every point of several scans are a column that was never

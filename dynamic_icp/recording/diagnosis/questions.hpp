@@ -11,7 +11,7 @@ namespace dynamic_icp::diagnosis {
 /// Positive away from the sensor? The way by the Doppler against the way by the reference.
 Finding doppler_sign(const Evidence& evidence);
 
-/// Relative or compensated? A static scene that seems to move shows the sensor's own motion; one that stands still
+/// Relative or compensated? A static scene that seems to move shows the sensor's own motion; one that is static
 /// while the reference moves shows that it was taken out.
 Finding doppler_kind(const Evidence& evidence);
 

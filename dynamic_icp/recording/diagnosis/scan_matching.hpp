@@ -16,7 +16,7 @@ namespace dynamic_icp::diagnosis {
 ///
 /// Many starts along each axis (unit vectors) are tried and the best kept, point to plane. Nothing where that is not
 /// beyond doubt: too few points meet, another start fits almost as well (a smooth tunnel, equal posts), or the way is
-/// not held by the geometry. Scans that sweep are made straight by the way found, which takes the share of the times in
+/// not held by the geometry. Scans that sweep are deskewed by the way found, which takes the share of the times in
 /// `dt_s` but not their unit.
 std::optional<Eigen::Isometry3d> match_scans(const Scan& earlier, const Scan& later, double dt_s,
                                              std::span<const Eigen::Vector3d> axes, const Workers& workers);

@@ -159,7 +159,7 @@ TEST(AbsoluteError, StandingStillKeepsTheFirstOrientation) {
     EXPECT_EQ(both.scale, 1.0);
     EXPECT_LT((both.T_reference_estimate.matrix() - T.matrix()).norm(), 1e-12);
     EXPECT_LT(both.translation_m->max, 1e-12);
-    // A moving estimate of a sensor that stands still must not be shrunk to nothing.
+    // A moving estimate of a sensor that is static must not be shrunk to nothing.
     const AbsoluteError moving = absolute_error(associate(along_x({0.0, 3.0, 0.0}), still), alignment);
     EXPECT_EQ(moving.status, AlignmentStatus::kPoint);
     EXPECT_NEAR(moving.translation_m->rmse, std::sqrt(2.0), 1e-12);

@@ -32,7 +32,7 @@ struct Evaluation {
   double time_span_s = 0.0;                       ///< from the first to the last matched pose
   std::optional<double> reference_path_length_m;  ///< along the matched poses; empty when not finite
   std::optional<double> estimate_path_length_m;
-  /// Steps from one matched pose to the next where the reference stands still although the estimate moves at more than
+  /// Steps from one matched pose to the next where the reference is static although the estimate moves at more than
   /// 0.5 m/s: the mark of a reference sampled at the nearest time, against which frame-to-frame errors mean little.
   std::size_t repeated_reference_poses = 0;
 };

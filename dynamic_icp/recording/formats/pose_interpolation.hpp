@@ -6,7 +6,7 @@
 
 namespace dynamic_icp::formats {
 
-/// The pose at a time, straight and evenly turned from one pose to a later one; beyond them it goes on alike.
+/// The pose at a time, straight and evenly turned from one pose to a later one; beyond them it continues alike.
 Eigen::Isometry3d interpolate(const StampedPose& before, const StampedPose& after, Stamp stamp);
 
 }  // namespace dynamic_icp::formats

@@ -67,7 +67,7 @@ void refuse_without_points(const Usability& seen, const fs::path& input) {
                   seen.dropped.zero_range, seen.dropped.out_of_range, seen.points_used));
 }
 
-/// A run while it goes on.
+/// A run while it continues.
 class Run {
  public:
   Run(const Recording& recording, const RunSettings& settings, const RunCallbacks& callbacks)

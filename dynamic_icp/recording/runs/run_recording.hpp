@@ -41,8 +41,8 @@ struct RunSettings {
   std::string command;                        ///< how the run was asked for, for run.json
 };
 
-/// What the caller of a run may want to hear and do while it goes on. All are called by the calling thread; each may be
-/// empty.
+/// What the caller of a run may want to hear and do while it continues. All are called by the calling thread; each may
+/// be empty.
 struct RunCallbacks {
   /// Before the first scan and after each one.
   std::function<void(std::size_t done, std::size_t total)> progress;

@@ -14,7 +14,7 @@
 
 namespace dynamic_icp::runs {
 
-/// Writes the files of a run while it goes on, in bounded memory: trajectory.tum, frames.jsonl, objects.jsonl,
+/// Writes the files of a run while it continues, in bounded memory: trajectory.tum, frames.jsonl, objects.jsonl,
 /// labels/*.bin (if asked for), summary.json; all but run.json. The folder exists already; see formats/output_folder
 /// for how a run appears whole or not at all. Throws DataError naming the file that could not be written.
 class RunWriter {

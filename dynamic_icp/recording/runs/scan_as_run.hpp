@@ -21,7 +21,7 @@ struct ScanAsRun {
 };
 
 /// A scan of the recording as the run had it in this frame: with the times of points that its configuration declares,
-/// and the sweep taken out by the twists of the run or, where its method states none, by its poses. Points farther than
+/// and deskewed by the twists of the run or, where its method states none, by its poses. Points farther than
 /// `max_range_m` are left out.
 ScanAsRun scan_as_run(const RunFiles& run, std::size_t frame, const RawScan& raw, double max_range_m,
                       const Workers& workers);

@@ -23,7 +23,7 @@ std::vector<double> ticks_of(const Axis& axis, double pixels, double spacing) {
   return ticks;
 }
 
-/// Decimals that tell ticks one step apart from each other.
+/// Decimals that distinguish ticks one step from each other.
 int decimals_for(double step) { return std::clamp(static_cast<int>(-std::floor(std::log10(step) + 1e-9)), 0, 9); }
 
 std::string tick_label(const Axis& axis, const std::vector<double>& ticks, std::size_t k) {

@@ -44,7 +44,7 @@ Rgb mix(Rgb a, Rgb b, double share);
 /// The colour that CSS calls "#rrggbb"; black for anything else.
 Rgb rgb(const std::string& css);
 
-/// Colours for kinds and objects, in the order in which they should be used; they can be told apart by colour-blind
+/// Colours for kinds and objects, in the order in which they should be used; they can be distinguished by colour-blind
 /// readers (the set of Okabe and Ito, lightened or darkened for the background).
 const std::vector<std::string>& categorical_colours(Ground ground);
 

@@ -10,7 +10,7 @@
 namespace dynamic_icp::figures {
 namespace {
 
-constexpr double kFinest_m = 0.02;  // edge of the cubes that no longer tell points apart
+constexpr double kFinest_m = 0.02;  // edge of the cubes that no longer distinguishes points
 constexpr int kBits = 21;           // for each coordinate
 constexpr int kLevels = kBits + 1;  // cubes of kFinest_m 2^level; the last one holds everything
 

@@ -28,12 +28,12 @@ inline constexpr double kMoving_mps = 0.5;
 
 /// A scan as the page shows it: columns of equal length.
 struct ShownScan {
-  std::vector<Eigen::Vector3d> points;  ///< m, sensor frame at the stamp; the sweep undone where the run undid it,
+  std::vector<Eigen::Vector3d> points;  ///< m, sensor frame at the stamp; deskewed where the run was,
                                         ///< for points on objects their motion during the sweep as well
   std::vector<double> doppler;          ///< m/s as measured, positive away
   std::vector<double> compensated;      ///< m/s, what is left without the own motion; NaN: unknown
   std::vector<std::uint8_t> labels;
-  std::vector<double> residual;  ///< m, distance to the surface of the scan before; NaN: no surface near
+  std::vector<double> residual;  ///< m, distance to the surface of the previous scan; NaN: no surface near
 
   [[nodiscard]] std::size_t size() const { return points.size(); }
 };

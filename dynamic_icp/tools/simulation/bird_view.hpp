@@ -12,7 +12,7 @@
 
 namespace dynamic_icp::simulation {
 
-/// What stands still in a rectangle (m) of the ground plane, seen from above: x to the right, y up, lit from the side,
+/// What is static in a rectangle (m) of the ground plane, seen from above: x to the right, y up, lit from the side,
 /// in a stronger tone the farther it is from the height of the road; the theme's panel colour where there is nothing.
 /// Moving bodies are left out.
 drawing::Raster bird_view(const world::World& world, const world::RayCaster& caster, const Eigen::AlignedBox2d& region,

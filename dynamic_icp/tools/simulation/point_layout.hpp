@@ -50,7 +50,7 @@ std::unique_ptr<PointLayout> make_boreas_layout(const std::filesystem::path& fol
 /// All sensors of the vehicle in one recording:
 ///   sequence.json                                    mountings; poses of the vehicle and boxes of moving bodies
 ///   pointcloud_raw/<sensor>_<stamp_ns>.npz           points with the Doppler as measured
-///   pointcloud_compensated/<sensor>_<stamp_ns>.npz   the same points, Doppler without the sensor's own motion
+///   pointcloud_compensated/<sensor>_<stamp_ns>.npz   the same points, Doppler compensated for the ego motion
 /// Reflectivities, 13 bits there, are 8191 times the simulated share, at most 8191. Classes are numbers only: the names
 /// beside them in the data set are objects of Python. The vehicle frame is that of the simulation, below the middle of
 /// the vehicle. The sensors' scans must come frame by frame. Keeps a reference to the simulation.

@@ -121,7 +121,7 @@ TEST(SimulateScan, EachRayHasTheWorldOfItsOwnTime) {
   }
 }
 
-/// Sum, mean and deviation of numbers.
+/// Sum, mean and standard deviation of numbers.
 struct Statistics {
   double n = 0.0;
   double sum = 0.0;

@@ -29,7 +29,7 @@ struct RoutePoint {
 
 /// A smooth line in the plane, parametrised by its arc length. Position, heading and curvature belong together to
 /// better than 1e-9: heading is the closed-form integral of the curvature, position the quadrature of the heading.
-/// Beyond both ends the route goes on straight.
+/// Beyond both ends the route continues straight.
 class Route {
  public:
   /// From `start`, heading in direction `heading_rad`. Lengths must be positive.
