@@ -48,7 +48,7 @@ int register_pair(const RegisterOptions& options) {
   const RawScan source = read_scan(options.source, Stamp{0}, options.settings.correction);
   const RawScan target =
       read_scan(options.target, Stamp{std::llround(options.dt_s * 1e9)}, options.settings.correction);
-  odometry::Surroundings surroundings;
+  odometry::SensorContext surroundings;
   surroundings.doppler_kind = source.doppler_kind;
   if (!options.calibration.empty()) {
     surroundings.T_vehicle_sensor = datasets::read_calibration(options.calibration);

@@ -23,7 +23,7 @@ using Clock = std::chrono::steady_clock;
 
 struct Recording {
   std::vector<RawScan> scans;
-  odometry::Surroundings surroundings;
+  odometry::SensorContext surroundings;
 };
 
 Recording load(const std::filesystem::path& folder) {

@@ -86,7 +86,7 @@ Truth search_truth(const fs::path& folder, const std::vector<Stamp>& stamps, boo
     if (fitting.size() > 1) {
       std::string names;
       for (const Truth& truth : fitting) {
-        names += " " + truth.file.string();
+        names += fmt::format(" {}", truth.file.string());
       }
       assumptions.push_back(fmt::format("no ground truth is taken: several files fit, name one of them:{}", names));
       return {};

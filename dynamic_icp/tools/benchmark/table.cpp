@@ -188,7 +188,7 @@ std::string markdown(const Table& table) {
     if (r == 0) {
       text += "|";
       for (std::size_t i = 0; i < widths.size(); ++i) {
-        text += " " + std::string(widths[i] - 1, '-') + (i == 0 ? "- |" : ": |");
+        text += fmt::format(" {}{} |", std::string(widths[i] - 1, '-'), i == 0 ? '-' : ':');
       }
       text += "\n";
     }
@@ -213,7 +213,8 @@ std::string csv(const Table& table) {
 }
 
 std::string latex(const Table& table) {
-  const std::string columns = "l" + std::string(table.header.empty() ? 0 : table.header.size() - 1, 'c');
+  std::string columns(std::max<std::size_t>(table.header.size(), 1), 'c');
+  columns.front() = 'l';
   std::string text =
       "% needs the packages booktabs and graphicx\n\\begin{table*}[ht]\n\\centering\n\\resizebox{\\textwidth}{!}{%\n";
   text += fmt::format("\\begin{{tabular}}{{{}}}\n\\toprule\n{}\\midrule\n", columns, latex_header(table.header));
