@@ -49,7 +49,7 @@ constexpr double kDeskewed_rad_s = 3e-4;  // moves the end of a sweep of 0.1 s b
 // A displacement that is known no better is not known.
 constexpr double kUnknown_m = 100.0;
 
-motion::SweepMotion straight_sweep(const ego_motion::EgoVelocity& ego, double middle_s) {
+motion::SweepMotion sweep_without_rotation(const ego_motion::EgoVelocity& ego, double middle_s) {
   motion::SweepMotion sweep;
   sweep.velocity = ego.velocity_sensor - middle_s * ego.acceleration_sensor;
   sweep.acceleration = ego.acceleration_sensor;
@@ -74,7 +74,7 @@ ego_motion::VelocityFilterConfig filter_for(const EgoMotionConfig& config, const
 }
 
 /// Those of `rows` that are static.
-std::vector<std::uint32_t> still_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
+std::vector<std::uint32_t> static_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
   std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
   return rows;
 }
@@ -108,7 +108,7 @@ Frame MapOdometry::process(const RawScan& raw) {
     }
     return frame;
   }
-  ScanState now = tell_static_from_moving();
+  ScanState now = separate_static_points();
   frame.ego = now.ego;
   clock.finish(Stage::kEgoMotion);
 
@@ -150,7 +150,7 @@ void MapOdometry::thin_and_sort(const RawScan& raw, Frame& frame) {
 }
 
 /// The velocity of the sensor at this scan, and the points that are static.
-MapOdometry::ScanState MapOdometry::tell_static_from_moving() {
+MapOdometry::ScanState MapOdometry::separate_static_points() {
   const Scan& whole = memory_.whole;
   ScanState now;
   now.stamp_s = stream_.elapsed_s();
@@ -164,7 +164,7 @@ MapOdometry::ScanState MapOdometry::tell_static_from_moving() {
   ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, in_doppler), workers_,
                            memory_.is_moving);
-  now.static_points = whole.select(still_rows(memory_.thinned, memory_.is_moving));
+  now.static_points = whole.select(static_rows(memory_.thinned, memory_.is_moving));
   return now;
 }
 
@@ -181,12 +181,10 @@ ego_motion::EgoVelocity MapOdometry::estimate_ego(double stamp_s) const {
     ego.reference_time_s = rows.reference_time_s;
     return ego;
   }
+  const double dt_s =
+      state_ ? std::min(stamp_s + rows.reference_time_s - state_->velocities.back().time_s, kMaxPrediction_s) : 0.0;
   const ego_motion::EgoPrior prior =
-      state_ ? ego_motion::predict(
-                   state_->filtered,
-                   std::min(stamp_s + rows.reference_time_s - state_->velocities.back().time_s, kMaxPrediction_s),
-                   config.drift)
-             : ego_motion::first_prior(config.drift);
+      state_ ? ego_motion::predict(state_->filtered, dt_s, config.drift) : ego_motion::first_prior(config.drift);
   return ego_motion::estimate_velocity(rows, prior, config.consensus, workers_);
 }
 
@@ -201,7 +199,7 @@ void MapOdometry::begin(const ScanState& now, const Eigen::Isometry3d& T_map_sen
   state.position_information = kExactPosition * Eigen::Matrix3d::Identity();
   state.rotation = motion::first_rotation_state(config_.rotation);
   state.rotation.R_map_sensor = T_map_sensor.linear();
-  state.sweep = straight_sweep(now.ego, now.middle_s);
+  state.sweep = sweep_without_rotation(now.ego, now.middle_s);
   state.first = now;
   state.velocities = {
       {now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, state.rotation.R_map_sensor}};
@@ -223,7 +221,7 @@ mapping::MotionPrior MapOdometry::motion_prior(const ScanState& now) const {
   const motion::RotationState rotation = motion::predict(state_->rotation, dt_s, config_.rotation);
   mapping::MotionPrior prior;
   prior.R_map_sensor = rotation.R_map_sensor;
-  prior.sweep = straight_sweep(now.ego, now.middle_s);
+  prior.sweep = sweep_without_rotation(now.ego, now.middle_s);
   prior.sweep.omega = rotation.omega;
   prior.sweep.alpha = rotation.alpha;
   prior.covariance = rotation.covariance;

@@ -78,7 +78,7 @@ class MapOdometry final : public Odometry {
   };
 
   void thin_and_sort(const RawScan& raw, Frame& frame);
-  [[nodiscard]] ScanState tell_static_from_moving();
+  [[nodiscard]] ScanState separate_static_points();
   [[nodiscard]] ego_motion::EgoVelocity estimate_ego(double stamp_s) const;
   void begin(const ScanState& now, const Eigen::Isometry3d& T_map_sensor);
   void update(const ScanState& now, Frame& frame);
