@@ -53,7 +53,7 @@ TEST_F(EndToEnd, TheFunctionOfTheLibraryWritesTheFilesOfTheProgram) {
   runs::RunSettings settings;
   settings.output = folder_ / "by_library";
   settings.preset = "paper";
-  settings.config = odometry::preset("paper");
+  settings.config = odometry::PaperConfig{};
   settings.threads = 2;
   settings.start = 1;
   settings.max_frames = 3;
@@ -430,7 +430,7 @@ TEST_F(EndToEnd, RunSaysWhatItFoundAndDidAboutTheSweep) {
   expect_sweep(instant + " --set sweep.declared_duration_s=0.05 --set sweep.deskew=false", "declared", 0.05, false);
   expect_sweep(instant + " --method kiss-icp", "none", 0.0, false);
   const Outcome printed = run_program("run " + swept.string() + " --output " + (folder_ / "told").string());
-  EXPECT_NE(printed.text.find("sweep        undone, 0.100 s, times in the data"), std::string::npos) << printed.text;
+  EXPECT_NE(printed.text.find("sweep        deskewed, 0.100 s, times in the data"), std::string::npos) << printed.text;
 }
 
 TEST_F(EndToEnd, RegisterPrintsThePairAsJson) {

@@ -64,7 +64,7 @@ TEST_F(ColumnFolder, PcdByNamesOfColumnsAndStampsOfFiles) {
   EXPECT_EQ(scan.times, (std::vector<double>{0.25, 0.5}));
   EXPECT_TRUE(scan.directions.empty());
   EXPECT_EQ(scan.doppler_kind, DopplerKind::kRelative);
-  EXPECT_TRUE(said(*dataset, "'velocity' is taken for doppler"));
+  EXPECT_TRUE(said(*dataset, "'velocity' as doppler"));
   EXPECT_TRUE(said(*dataset, "'time' are taken as seconds"));
   const std::vector<PointColumn> columns = dataset->columns(1);
   ASSERT_EQ(columns.size(), 1u);

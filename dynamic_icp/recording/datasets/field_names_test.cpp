@@ -47,7 +47,7 @@ TEST(FieldNames, TheFirstOfTheListIsTakenAndTold) {
   const FieldMap fields = map({"x", "y", "z", "vr", "Radial_Velocity", "vel"});
   EXPECT_EQ(fields.doppler.array, "Radial_Velocity");
   ASSERT_EQ(fields.assumptions.size(), 1u);
-  EXPECT_EQ(fields.assumptions[0], "column 'Radial_Velocity' is taken for doppler; there is also: vel, vr");
+  EXPECT_EQ(fields.assumptions[0], "using column 'Radial_Velocity' as doppler; there is also: vel, vr");
   EXPECT_EQ(map({"X", "Y", "Z", "VELOCITY"}).doppler.array, "VELOCITY");
   EXPECT_EQ(map({"x", "y", "z", "v", "v_r"}).doppler.array, "v_r");
 }

@@ -33,10 +33,16 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   check.doppler = fmt::format("{}; {}", diagnosis.of(diagnosis::Question::kDopplerKind).sentence,
                               diagnosis.of(diagnosis::Question::kDopplerSign).sentence);
   if (!diagnosis.has_doppler && needs_doppler && !settings.correction.doppler_kind) {
+    const auto with_kind = [&](DopplerKind kind) {
+      diagnosis::Finding finding;
+      finding.fix.doppler_kind = kind;
+      return fix_in_words ? fmt::format(" ({})", fix_of(finding)) : "";
+    };
     throw DataError(fmt::format(
         "{}: {}. Take a method that needs none, such as kiss-icp; or state the kind of Doppler: compensated, to go by "
-        "the shape of the scene alone, or relative, if it is Doppler all the same",
-        dataset.scan_file(scans.begin).string(), diagnosis.of(diagnosis::Question::kDopplerKind).sentence));
+        "the shape of the scene alone{}, or relative, if it is Doppler all the same{}",
+        dataset.scan_file(scans.begin).string(), diagnosis.of(diagnosis::Question::kDopplerKind).sentence,
+        with_kind(DopplerKind::kCompensated), with_kind(DopplerKind::kRelative)));
   }
   for (const diagnosis::Finding& finding : diagnosis.findings) {
     const bool is_sign = finding.question == diagnosis::Question::kDopplerSign;

@@ -23,7 +23,6 @@ class RunRecording : public ::testing::Test {
     report::WallDrive().write(folder_);
     fs::remove_all(folder_.path() / "run");  // of the hand-made run nothing is wanted
     settings_.output = folder_.path() / "out";
-    settings_.config = odometry::preset("default");
     settings_.threads = 1;
   }
 

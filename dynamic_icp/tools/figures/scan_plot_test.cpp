@@ -54,20 +54,20 @@ TEST(ScanPlot, NamesObjectsWithTheirSpeed) {
   EXPECT_NE(document.find(">4 · 9.0 m/s<"), std::string::npos);
   EXPECT_NE(document.find(">sensor · 13.0 m/s<"), std::string::npos);
   EXPECT_NE(document.find("2,000 points"), std::string::npos);
-  EXPECT_EQ(drawing::count_of(document, "Own motion taken out"), 1u);
+  EXPECT_EQ(drawing::count_of(document, "Ego-motion compensated"), 1u);
 }
 
 TEST(ScanPlot, WithoutEgoVelocityThereIsOnePanel) {
   ScanView view = random_view(2000);
   view.ego_velocity.setConstant(kNaN);
   const std::string document = drawn(view);
-  EXPECT_EQ(document.find("Own motion taken out"), std::string::npos);
+  EXPECT_EQ(document.find("Ego-motion compensated"), std::string::npos);
   EXPECT_NE(document.find(">4 · 9.0 m/s<"), std::string::npos) << "objects are still named";
 }
 
 TEST(ScanPlot, StaticSceneIsGreyOnceOwnMotionIsTakenOut) {
   const std::string document = drawn(random_view(2000));
-  const std::string lower = document.substr(document.find("Own motion taken out"));
+  const std::string lower = document.substr(document.find("Ego-motion compensated"));
   EXPECT_EQ(drawing::count_of(lower, "stroke-linecap=\"round\" d="), 1u) << "one path of dots, of one colour";
   const std::string grey =
       drawing::theme(drawing::Ground::kDark).doppler[drawing::theme(drawing::Ground::kDark).doppler.size() / 2];
