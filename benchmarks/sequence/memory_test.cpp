@@ -13,6 +13,9 @@ namespace {
 
 constexpr double kBlock_mib = 64.0;
 
+// What is touched between two readings, and what the system counts late.
+constexpr double kSlack_mib = 1.0;
+
 /// Uses so much memory and gives it back.
 void use_a_block() {
   std::vector<char> block(static_cast<std::size_t>(kBlock_mib) << 20);
@@ -28,7 +31,7 @@ TEST(Memory, ThePeakRemembersWhatWasGivenBack) {
   const double before = resident_mib();
   use_a_block();
   EXPECT_GE(peak_resident_mib(), before + 0.9 * kBlock_mib);
-  EXPECT_GE(peak_resident_mib(), resident_mib());
+  EXPECT_GE(peak_resident_mib() + kSlack_mib, resident_mib());
 }
 
 TEST(Memory, ThePeakCanBeginAnew) {
@@ -37,7 +40,7 @@ TEST(Memory, ThePeakCanBeginAnew) {
   if (!restart_peak()) {
     GTEST_SKIP() << "the system cannot";
   }
-  EXPECT_LE(peak_resident_mib(), peak);
+  EXPECT_LE(peak_resident_mib(), peak + kSlack_mib);
   EXPECT_GE(peak_resident_mib(), 0.9 * resident_mib());
 }
 

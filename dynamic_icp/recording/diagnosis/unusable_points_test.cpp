@@ -14,13 +14,13 @@ namespace {
 TEST(UnusablePoints, PointsThatCannotBeUsedAreCounted) {
   Recording recording;
   recording.perturb = [](RawScan& raw, const Vector3d&) {
+    raw.points.resize(raw.points.size() / 4 * 4);
+    raw.doppler.resize(raw.points.size());
     for (std::size_t i = 0; i < raw.points.size(); i += 4) {
       raw.points[i].setZero();
       raw.doppler[i + 1] = std::numeric_limits<double>::quiet_NaN();
     }
     raw.points[2].x() = 1e30;
-    raw.points.resize(raw.points.size() / 4 * 4);
-    raw.doppler.resize(raw.points.size());
   };
   const Diagnosis diagnosis = diagnosis_of(recording);
   EXPECT_EQ(diagnosis.of(Question::kColumns).verdict, Verdict::kOk) << "zeros fit to any velocity, in any column";
