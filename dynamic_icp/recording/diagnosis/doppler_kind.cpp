@@ -18,7 +18,7 @@ bool expects_compensated(const Evidence& evidence) {
 
 Finding relative(const Evidence& evidence, double speed) {
   Finding finding{Question::kDopplerKind, Verdict::kOk, ""};
-  finding.sentence = fmt::format("relative: the static scene moves by {:.1f} m/s", speed);
+  finding.sentence = fmt::format("relative, not ego-motion compensated: the static scene moves by {:.1f} m/s", speed);
   if (expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
     finding.sentence += ", but the Doppler was declared compensated";
@@ -29,7 +29,7 @@ Finding relative(const Evidence& evidence, double speed) {
 
 Finding compensated(const Evidence& evidence, const Comparison& reference) {
   Finding finding{Question::kDopplerKind, Verdict::kOk, ""};
-  finding.sentence = fmt::format("compensated: the static scene stands still while the sensor moves at {:.1f} m/s {}",
+  finding.sentence = fmt::format("compensated: the static scene is at rest while the sensor moves at {:.1f} m/s {}",
                                  reference.reference_speed_mps, reference_name(evidence, reference));
   if (!expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
@@ -44,7 +44,7 @@ Finding without_doppler(const Evidence& evidence, const NoDoppler& none) {
   Finding finding{Question::kDopplerKind, Verdict::kWrong, "there is no Doppler: " + none.sentence};
   if (none.may_be_static) {
     finding.verdict = Verdict::kCannotTell;
-    finding.sentence = none.sentence + ": it stands still, or there is no Doppler";
+    finding.sentence = none.sentence + ": the sensor is stationary, or there is no Doppler";
   } else if (expects_compensated(evidence) && none.is_zero) {
     finding.verdict = Verdict::kSuspicious;
   } else if (none.is_zero) {

@@ -61,11 +61,12 @@ Finding doppler_sign(const Evidence& evidence) {
   finding.evidence = comparison_numbers(*reference);
   const std::string source = reference_name(evidence, *reference);
   if (reference->turned_deg < kAlong_deg && reference->ratio > 0.0) {
-    finding.sentence = fmt::format("positive away from the sensor: the Doppler moves it as it moves {}", source);
+    finding.sentence =
+        fmt::format("positive away from the sensor: the ego velocity from Doppler agrees with that {}", source);
   } else if (reference->turned_deg > 180.0 - kAlong_deg && reference->ratio < 0.0) {
     finding.verdict = Verdict::kWrong;
     finding.sentence =
-        fmt::format("positive TOWARDS the sensor: the Doppler moves it by {:.1f} m/s against the way it moves {}",
+        fmt::format("positive TOWARDS the sensor: the ego velocity from Doppler, {:.1f} m/s, is opposite to that {}",
                     reference->doppler_speed_mps, source);
     if (reference == &evidence.truth) {
       finding.sentence +=
@@ -78,7 +79,7 @@ Finding doppler_sign(const Evidence& evidence) {
   } else {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = fmt::format(
-        "positive away from the sensor is assumed: the Doppler moves it {:.0f} degrees off the way it moves {}",
+        "positive away from the sensor is assumed: the ego velocity from Doppler is {:.0f} degrees off that {}",
         reference->turned_deg, source);
   }
   return finding;

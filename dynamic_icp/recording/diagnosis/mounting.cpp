@@ -100,7 +100,7 @@ Finding mounting(const Evidence& evidence) {
       std::abs(yaw_deg) > 135.0
           ? fmt::format("the sensor looks back, or the vehicle does not drive ahead ({:.0f} degrees from x)", ahead_deg)
           : fmt::format(
-                "the sensor is turned: the direction of travel is {:.0f} degrees to the left of its x axis and "
+                "the sensor is rotated: the direction of travel is {:.0f} degrees to the left of its x axis and "
                 "{:.0f} degrees above",
                 yaw_deg, pitch_deg);
   if (ahead_deg > (is_straight ? kOffAhead_deg : kOffAheadInTurns_deg)) {
@@ -110,7 +110,7 @@ Finding mounting(const Evidence& evidence) {
     finding.sentence = fmt::format("{:.0f} degrees off in turns: the sensor swings out there", ahead_deg);
   } else {
     finding.verdict = Verdict::kOk;
-    finding.sentence = fmt::format("the sensor moves along its x axis to {:.1f} degrees", ahead_deg);
+    finding.sentence = fmt::format("direction of travel within {:.1f} degrees of the sensor's x axis", ahead_deg);
   }
   return finding;
 }
