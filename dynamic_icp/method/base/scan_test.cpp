@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -86,7 +87,7 @@ TEST(Scan, DropsAndCountsWhatNoSensorMeasures) {
 
 TEST(Scan, TransformedMovesPointsAndTurnsLinesOfSight) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = Eigen::AngleAxisd(0.5 * EIGEN_PI, Eigen::Vector3d::UnitZ()).toRotationMatrix();
+  T.linear() = Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitZ()).toRotationMatrix();
   T.translation() = Eigen::Vector3d(0.0, 0.0, 7.0);
   const Scan scan = Scan::from_raw(three_points());
   const Scan moved = scan.transformed(T);

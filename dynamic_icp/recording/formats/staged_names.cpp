@@ -5,6 +5,8 @@
 #include <array>
 #include <utility>
 
+#include <fmt/format.h>
+
 namespace dynamic_icp::formats {
 namespace {
 
@@ -33,7 +35,7 @@ StagedNames::StagedNames(fs::path folder, std::string prefix)
     : folder_(std::move(folder)), prefix_(std::move(prefix)) {}
 
 StagedNames StagedNames::beside(const fs::path& folder) {
-  return {folder.parent_path(), "." + folder.filename().string()};
+  return {folder.parent_path(), fmt::format(".{}", folder.filename().string())};
 }
 
 StagedNames StagedNames::within(const fs::path& folder) { return {folder, kPrefixWithin}; }
