@@ -141,8 +141,8 @@ void print_points(const PointsSeen& seen) {
   }
   fmt::print("points       {} to {} a scan, median {} ({} scans sampled)\n", seen.sizes.front(), seen.sizes.back(),
              seen.sizes[seen.sizes.size() / 2], seen.scans);
-  fmt::print("unusable     {} not finite, {} implausible, {} at the origin\n", seen.dropped.non_finite,
-             seen.dropped.implausible, seen.dropped.zero_range);
+  fmt::print("unusable     {} not finite, {} implausible, {} at the origin, {} flagged by the sensor\n",
+             seen.dropped.non_finite, seen.dropped.implausible, seen.dropped.zero_range, seen.dropped.flagged);
   if (seen.any()) {
     fmt::print("range        {:.1f} to {:.1f} m\n", seen.nearest_m, seen.farthest_m);
     fmt::print("Doppler      {:.1f} to {:.1f} m/s\n", seen.slowest_mps, seen.fastest_mps);
@@ -216,6 +216,7 @@ Json points_json(const PointsSeen& seen) {
                {"not_finite", seen.dropped.non_finite},
                {"implausible", seen.dropped.implausible},
                {"at_the_origin", seen.dropped.zero_range},
+               {"flagged", seen.dropped.flagged},
                {"range_m", nullptr},
                {"doppler_mps", nullptr},
                {"times", seen.times}};

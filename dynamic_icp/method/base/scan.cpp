@@ -4,34 +4,22 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
-#include <string>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
 
 namespace dynamic_icp {
 namespace {
 
-void check_lengths(const RawScan& raw) {
-  const std::size_t n = raw.points.size();
-  const bool matching = raw.doppler.size() == n && (raw.times.empty() || raw.times.size() == n) &&
-                        (raw.directions.empty() || raw.directions.size() == n);
-  if (!matching) {
-    throw std::invalid_argument("scan columns differ in length: " + std::to_string(n) + " points, " +
-                                std::to_string(raw.doppler.size()) + " Doppler values, " +
-                                std::to_string(raw.times.size()) + " times, " + std::to_string(raw.directions.size()) +
-                                " directions");
-  }
-}
-
 constexpr std::size_t kBlock = 4096;
 
-enum class Verdict { kKept, kNonFinite, kImplausible, kZeroRange, kOutOfRange };
+enum class Verdict { kKept, kNonFinite, kImplausible, kZeroRange, kOutOfRange, kFlagged };
 
 /// What becomes of one record.
 struct Record {
   Verdict verdict;
+  Eigen::Vector3d point;
   Eigen::Vector3d direction;
+  double doppler;
 };
 
 /// Its square is neither so small nor so large that digits are lost; false for NaN.
@@ -43,83 +31,118 @@ double length_of(const Eigen::Vector3d& line_of_sight) {
   return is_ordinary(squared) ? std::sqrt(squared) : line_of_sight.stableNorm();
 }
 
-/// What a record that exceeds some limit is counted as.
-Verdict beyond_limits(const RawScan& raw, std::size_t i, double length) {
-  const bool finite = raw.points[i].allFinite() && std::isfinite(raw.doppler[i]) && std::isfinite(length) &&
-                      (raw.times.empty() || std::isfinite(raw.times[i]));
-  return finite ? Verdict::kImplausible : Verdict::kNonFinite;
+/// From the sensor that measured the point to the point, any length.
+Eigen::Vector3d line_of_sight(const ScanView& raw, std::size_t i, const Eigen::Vector3d& point) {
+  if (!raw.directions.empty()) {
+    return raw.directions[i];
+  }
+  return raw.mountings.empty() ? point : Eigen::Vector3d(point - raw.mountings[raw.sensor[i]].translation());
 }
 
-Record evaluate(const RawScan& raw, std::size_t i, const Scan::RangeLimits& limits, const TimeWindow& window) {
-  const Eigen::Vector3d& point = raw.points[i];
-  const Eigen::Vector3d& line_of_sight = raw.directions.empty() ? point : raw.directions[i];
-  const double length = length_of(line_of_sight);
+Record evaluate(const ScanView& raw, std::size_t i, const Scan::RangeLimits& limits, const TimeWindow& window) {
+  const Eigen::Vector3d point = raw.points[i];
+  const Eigen::Vector3d sight = line_of_sight(raw, i, point);
+  const double doppler = raw.doppler[i];
+  const double length = length_of(sight);
+  const auto record = [&](Verdict verdict) { return Record{verdict, point, sight / length, doppler}; };
+  if (!raw.is_unusable.empty() && raw.is_unusable[i] != 0) {
+    return record(Verdict::kFlagged);
+  }
   const bool plausible = std::abs(point.x()) <= kMaxCoordinate_m && std::abs(point.y()) <= kMaxCoordinate_m &&
-                         std::abs(point.z()) <= kMaxCoordinate_m && std::abs(raw.doppler[i]) <= kMaxDoppler_mps &&
+                         std::abs(point.z()) <= kMaxCoordinate_m && std::abs(doppler) <= kMaxDoppler_mps &&
                          std::isfinite(length) && (raw.times.empty() || window.contains(raw.times[i]));
   if (!plausible) {
-    return {beyond_limits(raw, i, length), line_of_sight};
+    const bool finite = point.allFinite() && std::isfinite(doppler) && std::isfinite(length) &&
+                        (raw.times.empty() || std::isfinite(raw.times[i]));
+    return record(finite ? Verdict::kImplausible : Verdict::kNonFinite);
   }
   if (length < 1e-12 || point.isZero(0.0)) {
-    return {Verdict::kZeroRange, line_of_sight};
+    return record(Verdict::kZeroRange);
   }
-  const double range = raw.directions.empty() ? length : point.norm();
-  const bool in_range = range >= limits.min_m && range <= limits.max_m;
-  return {in_range ? Verdict::kKept : Verdict::kOutOfRange, line_of_sight / length};
+  const bool from_origin = raw.directions.empty() && raw.mountings.empty();
+  const double range = from_origin ? length : point.norm();
+  return record(range >= limits.min_m && range <= limits.max_m ? Verdict::kKept : Verdict::kOutOfRange);
+}
+
+void count(Verdict verdict, Scan::Dropped& dropped) {
+  dropped.non_finite += verdict == Verdict::kNonFinite ? 1 : 0;
+  dropped.implausible += verdict == Verdict::kImplausible ? 1 : 0;
+  dropped.zero_range += verdict == Verdict::kZeroRange ? 1 : 0;
+  dropped.out_of_range += verdict == Verdict::kOutOfRange ? 1 : 0;
+  dropped.flagged += verdict == Verdict::kFlagged ? 1 : 0;
+}
+
+/// Moves rows of a column to a place before them; an empty column stays empty.
+template <class Value>
+void move_within(std::vector<Value>& column, std::size_t from, std::size_t to, std::size_t count) {
+  if (from != to && !column.empty()) {
+    const auto first = column.begin() + static_cast<std::ptrdiff_t>(from);
+    std::copy(first, first + static_cast<std::ptrdiff_t>(count), column.begin() + static_cast<std::ptrdiff_t>(to));
+  }
+}
+
+/// Copies a value of an optional column.
+template <class Value>
+void copy_value(std::span<const Value> from, std::size_t i, std::vector<Value>& to, std::size_t row) {
+  if (!from.empty()) {
+    to[row] = from[i];
+  }
 }
 
 }  // namespace
 
-Scan Scan::from_raw(const RawScan& raw, Dropped* dropped) { return from_raw(raw, {}, Workers(1), dropped); }
+Scan Scan::from_raw(const ScanView& raw, Dropped* dropped) { return from_raw(raw, {}, Workers(1), dropped); }
 
-Scan Scan::from_raw(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
+Scan Scan::from_raw(const ScanView& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
   Scan scan;
   scan.assign(raw, limits, workers, dropped);
   return scan;
 }
 
-void Scan::assign(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
-  check_lengths(raw);
+void Scan::assign(const ScanView& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped) {
+  check_columns(raw);
   const TimeWindow window = plausible_times(raw.times);
   const std::size_t n = raw.points.size();
   stamp_ = raw.stamp;
   doppler_kind_ = raw.doppler_kind;
-  resize(n, !raw.times.empty());
+  mountings_.assign(raw.mountings.begin(), raw.mountings.end());
+  resize(n, raw);
   // Each block fills the beginning of its own rows; gaps, which are rare, are closed afterwards.
   std::vector<Dropped> counts(Workers::block_count(n, kBlock));
   workers.for_blocks(n, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    Dropped& count = counts[block];
     std::size_t row = begin;
     for (std::size_t i = begin; i < end; ++i) {
       const Record record = evaluate(raw, i, limits, window);
       if (record.verdict != Verdict::kKept) {
-        count.non_finite += record.verdict == Verdict::kNonFinite ? 1 : 0;
-        count.implausible += record.verdict == Verdict::kImplausible ? 1 : 0;
-        count.zero_range += record.verdict == Verdict::kZeroRange ? 1 : 0;
-        count.out_of_range += record.verdict == Verdict::kOutOfRange ? 1 : 0;
+        count(record.verdict, counts[block]);
         continue;
       }
-      points_[row] = raw.points[i];
+      points_[row] = record.point;
       directions_[row] = record.direction;
-      doppler_[row] = raw.doppler[i];
+      doppler_[row] = record.doppler;
       if (!raw.times.empty()) {
         times_[row] = raw.times[i];
       }
       records_[row] = static_cast<std::uint32_t>(i);
+      copy_value(raw.sensor, i, channels_.sensor, row);
+      copy_value(raw.line, i, channels_.line, row);
+      copy_value(raw.face, i, channels_.face, row);
+      copy_value(raw.intensity, i, channels_.intensity, row);
+      copy_value(raw.return_number, i, channels_.return_number, row);
       ++row;
     }
   });
   Dropped sum;
   std::size_t rows = 0;
   for (std::size_t block = 0; block < counts.size(); ++block) {
-    const Dropped& count = counts[block];
+    const Dropped& lost = counts[block];
     const std::size_t begin = block * kBlock;
-    const std::size_t kept = std::min(n, begin + kBlock) - begin - count.total();
-    move_rows(begin, rows, kept);
+    const std::size_t kept = std::min(n, begin + kBlock) - begin - lost.total();
+    for_each_column([&](auto& column) { move_within(column, begin, rows, kept); });
     rows += kept;
-    sum += count;
+    sum += lost;
   }
-  resize(rows, !raw.times.empty());
+  for_each_column([&](auto& column) { column.resize(column.empty() ? 0 : rows); });
   if (dropped != nullptr) {
     *dropped = sum;
   }
@@ -130,32 +153,35 @@ Scan::Dropped& Scan::Dropped::operator+=(const Dropped& other) {
   implausible += other.implausible;
   zero_range += other.zero_range;
   out_of_range += other.out_of_range;
+  flagged += other.flagged;
   return *this;
 }
 
-void Scan::resize(std::size_t rows, bool with_times) {
+template <class Visit>
+void Scan::for_each_column(Visit visit) {
+  visit(points_);
+  visit(directions_);
+  visit(doppler_);
+  visit(times_);
+  visit(records_);
+  visit(channels_.sensor);
+  visit(channels_.line);
+  visit(channels_.face);
+  visit(channels_.intensity);
+  visit(channels_.return_number);
+}
+
+void Scan::resize(std::size_t rows, const ScanView& raw) {
   points_.resize(rows);
   directions_.resize(rows);
   doppler_.resize(rows);
-  times_.resize(with_times ? rows : 0);
+  times_.resize(raw.times.empty() ? 0 : rows);
   records_.resize(rows);
-}
-
-/// Moves rows to a place before them.
-void Scan::move_rows(std::size_t from, std::size_t to, std::size_t count) {
-  const auto move = [&](auto& column) {
-    const auto first = column.begin() + static_cast<std::ptrdiff_t>(from);
-    std::copy(first, first + static_cast<std::ptrdiff_t>(count), column.begin() + static_cast<std::ptrdiff_t>(to));
-  };
-  if (from != to) {
-    move(points_);
-    move(directions_);
-    move(doppler_);
-    if (has_times()) {
-      move(times_);
-    }
-    move(records_);
-  }
+  channels_.sensor.resize(raw.sensor.empty() ? 0 : rows);
+  channels_.line.resize(raw.line.empty() ? 0 : rows);
+  channels_.face.resize(raw.face.empty() ? 0 : rows);
+  channels_.intensity.resize(raw.intensity.empty() ? 0 : rows);
+  channels_.return_number.resize(raw.return_number.empty() ? 0 : rows);
 }
 
 Scan Scan::transformed(const Eigen::Isometry3d& T_target_this) const {
@@ -165,6 +191,9 @@ Scan Scan::transformed(const Eigen::Isometry3d& T_target_this) const {
     result.points_[row] = T_target_this * points_[row];
     result.directions_[row] = direction / length_of(direction);
   }
+  for (Eigen::Isometry3d& T_scan_sensor : result.mountings_) {
+    T_scan_sensor = T_target_this * T_scan_sensor;
+  }
   return result;
 }
 
@@ -172,20 +201,26 @@ Scan Scan::select(std::span<const std::uint32_t> rows) const {
   Scan result;
   result.stamp_ = stamp_;
   result.doppler_kind_ = doppler_kind_;
-  result.points_.reserve(rows.size());
-  result.directions_.reserve(rows.size());
-  result.doppler_.reserve(rows.size());
-  result.times_.reserve(has_times() ? rows.size() : 0);
-  result.records_.reserve(rows.size());
-  for (const std::uint32_t row : rows) {
-    result.points_.push_back(points_[row]);
-    result.directions_.push_back(directions_[row]);
-    result.doppler_.push_back(doppler_[row]);
-    if (has_times()) {
-      result.times_.push_back(times_[row]);
+  result.mountings_ = mountings_;
+  const auto select = [&](const auto& from, auto& to) {
+    if (from.empty()) {
+      return;
     }
-    result.records_.push_back(records_[row]);
-  }
+    to.reserve(rows.size());
+    for (const std::uint32_t row : rows) {
+      to.push_back(from[row]);
+    }
+  };
+  select(points_, result.points_);
+  select(directions_, result.directions_);
+  select(doppler_, result.doppler_);
+  select(times_, result.times_);
+  select(records_, result.records_);
+  select(channels_.sensor, result.channels_.sensor);
+  select(channels_.line, result.channels_.line);
+  select(channels_.face, result.channels_.face);
+  select(channels_.intensity, result.channels_.intensity);
+  select(channels_.return_number, result.channels_.return_number);
   return result;
 }
 

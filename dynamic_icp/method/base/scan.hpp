@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <limits>
 #include <span>
-#include <string>
 #include <vector>
 
 #include <Eigen/Core>
@@ -14,26 +13,10 @@
 
 #include "dynamic_icp/method/base/eigen_layout.hpp"
 #include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/raw_scan.hpp"
 #include "dynamic_icp/method/base/stamp.hpp"
 
 namespace dynamic_icp {
-
-/// What the Doppler of a recording says.
-enum class DopplerKind : std::uint8_t {
-  kRelative,    ///< as measured: the sensor's own motion is in it, s = u.(v_object - v_sensor)
-  kCompensated  ///< the sensor's own motion was taken out before, s = u.v_object
-};
-
-/// A scan as a reader hands it over: columns of equal length, nothing checked yet.
-struct RawScan {
-  Stamp stamp;                              ///< when the scan begins
-  std::vector<Eigen::Vector3d> points;      ///< m, sensor frame
-  std::vector<double> doppler;              ///< m/s, range rate, positive away from the sensor
-  std::vector<double> times;                ///< s after `stamp`, per point; empty where the data has none
-  std::vector<Eigen::Vector3d> directions;  ///< lines of sight where they are not points/|points|; else empty
-  DopplerKind doppler_kind = DopplerKind::kRelative;
-  std::string warning;  ///< what the reader found odd but could live with; empty: nothing
-};
 
 /// The set P_t of the paper, Eq. (1): points p_i, lines of sight u_i and Doppler velocities s_i of one scan, with the
 /// time each was measured and the record of the file it came from.
@@ -46,14 +29,15 @@ struct RawScan {
 /// rows (`times` may be empty instead).
 class Scan {
  public:
-  /// Why records of a RawScan did not become rows of the Scan.
+  /// Why records of a scan as read did not become rows of the Scan.
   struct Dropped {
     std::size_t non_finite = 0;    ///< NaN or infinity in a coordinate, the Doppler, the time or the direction
     std::size_t implausible = 0;   ///< finite, but beyond what a measurement can be (scan_limits.hpp)
     std::size_t zero_range = 0;    ///< at the sensor's origin: no line of sight
     std::size_t out_of_range = 0;  ///< nearer or farther than the limits
+    std::size_t flagged = 0;       ///< the sensor itself says that they are no measurements
 
-    [[nodiscard]] std::size_t total() const { return non_finite + implausible + zero_range + out_of_range; }
+    [[nodiscard]] std::size_t total() const { return non_finite + implausible + zero_range + out_of_range + flagged; }
     Dropped& operator+=(const Dropped& other);
   };
 
@@ -66,15 +50,15 @@ class Scan {
   Scan() = default;
 
   /// Takes over the records that are finite, plausible and away from the origin and counts the others in `dropped` (if
-  /// given). Throws std::invalid_argument when the columns differ in length.
-  static Scan from_raw(const RawScan& raw, Dropped* dropped = nullptr);
+  /// given). Throws std::invalid_argument when the columns differ in length (check_columns).
+  static Scan from_raw(const ScanView& raw, Dropped* dropped = nullptr);
 
   /// The same for what is within the limits, by several threads.
-  static Scan from_raw(const RawScan& raw, const RangeLimits& limits, const Workers& workers,
+  static Scan from_raw(const ScanView& raw, const RangeLimits& limits, const Workers& workers,
                        Dropped* dropped = nullptr);
 
   /// The same in the place of what this scan was, whose memory is used again.
-  void assign(const RawScan& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped = nullptr);
+  void assign(const ScanView& raw, const RangeLimits& limits, const Workers& workers, Dropped* dropped = nullptr);
 
   [[nodiscard]] std::size_t size() const { return points_.size(); }
   [[nodiscard]] bool empty() const { return points_.empty(); }
@@ -87,19 +71,24 @@ class Scan {
   [[nodiscard]] const std::vector<double>& doppler() const { return doppler_; }                 ///< m/s, + away
   [[nodiscard]] const std::vector<double>& times() const { return times_; }                     ///< s after stamp
   [[nodiscard]] const std::vector<std::uint32_t>& records() const { return records_; }  ///< row of the scan as read
+  [[nodiscard]] const Channels& channels() const { return channels_; }
+
+  /// T_scan_sensor of the sensors of a rig, by `channels().sensor`; empty: one sensor at the origin.
+  [[nodiscard]] const std::vector<Eigen::Isometry3d>& mountings() const { return mountings_; }
 
   /// The rows named by `rows`, in that order.
   [[nodiscard]] Scan select(std::span<const std::uint32_t> rows) const;
 
-  /// The same rows seen from another frame: points and lines of sight moved by T_target_this, Doppler and times kept.
+  /// The same rows seen from another frame: points, lines of sight and mountings moved by T_target_this, the rest kept.
   [[nodiscard]] Scan transformed(const Eigen::Isometry3d& T_target_this) const;
 
   /// Moves the point of one row by `displacement` (m, sensor frame).
   void displace(std::size_t row, const Eigen::Vector3d& displacement) { points_[row] += displacement; }
 
  private:
-  void resize(std::size_t rows, bool with_times);
-  void move_rows(std::size_t from, std::size_t to, std::size_t count);
+  template <class Visit>
+  void for_each_column(Visit visit);
+  void resize(std::size_t rows, const ScanView& raw);
 
   Stamp stamp_;
   DopplerKind doppler_kind_ = DopplerKind::kRelative;
@@ -108,6 +97,8 @@ class Scan {
   std::vector<double> doppler_;
   std::vector<double> times_;
   std::vector<std::uint32_t> records_;
+  Channels channels_;
+  std::vector<Eigen::Isometry3d> mountings_;
 };
 
 }  // namespace dynamic_icp

@@ -18,7 +18,7 @@ constexpr double kMinMargin_s = 0.1;
 
 }  // namespace
 
-TimeWindow plausible_times(std::span<const double> times_s) {
+TimeWindow plausible_times(const Column& times_s) {
   std::vector<double> sample;
   const std::size_t stride = (times_s.size() + kMaxSamples - 1) / kMaxSamples;
   for (std::size_t i = 0; i < times_s.size(); i += stride) {

@@ -3,7 +3,8 @@
 #pragma once
 
 #include <limits>
-#include <span>
+
+#include "dynamic_icp/method/base/raw_scan.hpp"
 
 // What a measurement may be. `Scan` keeps what lies within these limits and counts the rest as implausible, so that no
 // later stage has to guard its squares, products and conversions to integers. They are far beyond any sensor: what
@@ -34,6 +35,6 @@ struct TimeWindow {
 /// The window that holds the middle nine tenths of the times, and on either side as much again, at least 0.1 s: wide
 /// enough for points that crowd in a part of the scan, too narrow for a damaged time to change the duration of the scan
 /// much. It is found from at most 2,000 of the times; those that are not finite or beyond kMaxPointTime_s do not count.
-TimeWindow plausible_times(std::span<const double> times_s);
+TimeWindow plausible_times(const Column& times_s);
 
 }  // namespace dynamic_icp

@@ -85,6 +85,59 @@ TEST(Scan, DropsAndCountsWhatNoSensorMeasures) {
   EXPECT_EQ(dropped.total(), 7u);
 }
 
+TEST(Scan, DropsAndCountsWhatTheSensorFlags) {
+  RawScan raw = three_points();
+  raw.is_unusable = {0, 1, 0};
+  raw.points[2].x() = kNan;
+  Scan::Dropped dropped;
+  const Scan scan = Scan::from_raw(raw, &dropped);
+  EXPECT_EQ(dropped.flagged, 1u);
+  EXPECT_EQ(dropped.non_finite, 1u);
+  EXPECT_EQ(dropped.total(), 2u);
+  EXPECT_EQ(scan.records(), (std::vector<std::uint32_t>{0}));
+}
+
+TEST(Scan, ChannelsStayWithTheirPoints) {
+  RawScan raw = three_points();
+  raw.channels = {{0, 1, 0}, {5, 6, 700}, {1, 2, 3}, {0.5F, 0.25F, 0.125F}, {0, 1, 2}};
+  raw.points[0].setZero();
+  const Scan scan = Scan::from_raw(raw);
+  ASSERT_EQ(scan.size(), 2u);
+  EXPECT_EQ(scan.channels().line, (std::vector<std::uint16_t>{6, 700}));
+  EXPECT_EQ(scan.channels().sensor, (std::vector<std::uint8_t>{1, 0}));
+  const Scan selected = scan.select(std::vector<std::uint32_t>{1});
+  EXPECT_EQ(selected.channels().face, (std::vector<std::uint8_t>{3}));
+  EXPECT_EQ(selected.channels().intensity, (std::vector<float>{0.125F}));
+  EXPECT_EQ(selected.channels().return_number, (std::vector<std::uint8_t>{2}));
+  EXPECT_TRUE(Scan::from_raw(three_points()).channels().line.empty());
+}
+
+TEST(Scan, AScanUsedAgainForgetsTheChannelsOfTheLast) {
+  RawScan raw = three_points();
+  raw.channels.line = {1, 2, 3};
+  raw.channels.sensor = {0, 0, 0};
+  raw.mountings = {Eigen::Isometry3d::Identity()};
+  Scan scan = Scan::from_raw(raw);
+  scan.assign(three_points(), {}, Workers(1));
+  EXPECT_TRUE(scan.channels().line.empty());
+  EXPECT_TRUE(scan.channels().sensor.empty());
+  EXPECT_TRUE(scan.mountings().empty());
+}
+
+TEST(Scan, LinesOfSightBeginAtTheSensorThatMeasured) {
+  RawScan raw = three_points();
+  raw.channels.sensor = {0, 1, 1};
+  raw.mountings.assign(2, Eigen::Isometry3d::Identity());
+  raw.mountings[0].translation() = Eigen::Vector3d(3.0, 0.0, 0.0);
+  raw.mountings[1].translation() = Eigen::Vector3d(1.0, 2.0, 0.0);
+  const Scan scan = Scan::from_raw(raw);
+  EXPECT_TRUE(scan.directions()[0].isApprox(Eigen::Vector3d::UnitY(), 1e-15));
+  EXPECT_TRUE(scan.directions()[2].isApprox(Eigen::Vector3d::UnitZ(), 1e-15));
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.translation() = Eigen::Vector3d(0.0, 0.0, 7.0);
+  EXPECT_EQ(scan.transformed(T).mountings()[1].translation(), Eigen::Vector3d(1.0, 2.0, 7.0));
+}
+
 TEST(Scan, TransformedMovesPointsAndTurnsLinesOfSight) {
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = Eigen::AngleAxisd(0.5 * std::numbers::pi, Eigen::Vector3d::UnitZ()).toRotationMatrix();

@@ -11,7 +11,7 @@
 namespace dynamic_icp::motion {
 namespace {
 
-bool uses_declared_times(const RawScan& raw, const SweepConfig& config) {
+bool uses_declared_times(const ScanView& raw, const SweepConfig& config) {
   return raw.times.empty() && config.declared_duration_s > 0.0;
 }
 
@@ -27,13 +27,13 @@ ConfigFields fields(SweepConfig& config) {
   };
 }
 
-std::vector<double> declared_times(std::span<const Eigen::Vector3d> points, const SweepConfig& config) {
+std::vector<double> declared_times(const VectorColumns& points, const SweepConfig& config) {
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   std::vector<double> times;
   times.reserve(points.size());
-  for (const Eigen::Vector3d& point : points) {
-    const double azimuth = std::atan2(point.y(), point.x());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double azimuth = std::atan2(points.y[i], points.x[i]);
     times.push_back(azimuth);
     if (std::isfinite(azimuth)) {
       low = std::min(low, azimuth);
@@ -48,13 +48,14 @@ std::vector<double> declared_times(std::span<const Eigen::Vector3d> points, cons
   return times;
 }
 
-SweepReport sweep_in_data(const RawScan& raw) {
+SweepReport sweep_in_data(const ScanView& raw) {
   SweepReport report;
   report.times = raw.times.empty() ? SweepTimes::kNone : SweepTimes::kInData;
   const TimeWindow window = plausible_times(raw.times);
   std::optional<double> low;
   std::optional<double> high;
-  for (const double time_s : raw.times) {
+  for (std::size_t i = 0; i < raw.times.size(); ++i) {
+    const double time_s = raw.times[i];
     if (window.contains(time_s)) {
       low = std::min(low.value_or(time_s), time_s);
       high = std::max(high.value_or(time_s), time_s);
@@ -66,7 +67,7 @@ SweepReport sweep_in_data(const RawScan& raw) {
   return report;
 }
 
-SweepReport sweep_as_configured(const RawScan& raw, const SweepConfig& config) {
+SweepReport sweep_as_configured(const ScanView& raw, const SweepConfig& config) {
   SweepReport report = sweep_in_data(raw);
   if (uses_declared_times(raw, config)) {
     report.times = SweepTimes::kDeclared;
@@ -76,18 +77,15 @@ SweepReport sweep_as_configured(const RawScan& raw, const SweepConfig& config) {
   return report;
 }
 
-std::optional<RawScan> retimed(const RawScan& raw, const SweepConfig& config) {
-  if (!config.deskew && !raw.times.empty()) {
-    RawScan timeless = raw;
-    timeless.times.clear();
-    return timeless;
+ScanView retimed(const ScanView& raw, const SweepConfig& config, std::vector<double>& times) {
+  ScanView timed = raw;
+  if (!config.deskew) {
+    timed.times = {};
+  } else if (uses_declared_times(raw, config)) {
+    times = declared_times(raw.points, config);
+    timed.times = times;
   }
-  if (config.deskew && uses_declared_times(raw, config)) {
-    RawScan timed = raw;
-    timed.times = declared_times(raw.points, config);
-    return timed;
-  }
-  return std::nullopt;
+  return timed;
 }
 
 }  // namespace dynamic_icp::motion

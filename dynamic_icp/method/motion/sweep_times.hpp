@@ -3,10 +3,7 @@
 #pragma once
 
 #include <optional>
-#include <span>
 #include <vector>
-
-#include <Eigen/Core>
 
 #include "dynamic_icp/method/base/config_field.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
@@ -25,7 +22,7 @@ ConfigFields fields(SweepConfig& config);
 /// Times (s after the stamp) of points of a scan whose columns were measured one after the other at an even rate: the
 /// azimuth atan2(y, x) from one end of the scan to the other is the time. The x axis must look into the scan, so that
 /// it does not reach across the back.
-std::vector<double> declared_times(std::span<const Eigen::Vector3d> points, const SweepConfig& config);
+std::vector<double> declared_times(const VectorColumns& points, const SweepConfig& config);
 
 /// Where the times of the points of a scan come from.
 enum class SweepTimes { kNone, kInData, kDeclared };
@@ -38,13 +35,13 @@ struct SweepReport {
 };
 
 /// What the scan itself says; nothing is done about it yet. Times that cannot be those of the scan do not count.
-SweepReport sweep_in_data(const RawScan& raw);
+SweepReport sweep_in_data(const ScanView& raw);
 
 /// What a method finds and does that undoes sweeps as configured.
-SweepReport sweep_as_configured(const RawScan& raw, const SweepConfig& config);
+SweepReport sweep_as_configured(const ScanView& raw, const SweepConfig& config);
 
-/// The scan with the times that count, where these are not its own: declared ones, or none when no sweep is deskewed.
-/// Nothing where the scan can be used as it is.
-std::optional<RawScan> retimed(const RawScan& raw, const SweepConfig& config);
+/// The scan with the times that count: its own, declared ones, which are put into `times`, or none when no sweep is
+/// deskewed. Refers to `raw` and `times`.
+ScanView retimed(const ScanView& raw, const SweepConfig& config, std::vector<double>& times);
 
 }  // namespace dynamic_icp::motion

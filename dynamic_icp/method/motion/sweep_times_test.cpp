@@ -68,30 +68,34 @@ TEST(SweepReport, TakesTheTimesInTheDataAsTheyAre) {
   EXPECT_EQ(report.times, SweepTimes::kInData);
   EXPECT_NEAR(report.duration_s.value(), 0.08, 1e-12);
   EXPECT_TRUE(report.deskewed);
-  EXPECT_FALSE(retimed(raw, {}).has_value()) << "no copy without need";
+  std::vector<double> times;
+  EXPECT_EQ(retimed(raw, {}, times).times[1], 0.09);
+  EXPECT_TRUE(times.empty());
   EXPECT_FALSE(sweep_in_data(raw).deskewed) << "the data alone do nothing";
 }
 
 TEST(SweepReport, DeclaredTimesCountOnlyWhereThereAreNone) {
   SweepConfig config;
   config.declared_duration_s = 0.1;
-  const auto declared = retimed(two_points({}), config);
-  ASSERT_TRUE(declared.has_value());
-  EXPECT_NEAR(declared->times[0], 0.0, 1e-12);
-  EXPECT_NEAR(declared->times[1], 0.1, 1e-12);
-  EXPECT_EQ(sweep_as_configured(two_points({}), config).times, SweepTimes::kDeclared);
-  EXPECT_FALSE(retimed(two_points({0.0, 0.05}), config).has_value());
-  EXPECT_EQ(sweep_as_configured(two_points({0.0, 0.05}), config).times, SweepTimes::kInData);
+  const RawScan without = two_points({});
+  std::vector<double> times;
+  const ScanView declared = retimed(without, config, times);
+  ASSERT_EQ(declared.times.size(), 2u);
+  EXPECT_NEAR(declared.times[0], 0.0, 1e-12);
+  EXPECT_NEAR(declared.times[1], 0.1, 1e-12);
+  EXPECT_EQ(sweep_as_configured(without, config).times, SweepTimes::kDeclared);
+  const RawScan with = two_points({0.0, 0.05});
+  EXPECT_EQ(retimed(with, config, times).times[1], 0.05);
+  EXPECT_EQ(sweep_as_configured(with, config).times, SweepTimes::kInData);
 }
 
 TEST(SweepReport, SwitchedOffDropsTheTimesAndSaysSo) {
   SweepConfig off;
   off.deskew = false;
-  const auto timeless = retimed(two_points({0.0, 0.05}), off);
-  ASSERT_TRUE(timeless.has_value());
-  EXPECT_TRUE(timeless->times.empty());
-  EXPECT_FALSE(sweep_as_configured(two_points({0.0, 0.05}), off).deskewed);
-  EXPECT_FALSE(retimed(two_points({}), off).has_value());
+  const RawScan raw = two_points({0.0, 0.05});
+  std::vector<double> times;
+  EXPECT_TRUE(retimed(raw, off, times).times.empty());
+  EXPECT_FALSE(sweep_as_configured(raw, off).deskewed);
 }
 
 TEST(SweepReport, WithoutTimesThereIsNoSweep) {

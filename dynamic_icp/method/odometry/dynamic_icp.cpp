@@ -33,7 +33,7 @@ std::vector<std::string> DynamicIcp::assumptions() const {
 // The system overview of the paper for one scan. Its four modules for the pair (last scan, this scan) are spread over
 // two calls: (i) ego motion and (ii) clustering of a scan run as soon as it is aligned, because the alignment gives the
 // prior of its velocity; (iii) prediction and (iv) matching run when the next scan is there and the time is known.
-Frame DynamicIcp::process(const RawScan& raw) {
+Frame DynamicIcp::process(const ScanView& raw) {
   stream_.check_order(raw.stamp);
   Frame frame;
   StageClock clock(frame.times);

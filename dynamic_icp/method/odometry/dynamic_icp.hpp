@@ -34,7 +34,7 @@ class DynamicIcp final : public Odometry {
   /// Takes the next scan. Throws DataError when its stamp is not later than that of the previous scan; the state is
   /// unchanged then. A scan that cannot be aligned is no error: its frame says so and carries the predicted motion, and
   /// the next usable scan is aligned to the last usable one.
-  Frame process(const RawScan& raw) override;
+  Frame process(const ScanView& raw) override;
 
   [[nodiscard]] std::vector<std::string> assumptions() const override;
 

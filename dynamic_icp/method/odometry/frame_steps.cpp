@@ -6,7 +6,7 @@
 
 namespace dynamic_icp::odometry {
 
-void assign(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame) {
+void assign(const ScanView& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame) {
   const Scan::RangeLimits limits{config.range.min_range_m, config.range.max_range_m};
   scan.assign(raw, limits, workers, &frame.dropped);  // Eq. (1)
   frame.stamp = raw.stamp;
@@ -14,7 +14,7 @@ void assign(const RawScan& raw, const PreprocessConfig& config, const Workers& w
   frame.labels.assign(frame.points, -1);
 }
 
-Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame) {
+Scan preprocess(const ScanView& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame) {
   Scan whole;
   assign(raw, config, workers, whole, frame);
   Scan scan = preprocess::voxel_grid(whole, config.voxel, workers);

@@ -19,10 +19,10 @@ const PipelineConfig& checked(const PipelineConfig& config) {
 
 /// Takes over what is finite and in range into `scan`, whose memory is used again; fills stamp, counts and `labels` (-1
 /// for all points) of the frame.
-void assign(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame);
+void assign(const ScanView& raw, const PreprocessConfig& config, const Workers& workers, Scan& scan, Frame& frame);
 
 /// Takes over the scan and thins it by the voxel grid.
-Scan preprocess(const RawScan& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame);
+Scan preprocess(const ScanView& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame);
 
 /// Whether a vehicle can make this motion in `dt_s`; false when it is not finite.
 bool is_plausible_motion(const Eigen::Isometry3d& T_target_source, double dt_s);

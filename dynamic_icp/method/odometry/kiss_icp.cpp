@@ -93,7 +93,7 @@ KissIcp::KissIcp(const KissIcpConfig& config, int threads)
       threshold_(config_.initial_threshold_m, config_.min_motion_m, config_.max_range_m),
       stream_({std::numeric_limits<double>::infinity(), config.min_points}, 0.0) {}
 
-Frame KissIcp::process(const RawScan& raw) {
+Frame KissIcp::process(const ScanView& raw) {
   stream_.check_order(raw.stamp);
   Frame frame;
   StageClock clock(frame.times);
@@ -122,7 +122,7 @@ Frame KissIcp::process(const RawScan& raw) {
 }
 
 /// Takes over what is finite, deskews by the last motion and crops the range; fills stamp, counts and labels.
-Scan KissIcp::deskewed_in_range(const RawScan& raw, Frame& frame) const {
+Scan KissIcp::deskewed_in_range(const ScanView& raw, Frame& frame) const {
   Scan scan = Scan::from_raw(raw, &frame.dropped);
   if (config_.deskew) {
     scan = motion::deskew_to_middle(scan, T_last_now_);

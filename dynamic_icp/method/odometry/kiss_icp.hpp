@@ -43,10 +43,10 @@ class KissIcp final : public Odometry {
   explicit KissIcp(const KissIcpConfig& config, int threads = 0);
 
   /// A scan that cannot be aligned stands at the predicted pose, also in the map, unless it has too few points.
-  Frame process(const RawScan& raw) override;
+  Frame process(const ScanView& raw) override;
 
  private:
-  [[nodiscard]] Scan deskewed_in_range(const RawScan& raw, Frame& frame) const;
+  [[nodiscard]] Scan deskewed_in_range(const ScanView& raw, Frame& frame) const;
   void register_to_map(const Scan& source, const Eigen::Isometry3d& T_world_predicted, Frame& frame);
   void update_map(const Scan& points, const Eigen::Isometry3d& T_world_sensor);
   void go_on_to(Frame& frame);

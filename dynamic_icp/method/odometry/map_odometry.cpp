@@ -93,7 +93,7 @@ std::vector<std::string> MapOdometry::assumptions() const {
   return expected_ == DopplerKind::kCompensated ? std::vector{compensated_doppler_note()} : std::vector<std::string>{};
 }
 
-Frame MapOdometry::process(const RawScan& raw) {
+Frame MapOdometry::process(const ScanView& raw) {
   stream_.check_order(raw.stamp);
   Frame frame;
   StageClock clock(frame.times);
@@ -135,11 +135,11 @@ Frame MapOdometry::process(const RawScan& raw) {
 }
 
 /// The scan in range, the rows that the voxel grid keeps, and its Doppler by cells.
-void MapOdometry::thin_and_sort(const RawScan& raw, Frame& frame) {
+void MapOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
   frame.sweep = motion::sweep_as_configured(raw, config_.sweep);
-  const std::optional<RawScan> timed = motion::retimed(raw, config_.sweep);
+  const ScanView timed = motion::retimed(raw, config_.sweep, memory_.times);
   const Scan& whole = memory_.whole;
-  assign(timed ? *timed : raw, config_.preprocess, workers_, memory_.whole, frame);
+  assign(timed, config_.preprocess, workers_, memory_.whole, frame);
   workers_.both(
       [&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, memory_.thinned); },
       [&] {

@@ -34,7 +34,7 @@ class MapOdometry final : public Odometry {
   /// UsageError when the configuration is out of range.
   explicit MapOdometry(const MapOdometryConfig& config, int threads = 0, DopplerKind expected = DopplerKind::kRelative);
 
-  Frame process(const RawScan& raw) override;
+  Frame process(const ScanView& raw) override;
 
   [[nodiscard]] std::vector<std::string> assumptions() const override;
 
@@ -69,6 +69,7 @@ class MapOdometry final : public Odometry {
   /// Of the scan at hand. The memory is used again for the next one: the system would clear each page of it anew.
   struct ScanMemory {
     Scan whole;                          ///< what is in range; once it is aligned, as seen at the stamp
+    std::vector<double> times;           ///< s after the stamp, where they are declared
     std::vector<std::uint32_t> thinned;  ///< the rows that the voxel grid keeps
     ego_motion::DopplerRows rows;
     std::vector<double> radial;           ///< m/s, Doppler of each point without the sensor's motion
@@ -77,7 +78,7 @@ class MapOdometry final : public Odometry {
     spatial::CellOrder sort;
   };
 
-  void thin_and_sort(const RawScan& raw, Frame& frame);
+  void thin_and_sort(const ScanView& raw, Frame& frame);
   [[nodiscard]] ScanState separate_static_points();
   [[nodiscard]] ego_motion::EgoVelocity estimate_ego(double stamp_s) const;
   void begin(const ScanState& now, const Eigen::Isometry3d& T_map_sensor);

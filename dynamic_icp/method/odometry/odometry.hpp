@@ -25,7 +25,7 @@ class Odometry {
   /// std::invalid_argument when its columns differ in length; the state is unchanged then. No number in a scan makes it
   /// throw: what cannot be a measurement is dropped and counted, and all numbers of the frame are finite. A scan that
   /// cannot be aligned is no error: its frame says so.
-  virtual Frame process(const RawScan& raw) = 0;
+  virtual Frame process(const ScanView& scan) = 0;
 
   /// What the method had to take for granted because it was not told, for all outputs; usually nothing.
   [[nodiscard]] virtual std::vector<std::string> assumptions() const { return {}; }

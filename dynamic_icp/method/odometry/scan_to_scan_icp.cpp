@@ -73,7 +73,7 @@ std::vector<std::string> ScanToScanIcp::assumptions() const {
   return sentences;
 }
 
-Frame ScanToScanIcp::process(const RawScan& raw) {
+Frame ScanToScanIcp::process(const ScanView& raw) {
   stream_.check_order(raw.stamp);
   Frame frame;
   StageClock clock(frame.times);

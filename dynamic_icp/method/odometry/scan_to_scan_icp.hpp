@@ -24,7 +24,7 @@ class ScanToScanIcp final : public Odometry {
   ScanToScanIcp(const DopplerIcpConfig& config, const SensorContext& context, int threads = 0);
   ~ScanToScanIcp() override;
 
-  Frame process(const RawScan& raw) override;
+  Frame process(const ScanView& raw) override;
   [[nodiscard]] std::vector<std::string> assumptions() const override;
 
  private:

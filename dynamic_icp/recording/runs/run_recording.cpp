@@ -61,10 +61,10 @@ void refuse_without_points(const Usability& seen, const fs::path& input) {
   }
   throw DataError(
       fmt::format("{}: none of the {} scans has enough points to work with: of {} points {} have numbers that are not "
-                  "finite, {} have numbers that no sensor measures, {} are at the origin, {} out of range, {} remain "
-                  "after thinning. The diagnosis of the recording says more",
+                  "finite, {} have numbers that no sensor measures, {} are at the origin, {} out of range, {} flagged "
+                  "as unusable by the sensor, {} remain after thinning. The diagnosis of the recording says more",
                   input.string(), seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.implausible,
-                  seen.dropped.zero_range, seen.dropped.out_of_range, seen.points_used));
+                  seen.dropped.zero_range, seen.dropped.out_of_range, seen.dropped.flagged, seen.points_used));
 }
 
 /// A run while it continues.

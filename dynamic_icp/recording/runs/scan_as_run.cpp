@@ -63,8 +63,8 @@ Scan at_stamp(const RunFiles& run, std::size_t frame, const Scan& scan,
 ScanAsRun scan_as_run(const RunFiles& run, std::size_t frame, const RawScan& raw, double max_range_m,
                       const Workers& workers) {
   const motion::SweepConfig sweep = sweep_config(run);
-  const std::optional<RawScan> retimed = motion::retimed(raw, sweep);
-  Scan measured = Scan::from_raw(retimed ? *retimed : raw, {.max_m = max_range_m}, workers);
+  std::vector<double> times;
+  Scan measured = Scan::from_raw(motion::retimed(raw, sweep, times), {.max_m = max_range_m}, workers);
   if (!sweep.deskew) {
     return {.scan = std::move(measured), .motion = std::nullopt, .is_deskewed = false};
   }
