@@ -263,8 +263,7 @@ class AevaScenesDataset final : public Dataset {
     if (found->values.size() == rows_before) {
       const std::vector<double> values = formats::column_as_doubles(array);
       found->values.insert(found->values.end(), values.begin(), values.end());
-      found->is_integer =
-          found->is_integer && array.type != formats::NpyType::kFloat32 && array.type != formats::NpyType::kFloat64;
+      found->is_integer = found->is_integer && !formats::is_float(array.type);
     }
   }
 

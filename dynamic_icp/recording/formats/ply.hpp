@@ -15,12 +15,10 @@
 
 namespace dynamic_icp::formats {
 
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
-
 /// One property of all records of an element. Every type of the format fits a double exactly.
 struct PlyColumn {
   std::string name;
-  PlyType type = PlyType::kFloat32;  ///< in the file
+  NpyType type = NpyType::kFloat32;  ///< in the file; of at most 32 bits where it is of integers
   bool is_list = false;
   std::vector<double> values;            ///< one per record; of lists one record's after the other's
   std::vector<std::size_t> list_begins;  ///< of lists only: where each record's values begin, and their end

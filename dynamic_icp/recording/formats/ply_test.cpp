@@ -55,7 +55,7 @@ TEST(Ply, ReadsAscii) {
   EXPECT_EQ(vertex.count, 2u);
   EXPECT_EQ(vertex.find("x")->values, (std::vector<double>{1.5, -2000.0}));
   EXPECT_EQ(vertex.find("red")->values, (std::vector<double>{255.0, 0.0}));
-  EXPECT_EQ(vertex.find("red")->type, PlyType::kUint8);
+  EXPECT_EQ(vertex.find("red")->type, NpyType::kUint8);
   const PlyColumn& indices = *file.find("face")->find("vertex_indices");
   EXPECT_TRUE(indices.is_list);
   EXPECT_EQ(std::vector<double>(indices.list(0).begin(), indices.list(0).end()), (std::vector<double>{0.0, 1.0, -7.0}));
@@ -202,7 +202,7 @@ TEST(PlyPoints, TheReaderFindsEveryPoint) {
   EXPECT_EQ(vertex.find("x")->values, rounded(1.25f, 1e-3f));
   EXPECT_EQ(vertex.find("y")->values, rounded(-2.0f, 4e4f));
   EXPECT_EQ(vertex.find("z")->values, rounded(0.5f, -0.1f));
-  EXPECT_EQ(vertex.find("z")->type, PlyType::kFloat32);
+  EXPECT_EQ(vertex.find("z")->type, NpyType::kFloat32);
 }
 
 TEST(PlyPoints, RefusesNumbersThatAreNotFinite) {
@@ -248,7 +248,7 @@ TEST(PlyTable, KeepsTypesAndBits) {
   EXPECT_EQ(ply_table_bytes(columns), expected);
   const PlyFile file = parse_ply(expected, "scan.ply");
   EXPECT_EQ(file.find("vertex")->find("y")->values, y);
-  EXPECT_EQ(file.find("vertex")->find("line")->type, PlyType::kUint8);
+  EXPECT_EQ(file.find("vertex")->find("line")->type, NpyType::kUint8);
   EXPECT_TRUE(std::isnan(file.find("vertex")->find("x")->values[1]));
 }
 
