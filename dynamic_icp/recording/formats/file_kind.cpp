@@ -58,6 +58,7 @@ constexpr std::string_view kSentences[] = {
     "is a PLY file",
     "is a PCD file",
 };
+static_assert(std::size(kSentences) == static_cast<std::size_t>(FileKind::kPcd) + 1);
 
 unsigned char byte_at(std::string_view head, std::size_t at) { return static_cast<unsigned char>(head[at]); }
 

@@ -9,9 +9,7 @@
 #include <string_view>
 #include <vector>
 
-#include <Eigen/Core>
-
-#include "dynamic_icp/recording/formats/npy.hpp"
+#include "dynamic_icp/recording/formats/npy_header.hpp"
 
 namespace dynamic_icp::formats {
 
@@ -54,18 +52,5 @@ PlyFile read_ply(const std::filesystem::path& path);
 
 /// The same for the content of a file; `origin` is the file that messages name.
 PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin);
-
-/// The bytes of a PLY 1.0 file, binary_little_endian: the element "vertex" with x, y, z (m) as float32. No points make
-/// a valid file with no records. Throws as `point_table` does.
-std::string ply_bytes(std::span<const Eigen::Vector3d> points);
-
-/// The same with the element "vertex" of any columns, each with the type it has, bit by bit: arrays of shape (N,), at
-/// least one. Numbers that are not finite stay. Throws as `checked_rows` does, and std::invalid_argument for integers
-/// of 64 bits, which PLY does not know.
-std::string ply_table_bytes(std::span<const NamedArray> columns);
-
-/// Writes a file of points whole or not at all (see write_whole_file). Throws as `ply_bytes` does, and DataError naming
-/// file and reason when the machine fails.
-void write_ply(const std::filesystem::path& path, std::span<const Eigen::Vector3d> points);
 
 }  // namespace dynamic_icp::formats
