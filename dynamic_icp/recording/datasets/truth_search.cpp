@@ -67,9 +67,7 @@ std::vector<Truth> fitting_in(const fs::path& folder, const std::vector<Stamp>& 
 
 Truth search_truth(const fs::path& folder, const std::vector<Stamp>& stamps, bool stamps_are_indices,
                    std::vector<std::string>& assumptions) {
-  const fs::path whole = fs::absolute(folder).lexically_normal();  // with a slash at the end its parent is itself
-  const fs::path above = whole.has_filename() ? whole.parent_path() : whole.parent_path().parent_path();
-  for (const fs::path& place : {folder, above}) {
+  for (const fs::path& place : {folder, named_path(folder).parent_path()}) {
     std::vector<Truth> fitting = fitting_in(place, stamps, stamps_are_indices, assumptions);
     if (fitting.size() > 1) {
       std::string names;

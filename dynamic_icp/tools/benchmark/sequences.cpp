@@ -19,11 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-fs::path normalised(const fs::path& path) {
-  const fs::path absolute = fs::absolute(path).lexically_normal();
-  return absolute.has_filename() ? absolute : absolute.parent_path();
-}
-
 fs::path object_truth_of(const fs::path& path, const datasets::Dataset& dataset) {
   for (const fs::path& folder : {dataset.ground_truth_file().parent_path(), path}) {
     std::error_code ignored;
@@ -148,7 +143,7 @@ Sequences open_sequences(const std::vector<std::string>& inputs, const datasets:
                          const fs::path& output) {
   Sequences opened;
   for (const std::string& input : inputs) {
-    append_input(opened, normalised(input), settings, normalised(output));
+    append_input(opened, datasets::named_path(input), settings, datasets::named_path(output));
   }
   std::set<fs::path> seen;
   for (const Sequence& sequence : opened.sequences) {
