@@ -242,6 +242,8 @@ TEST_F(EndToEnd, InfoTellsTheSignOfTheDoppler) {
   EXPECT_EQ(outcome.status, 0);
   EXPECT_NE(outcome.text.find("positive away from the sensor"), std::string::npos) << outcome.text;
   EXPECT_NE(outcome.text.find("10.00 Hz"), std::string::npos) << outcome.text;
+  const std::string counted = "diagnosis    of ";
+  EXPECT_LE(std::stoi(outcome.text.substr(outcome.text.find(counted) + counted.size())), 12) << "each scan once";
 }
 
 TEST_F(EndToEnd, RecordedRadarScans) {
