@@ -31,6 +31,7 @@
 #include "apps/input_options.hpp"
 #include "apps/messages.hpp"
 #include "apps/method_options.hpp"
+#include "apps/options.hpp"
 #include "apps/scan_selection.hpp"
 
 namespace dynamic_icp::apps {
@@ -220,31 +221,21 @@ void add_benchmark_command(CLI::App& app, std::function<int()>& selected) {
       "Ended at any time, the same command goes on where it was: finished runs whose program, configuration and "
       "recording are unchanged are not run again; failed ones are.");
   command->add_option("INPUT", options->inputs, "Recordings, or folders whose sub-folders are recordings");
-  command
-      ->add_option("--output", options->output, "Folder for runs, results.json and tables; new, or that of a benchmark")
-      ->type_name("DIR");
-  command
-      ->add_option("--manifest", options->manifest,
-                   "Take the recordings that this list names (manifests/paper-*.yaml: those of the paper), as many of "
-                   "them as lie below --root")
-      ->type_name("FILE");
-  command->add_option("--root", options->root, "Folder of the data set, for --manifest")->type_name("DIR");
-  command
-      ->add_option("--tables", options->tables, "Only make the tables of this benchmark again, from its results.json")
-      ->type_name("DIR");
-  command
-      ->add_option("--methods", options->methods,
-                   fmt::format("Methods, with commas: {} (default all)", fmt::join(known_methods(), ", ")))
-      ->type_name("LIST");
-  command
-      ->add_option("--ablations", options->ablations,
-                   fmt::format("Parts of {} to switch off, one at a time: none, {} (default all)",
-                               benchmark::kOurMethod, fmt::join(known_ablations(), ", ")))
-      ->type_name("LIST");
-  command
-      ->add_option("--jobs", options->jobs,
-                   "Runs at the same time (default 1); more are faster together, but disturb each other's times")
-      ->type_name("N")
+  add_option(*command, "--output", options->output, "DIR",
+             "Folder for runs, results.json and tables; new, or that of a benchmark");
+  add_option(*command, "--manifest", options->manifest, "FILE",
+             "Take the recordings that this list names (manifests/paper-*.yaml: those of the paper), as many of "
+             "them as lie below --root");
+  add_option(*command, "--root", options->root, "DIR", "Folder of the data set, for --manifest");
+  add_option(*command, "--tables", options->tables, "DIR",
+             "Only make the tables of this benchmark again, from its results.json");
+  add_option(*command, "--methods", options->methods, "LIST",
+             fmt::format("Methods, with commas: {} (default all)", fmt::join(known_methods(), ", ")));
+  add_option(*command, "--ablations", options->ablations, "LIST",
+             fmt::format("Parts of {} to switch off, one at a time: none, {} (default all)", benchmark::kOurMethod,
+                         fmt::join(known_ablations(), ", ")));
+  add_option(*command, "--jobs", options->jobs, "N",
+             "Runs at the same time (default 1); more are faster together, but disturb each other's times")
       ->check(CLI::Range(1, 1024));
   command->add_flag("--force", options->force, "Run finished cells again");
   command->add_flag("--quiet", options->quiet, "Print failures and tables only");

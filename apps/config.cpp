@@ -13,6 +13,7 @@
 #include "dynamic_icp/recording/formats/config_file.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/options.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -71,16 +72,11 @@ void add_config_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<ConfigOptions>();
   CLI::App* command =
       app.add_subcommand("config", "Print the configuration as YAML, to be edited and given to --config");
-  command
-      ->add_option(
-          "--preset", options->preset,
-          fmt::format("Configuration to print: {} (default default)", fmt::join(odometry::preset_names(), ", ")))
-      ->type_name("NAME");
-  command
-      ->add_option("--method", options->method,
-                   fmt::format("Method whose keys are printed: {} (default dynamic-icp)",
-                               fmt::join(odometry::method_names(), ", ")))
-      ->type_name("NAME");
+  add_option(*command, "--preset", options->preset, "NAME",
+             fmt::format("Configuration to print: {} (default default)", fmt::join(odometry::preset_names(), ", ")));
+  add_option(*command, "--method", options->method, "NAME",
+             fmt::format("Method whose keys are printed: {} (default dynamic-icp)",
+                         fmt::join(odometry::method_names(), ", ")));
   command->add_flag("--markdown", options->markdown, "Print the reference page of all keys and methods instead");
   command->callback([options, &selected] {
     selected = [options] {

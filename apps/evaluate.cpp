@@ -18,6 +18,7 @@
 #include "dynamic_icp/recording/formats/tum.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/options.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -84,31 +85,23 @@ int run_evaluate(const Options& options) {
 }
 
 void add_error_options(CLI::App& command, Options& options) {
-  command
-      .add_option("--align", options.alignment,
-                  fmt::format("what the estimate is moved by before absolute errors: none; first (first poses made "
-                              "equal); se3 (best rigid motion); sim3 (with scale); default {}",
-                              options.alignment))
-      ->type_name("KIND");
-  CLI::Option* frames = command
-                            .add_option("--gap-frames", options.gap_frames,
-                                        fmt::format("relative errors over so many matched poses; default {:g}",
-                                                    evaluation::RelativeGap{}.length))
-                            ->type_name("N");
+  add_option(command, "--align", options.alignment, "KIND",
+             fmt::format("what the estimate is moved by before absolute errors: none; first (first poses made "
+                         "equal); se3 (best rigid motion); sim3 (with scale); default {}",
+                         options.alignment));
+  CLI::Option* frames = add_option(
+      command, "--gap-frames", options.gap_frames, "N",
+      fmt::format("relative errors over so many matched poses; default {:g}", evaluation::RelativeGap{}.length));
   CLI::Option* seconds =
-      command.add_option("--gap-seconds", options.gap_seconds, "relative errors over so many seconds instead")
-          ->type_name("S");
-  command
-      .add_option("--gap-meters", options.gap_meters, "relative errors over so many metres of the reference instead")
-      ->type_name("M")
+      add_option(command, "--gap-seconds", options.gap_seconds, "S", "relative errors over so many seconds instead");
+  add_option(command, "--gap-meters", options.gap_meters, "M",
+             "relative errors over so many metres of the reference instead")
       ->excludes(frames)
       ->excludes(seconds);
   seconds->excludes(frames);
-  command
-      .add_option("--max-gap", options.association.max_gap_s,
-                  fmt::format("the reference is interpolated between poses at most so many seconds apart; default {:g}",
-                              options.association.max_gap_s))
-      ->type_name("S");
+  add_option(command, "--max-gap", options.association.max_gap_s, "S",
+             fmt::format("the reference is interpolated between poses at most so many seconds apart; default {:g}",
+                         options.association.max_gap_s));
 }
 
 }  // namespace

@@ -15,42 +15,33 @@
 #include "dynamic_icp/recording/formats/config_file.hpp"
 
 #include "apps/messages.hpp"
+#include "apps/options.hpp"
 #include "apps/settings.hpp"
 
 namespace dynamic_icp::apps {
 
 void add_configuration_options(CLI::App& command, std::string& preset, std::string& config_file,
                                std::vector<std::string>& settings, int& threads) {
-  command
-      .add_option("--preset", preset,
-                  fmt::format("Configuration to start from: {} (default {})", fmt::join(odometry::preset_names(), ", "),
-                              preset))
-      ->type_name("NAME");
-  command
-      .add_option("--config", config_file, "YAML file with configuration keys ('dynamic-icp config' prints them all)")
-      ->type_name("FILE");
-  command
-      .add_option("--set", settings,
-                  "Configuration key, e.g. preprocess.voxel.voxel_size_m=0.5 (m); repeatable, wins over --config")
-      ->type_name("KEY=VALUE")
+  add_option(
+      command, "--preset", preset, "NAME",
+      fmt::format("Configuration to start from: {} (default {})", fmt::join(odometry::preset_names(), ", "), preset));
+  add_option(command, "--config", config_file, "FILE",
+             "YAML file with configuration keys ('dynamic-icp config' prints them all)");
+  add_option(command, "--set", settings, "KEY=VALUE",
+             "Configuration key, e.g. preprocess.voxel.voxel_size_m=0.5 (m); repeatable, wins over --config")
       ->allow_extra_args(false)  // what follows the value is another argument
       ->take_all();
-  command
-      .add_option("--threads", threads, "Number of threads (default 0: all processors); results do not depend on it")
-      ->type_name("N")
+  add_option(command, "--threads", threads, "N",
+             "Number of threads (default 0: all processors); results do not depend on it")
       ->check(CLI::Range(0, 1024));
 }
 
 void add_method_options(CLI::App& command, MethodOptions& options) {
-  command
-      .add_option("--method", options.method,
-                  fmt::format("Method: {} (default dynamic-icp)", fmt::join(odometry::method_names(), ", ")))
-      ->type_name("NAME");
-  command
-      .add_option("--ablation", options.ablation,
-                  fmt::format("Part of dynamic-icp to switch off: {} (default none)",
-                              fmt::join(odometry::ablation_names(), ", ")))
-      ->type_name("NAME");
+  add_option(command, "--method", options.method, "NAME",
+             fmt::format("Method: {} (default dynamic-icp)", fmt::join(odometry::method_names(), ", ")));
+  add_option(
+      command, "--ablation", options.ablation, "NAME",
+      fmt::format("Part of dynamic-icp to switch off: {} (default none)", fmt::join(odometry::ablation_names(), ", ")));
   add_configuration_options(command, options.preset, options.config_file, options.settings, options.threads);
 }
 

@@ -3,23 +3,19 @@
 #include "apps/number_list.hpp"
 
 #include <algorithm>
-#include <charconv>
+#include <optional>
 #include <set>
 #include <string_view>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/parse_number.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
 
 constexpr std::size_t kMost = 100'000;  // of a range: nobody means more
-
-bool read_number(std::string_view text, std::size_t& number) {
-  const auto [end, fault] = std::from_chars(text.data(), text.data() + text.size(), number);
-  return fault == std::errc() && end == text.data() + text.size();
-}
 
 }  // namespace
 
@@ -30,15 +26,13 @@ std::vector<std::size_t> number_list(const char* option, const std::string& text
     const std::size_t comma = std::min(rest.find(','), rest.size());
     const std::string_view part = rest.substr(0, comma);
     const std::size_t dash = std::min(part.find('-'), part.size());
-    std::size_t first = 0;
-    std::size_t last = 0;
-    const bool is_range = dash < part.size();
-    const bool is_read = read_number(part.substr(0, dash), first) &&
-                         read_number(is_range ? part.substr(dash + 1) : part.substr(0, dash), last);
-    if (!is_read || last < first || last - first >= kMost || comma + 1 == rest.size()) {
+    const std::optional<std::size_t> first = parse_number<std::size_t>(part.substr(0, dash));
+    const std::optional<std::size_t> last =
+        dash < part.size() ? parse_number<std::size_t>(part.substr(dash + 1)) : first;
+    if (!first || !last || *last < *first || *last - *first >= kMost || comma + 1 == rest.size()) {
       throw UsageError(fmt::format("{} is '{}', expected whole numbers and ranges of them: 10,20-25", option, text));
     }
-    for (std::size_t number = first; number <= last; ++number) {
+    for (std::size_t number = *first; number <= *last; ++number) {
       numbers.insert(number);
     }
     rest.remove_prefix(std::min(comma + 1, rest.size()));

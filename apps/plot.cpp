@@ -19,6 +19,7 @@
 #include "dynamic_icp/tools/report/run_facts.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/options.hpp"
 #include "apps/svg_to_png.hpp"
 
 namespace dynamic_icp::apps {
@@ -158,28 +159,20 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
                    "Folder of a run; of several over the same recording: trajectories, errors, iterations and times in "
                    "common pictures")
       ->required();
-  command->add_option("--output", options->output, "Folder for the pictures (default: plots in the first DIR)")
-      ->type_name("DIR2");
-  command
-      ->add_option("--frame", options->frame,
-                   "Which scan to draw: line of frames.jsonl, counted from 0 (default: the one with most points on "
-                   "moving objects)")
-      ->type_name("N");
-  command
-      ->add_option("--pair", options->pair,
-                   "Also draw the steps from this scan to its alignment with the next one, as --frame counts them: "
-                   "steps.svg (runs with --save-labels show the points as the method sorted them)")
-      ->type_name("N");
-  command->add_option("--theme", options->theme, "Background of the pictures: light or dark (default light)")
-      ->type_name("NAME");
-  command->add_option("--format", options->format, "Files to write: svg, png or both (default svg)")
-      ->type_name("NAME")
+  add_option(*command, "--output", options->output, "DIR2",
+             "Folder for the pictures (default: plots in the first DIR)");
+  add_option(*command, "--frame", options->frame, "N",
+             "Which scan to draw: line of frames.jsonl, counted from 0 (default: the one with most points on "
+             "moving objects)");
+  add_option(*command, "--pair", options->pair, "N",
+             "Also draw the steps from this scan to its alignment with the next one, as --frame counts them: "
+             "steps.svg (runs with --save-labels show the points as the method sorted them)");
+  add_option(*command, "--theme", options->theme, "NAME", "Background of the pictures: light or dark (default light)");
+  add_option(*command, "--format", options->format, "NAME", "Files to write: svg, png or both (default svg)")
       ->check(CLI::IsMember({"svg", "png", "both"}).description(""));
-  command
-      ->add_option("--scale", options->scale,
-                   fmt::format("Pixels of a PNG file for each px of the SVG one, {} to {} (default {})", kMinScale,
-                               kMaxScale, options->scale))
-      ->type_name("F");
+  add_option(*command, "--scale", options->scale, "F",
+             fmt::format("Pixels of a PNG file for each px of the SVG one, {} to {} (default {})", kMinScale, kMaxScale,
+                         options->scale));
   command->callback([options, &selected] { selected = [options] { return plot(*options); }; });
 }
 

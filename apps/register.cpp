@@ -17,6 +17,7 @@
 #include "apps/input_options.hpp"
 #include "apps/messages.hpp"
 #include "apps/method_options.hpp"
+#include "apps/options.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -77,11 +78,9 @@ void add_register_command(CLI::App& app, std::function<int()>& selected) {
       ->required();
   command->add_option("TARGET", options->target, "Later scan; T_target_source maps points of SOURCE into it")
       ->required();
-  command->add_option("--dt", options->dt_s, "Time between the two scans in s (default 0.1)")->type_name("SECONDS");
-  command
-      ->add_option("--calibration", options->calibration,
-                   "calibration.json with the mounting of the sensor, for doppler-icp (default: the identity)")
-      ->type_name("FILE");
+  add_option(*command, "--dt", options->dt_s, "SECONDS", "Time between the two scans in s (default 0.1)");
+  add_option(*command, "--calibration", options->calibration, "FILE",
+             "calibration.json with the mounting of the sensor, for doppler-icp (default: the identity)");
   add_correction_options(*command, options->settings);
   add_method_options(*command, options->method);
   command->callback([options, &selected] { selected = [options] { return register_pair(*options); }; });

@@ -18,6 +18,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/number_list.hpp"
+#include "apps/options.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -126,25 +127,16 @@ void add_report_command(CLI::App& app, std::function<int()>& selected) {
       ->add_option("DIR", options->folders,
                    "Folder of a run; several are compared; or the one of a benchmark, with its tables and all its runs")
       ->required();
-  command
-      ->add_option("--output", options->output,
-                   "File to write (default: DIR/report.html; of several runs comparison.html beside the first one)")
-      ->type_name("FILE");
-  command
-      ->add_option(
-          "--budget-mb", options->budget_mb,
-          fmt::format("Size that scans and map may have in the page, 0.1 to 2000 MB (default {} MB); scans are "
-                      "thinned to it",
-                      static_cast<double>(report::ScanChoice().budget_bytes) / kBytesPerMb))
-      ->type_name("MB");
-  command
-      ->add_option(
-          "--frames", options->frames,
-          "Scans to keep whole whatever the budget, as lines of frames.jsonl counted from 0: 10,20-25 (default: "
-          "a few informative ones as the budget allows)")
-      ->type_name("LIST");
-  command->add_option("--threads", options->threads, "Maximum number of threads, 0: all processors (default 0)")
-      ->type_name("N")
+  add_option(*command, "--output", options->output, "FILE",
+             "File to write (default: DIR/report.html; of several runs comparison.html beside the first one)");
+  add_option(*command, "--budget-mb", options->budget_mb, "MB",
+             fmt::format("Size that scans and map may have in the page, 0.1 to 2000 MB (default {} MB); scans are "
+                         "thinned to it",
+                         static_cast<double>(report::ScanChoice().budget_bytes) / kBytesPerMb));
+  add_option(*command, "--frames", options->frames, "LIST",
+             "Scans to keep whole whatever the budget, as lines of frames.jsonl counted from 0: 10,20-25 (default: "
+             "a few informative ones as the budget allows)");
+  add_option(*command, "--threads", options->threads, "N", "Maximum number of threads, 0: all processors (default 0)")
       ->check(CLI::Range(0, 1024));
   command->callback([options, &selected] { selected = [options] { return write_page(*options); }; });
 }

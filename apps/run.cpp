@@ -15,6 +15,7 @@
 #include "apps/input_options.hpp"
 #include "apps/messages.hpp"
 #include "apps/method_options.hpp"
+#include "apps/options.hpp"
 #include "apps/progress.hpp"
 #include "apps/scan_selection.hpp"
 
@@ -176,25 +177,19 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
       ->required()
       ->type_name("DIR");
   add_input_options(*command, options->recording.settings);
-  command
-      ->add_option("--ground-truth", options->settings.ground_truth,
-                   "TUM file to compare with (default: what the recording brings along)")
-      ->type_name("FILE");
+  add_option(*command, "--ground-truth", options->settings.ground_truth, "FILE",
+             "TUM file to compare with (default: what the recording brings along)");
   add_selection_options(*command, "process", options->settings.start, options->settings.max_frames);
   command->add_flag("--save-labels", options->settings.save_labels,
                     "Write labels/*.bin: static, object or unused per point");
   CLI::Option* save_map =
-      command
-          ->add_option("--save-map", options->settings.map_file,
-                       "Write the static points of all scans in world axes as one point cloud, FILE.ply or FILE.pcd "
-                       "(dynamic-icp only)")
-          ->type_name("FILE");
-  command
-      ->add_option("--map-voxel", options->settings.map_voxel_m,
-                   fmt::format("Edge of the voxels of which the map keeps the first point, {} to {} m (default {} m)",
-                               runs::MapWriter::kMinVoxelSize_m, runs::MapWriter::kMaxVoxelSize_m,
-                               options->settings.map_voxel_m))
-      ->type_name("M")
+      add_option(*command, "--save-map", options->settings.map_file, "FILE",
+                 "Write the static points of all scans in world axes as one point cloud, FILE.ply or FILE.pcd "
+                 "(dynamic-icp only)");
+  add_option(
+      *command, "--map-voxel", options->settings.map_voxel_m, "M",
+      fmt::format("Edge of the voxels of which the map keeps the first point, {} to {} m (default {} m)",
+                  runs::MapWriter::kMinVoxelSize_m, runs::MapWriter::kMaxVoxelSize_m, options->settings.map_voxel_m))
       ->needs(save_map);
   command->add_flag("--report", options->report,
                     "Write report.html into the results, and the labels that it shows (--save-labels)");

@@ -24,6 +24,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/messages.hpp"
+#include "apps/options.hpp"
 #include "apps/progress.hpp"
 #include "apps/result_kinds.hpp"
 #include "apps/settings.hpp"
@@ -249,29 +250,23 @@ int simulate(const SimulateOptions& options) {
 void add_simulate_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<SimulateOptions>();
   CLI::App* command = app.add_subcommand("simulate", "Make an FMCW LiDAR sequence with full ground truth");
-  command->add_option("scene", options->scene, "Name of a scene (--list shows them) or a scene file (*.yaml)")
-      ->type_name("SCENE");
+  add_option(*command, "scene", options->scene, "SCENE",
+             "Name of a scene (--list shows them) or a scene file (*.yaml)");
   command->add_flag("--list", options->list, "List scenes and sensors and end");
-  command->add_option("--output", options->output, "Folder to write; must be new or empty")->type_name("DIR");
-  command
-      ->add_option(
-          "--sensor", options->sensor,
-          fmt::format("Sensors of the vehicle, by name or as a file (*.yaml) (default {})", simulation::kDefaultRig))
-      ->type_name("NAME");
-  command->add_option("--show-sensor", options->show_sensor, "Print the file of a sensor and end")->type_name("NAME");
-  command
-      ->add_option(
-          "--layout", options->layout,
-          "Files to write: dicp, hercules, helipr, boreas or aevascenes (default dicp); the truth is the same for all")
-      ->type_name("NAME");
-  command->add_option("--frames", options->frames, "Number of scans, the length of the drive (default 60)")
-      ->type_name("N");
-  command->add_option("--seed", options->seed, "Decides on layout, traffic and noise (default 1)")->type_name("N");
-  command->add_option("--threads", options->threads, "Threads, 0 for all (default 0); the result does not depend on it")
-      ->type_name("N")
+  add_option(*command, "--output", options->output, "DIR", "Folder to write; must be new or empty");
+  add_option(
+      *command, "--sensor", options->sensor, "NAME",
+      fmt::format("Sensors of the vehicle, by name or as a file (*.yaml) (default {})", simulation::kDefaultRig));
+  add_option(*command, "--show-sensor", options->show_sensor, "NAME", "Print the file of a sensor and end");
+  add_option(
+      *command, "--layout", options->layout, "NAME",
+      "Files to write: dicp, hercules, helipr, boreas or aevascenes (default dicp); the truth is the same for all");
+  add_option(*command, "--frames", options->frames, "N", "Number of scans, the length of the drive (default 60)");
+  add_option(*command, "--seed", options->seed, "N", "Decides on layout, traffic and noise (default 1)");
+  add_option(*command, "--threads", options->threads, "N",
+             "Threads, 0 for all (default 0); the result does not depend on it")
       ->check(CLI::Range(0, 1024));
-  command->add_option("--set", options->settings, "Change a setting, see below; may be repeated")
-      ->type_name("KEY=VALUE")
+  add_option(*command, "--set", options->settings, "KEY=VALUE", "Change a setting, see below; may be repeated")
       ->allow_extra_args(false);
   command->add_flag("--instant", options->instant, "All rays of a scan at its stamp (wins over --set)");
   command->add_flag("--noise-free", options->noise_free,

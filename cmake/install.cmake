@@ -13,7 +13,8 @@ function(dynamic_icp_library name layer)
   add_library(dynamic_icp_${name} ${objects})
   add_library(dynamic_icp::${name} ALIAS dynamic_icp_${name})
   set_target_properties(dynamic_icp_${name} PROPERTIES EXPORT_NAME ${name} LINKER_LANGUAGE CXX
-    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+    VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR}
+    INSTALL_RPATH $ORIGIN)  # as shared libraries, io finds core beside it
   target_include_directories(dynamic_icp_${name} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(dynamic_icp_${name} PUBLIC cxx_std_20)

@@ -10,8 +10,7 @@
 
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
-#include "dynamic_icp/recording/formats/pcd.hpp"
-#include "dynamic_icp/recording/formats/ply.hpp"
+#include "dynamic_icp/recording/formats/point_table.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 
 namespace dynamic_icp::fuzz {
@@ -63,7 +62,7 @@ class Seeds {
                                 array<float>("los", {2, 3}, {1, 0, 0, 0, 1, 0})});
     write("npz", npz);
     write("columns", "2" + npz);
-    const std::string binary_pcd = formats::pcd_table_bytes(table());
+    const std::string binary_pcd = formats::pcd_bytes(table());
     const std::string ascii_pcd = pcd("ascii", "1 2 3 -4.5 1724479779384729506\n");
     std::string packed = "\x17";
     packed += std::string(24, 'a');
@@ -74,7 +73,7 @@ class Seeds {
       write("pcd", content);
       write("columns", "0" + content);
     }
-    const std::string binary_ply = formats::ply_table_bytes(table());
+    const std::string binary_ply = formats::ply_bytes(table());
     const std::string ascii_ply =
         "ply\nformat ascii 1.0\ncomment c\nelement face 1\nproperty list uchar int c\nelement vertex 1\n"
         "property double x\nproperty float y\nproperty int z\nproperty float velocity\nproperty float time\n"

@@ -1,11 +1,12 @@
 #!/usr/bin/env bash
 # What takes too long for every change: the static analysis of all sources, the whole suite by both compilers under the
-# sanitizers, and the claims of the documents about the simulator, the diagnosis and the method. Hours on two cores.
-# usage: scripts/check.sh [tidy] [sanitizers] [claims]     default: all three; what they need is installed
+# sanitizers, shared libraries, and the claims of the documents about the simulator, the diagnosis and the method. Hours
+# on two cores.
+# usage: scripts/check.sh [tidy] [sanitizers] [shared] [claims]     default: all; what they need is installed
 set -euo pipefail
 cd "$(dirname "$0")/.."
 parts=("$@")
-[[ $# -eq 0 ]] && parts=(tidy sanitizers claims)
+[[ $# -eq 0 ]] && parts=(tidy sanitizers shared claims)
 
 scripts/install_dependencies.sh tests fuzzing lint
 scripts/install_viewer.sh tests
@@ -29,6 +30,12 @@ sanitizers() {
   suite tsan
 }
 
+shared() {
+  cmake --preset release -B build-shared -DBUILD_SHARED_LIBS=ON -DDYNAMIC_ICP_BUILD_TESTS=OFF >/dev/null
+  cmake --build build-shared
+  tests/install_test.sh "$PWD/build-shared" "$PWD/tests" cmake
+}
+
 claims() {
   cmake --preset release >/dev/null
   cmake --build --preset release --target dynamic-icp
@@ -46,11 +53,11 @@ claims() {
 
 for part in "${parts[@]}"; do
   case $part in
-    tidy | sanitizers | claims)
+    tidy | sanitizers | shared | claims)
       echo "== $part"
       "$part" ;;
     *)
-      echo "unknown part '$part'; known are: tidy, sanitizers, claims" >&2
+      echo "unknown part '$part'; known are: tidy, sanitizers, shared, claims" >&2
       exit 2 ;;
   esac
 done

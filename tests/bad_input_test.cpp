@@ -349,44 +349,6 @@ TEST_F(BadInput, WhatCannotBePrintedIsAFailure) {
   }
 }
 
-TEST_F(BadInput, WrongUseIsStatusTwoAndNamesTheRemedy) {
-  const std::string in = street().string();
-  const std::string out = " --output " + (folder_ / "out").string();
-  const auto expect_usage_error = [&](const std::string& arguments, const std::string& words) {
-    const Outcome outcome = run_program(arguments);
-    EXPECT_EQ(outcome.status, kWrongUsage) << arguments << "\n" << outcome.text;
-    EXPECT_NE(outcome.text.find(words), std::string::npos) << arguments << "\n" << outcome.text;
-    EXPECT_FALSE(fs::exists(folder_ / "out"));
-  };
-  expect_usage_error("", "subcommand");
-  expect_usage_error("fly", "fly");
-  expect_usage_error("run " + in, "--output");
-  expect_usage_error("run " + in + out + " --wrong", "--wrong");
-  expect_usage_error("run " + in + out + " --set voxel_sise_m=1", "did you mean 'preprocess.voxel.voxel_size_m'");
-  expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m=-1", "0 to 100 m");
-  expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m", "expected key=value");
-  expect_usage_error("run " + in + out + " --preset best", "paper");
-  expect_usage_error("run " + in + out + " --set kiss_icp.voxel_size_m=9",
-                     "only on kiss-icp; did you mean 'preprocess.voxel.voxel_size_m'");
-  write_file(folder_ / "paper.yaml", "odometry.scan_to_scan: true\n");  // of version 0.2
-  expect_usage_error("run " + in + out + " --config " + (folder_ / "paper.yaml").string(), "--preset paper");
-  expect_usage_error("run " + in + out + " --ablation no-such", "no-vf");
-  expect_usage_error("run " + in + out + " --method magic", "dynamic-icp");
-  expect_usage_error("run " + in + out + " --format vhs", "dicp");
-  expect_usage_error("run " + in + out + " --start 500", "0 to 11");
-  expect_usage_error("run " + in + out + " --start -1", "--start is '-1', expected a whole number, 0 or more");
-  expect_usage_error("run " + in + out + " --max-frames 0", "--max-frames is '0', expected a whole number, 1 or more");
-  expect_usage_error("run " + in + out + " --max-frames 1.5", "--max-frames is '1.5'");
-  expect_usage_error("convert " + in + out + " --to npz --start -1", "--start is '-1'");
-  expect_usage_error("benchmark " + in + out + " --max-frames 0", "--max-frames is '0'");
-  expect_usage_error("run " + in + " --output ''", "the folder for the results is ''");
-  expect_usage_error("convert " + in + " --to npz --output ''", "the folder for the results is ''");
-  expect_usage_error("simulate street --frames 2 --output ''", "--output DIR is missing");
-  expect_usage_error("run " + in + out + " --threads -1", "threads");
-  write_file(folder_ / "bad.yaml", "preprocess:\n  voxel:\n    voxel_size_m: [1, 2]\n");
-  expect_usage_error("run " + in + out + " --config " + (folder_ / "bad.yaml").string(), "line 3");
-}
-
 TEST_F(BadInput, RegisterReportsWhatItCannotAlign) {
   write_file(folder_ / "empty.bin", "");
   const std::string scan = (street() / "point_clouds" / "00001.bin").string();
@@ -398,20 +360,6 @@ TEST_F(BadInput, RegisterReportsWhatItCannotAlign) {
   }
   EXPECT_EQ(run_program("register " + scan + " " + scan + " --dt 0").status, kWrongUsage);
   EXPECT_EQ(run_program("register " + scan + " " + scan + ".missing").status, kFailed);
-}
-
-TEST_F(BadInput, HelpDocumentsEveryOption) {
-  for (const char* command : {"run", "register", "evaluate", "simulate", "info", "report", "plot", "config"}) {
-    const Outcome outcome = run_program(std::string(command) + " --help");
-    EXPECT_EQ(outcome.status, kDone) << command;
-    std::istringstream lines(outcome.text);
-    for (std::string line; std::getline(lines, line);) {
-      if (line.starts_with("  --")) {
-        EXPECT_GT(line.size(), 30u) << command << ": no description: " << line;
-      }
-    }
-  }
-  EXPECT_EQ(run_program("--version").status, kDone);
 }
 
 }  // namespace

@@ -47,6 +47,8 @@ echo "== As a subproject: the method alone, and nothing of the parent is changed
 echo "== The whole installation, and the example of the README"
 "$cmake" --install "$build" --prefix "$folder/all" >/dev/null
 build_consumer consumer "$folder/all" "$folder/io"
+shared_io=$(find "$folder/all" -name 'libdynamic_icp_io.so')
+[[ -z $shared_io ]] || ! ldd "$shared_io" | grep 'not found'
 "$folder/all/bin/dynamic-icp" simulate street --frames 2 --quiet --output "$folder/two"
 "$folder/io/consumer" "$folder/two" | tee "$folder/output"
 [[ $(wc -l <"$folder/output") -eq 2 ]]

@@ -75,6 +75,13 @@ void ProgramTest::TearDown() {
   fs::remove_all(folder_, ignored);
 }
 
+nlohmann::json ProgramTest::run_and_summarise(const std::string& arguments) {
+  const fs::path out = folder_ / "out";
+  const Outcome outcome = run_program("run --quiet --force --output " + out.string() + " " + arguments);
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  return nlohmann::json::parse(read_file(out / "summary.json"));
+}
+
 fs::path ProgramTest::street() {
   static const fs::path path = [] {
     const fs::path drive = shared_folder() / "street";

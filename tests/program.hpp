@@ -6,6 +6,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
 
 namespace dynamic_icp::tests {
 
@@ -37,6 +38,9 @@ class ProgramTest : public ::testing::Test {
 
   /// A simulated street of a few scans, made once per process and shared by the tests.
   static fs::path street();
+
+  /// What summary.json says of a run into `out` of the folder, which must succeed.
+  nlohmann::json run_and_summarise(const std::string& arguments);
 
   fs::path folder_;
 };

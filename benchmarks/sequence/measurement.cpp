@@ -11,8 +11,8 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/recording/datasets/dataset.hpp"
-#include "dynamic_icp/tools/benchmark/child_process.hpp"
 
+#include "benchmarks/sequence/child_text.hpp"
 #include "benchmarks/sequence/memory.hpp"
 #include "benchmarks/sequence/timing.hpp"
 
@@ -75,7 +75,7 @@ Run measure(const Setup& setup) {
 }
 
 Run measure_in_child(const Setup& setup) {
-  const std::string text = benchmark::text_of_child([&setup] { return nlohmann::ordered_json(measure(setup)).dump(); });
+  const std::string text = text_of_child([&setup] { return nlohmann::ordered_json(measure(setup)).dump(); });
   return nlohmann::ordered_json::parse(text).get<Run>();
 }
 

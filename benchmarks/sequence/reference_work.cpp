@@ -13,7 +13,8 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/dataset.hpp"
 #include "dynamic_icp/recording/formats/xyzd_bin.hpp"
-#include "dynamic_icp/tools/benchmark/child_process.hpp"
+
+#include "benchmarks/sequence/child_text.hpp"
 
 namespace dynamic_icp::speed {
 
@@ -32,9 +33,7 @@ ReferenceWork::~ReferenceWork() {
   std::filesystem::remove(file_, ignored);
 }
 
-double ReferenceWork::run() const {
-  return parse_milliseconds(benchmark::output_of_program(program_, {file_.string()}), program_);
-}
+double ReferenceWork::run() const { return parse_milliseconds(output_of_program(program_, file_.string()), program_); }
 
 double parse_milliseconds(std::string_view printed, const std::filesystem::path& program) {
   const std::size_t begin = printed.find_first_not_of(" \t\n");

@@ -5,9 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <stdexcept>
-
-#include "dynamic_icp/recording/formats/binary_file.hpp"
 
 namespace dynamic_icp::conversion {
 namespace {
@@ -21,16 +18,6 @@ bool is_float32(double value) {
   }
   return std::abs(value) <= static_cast<double>(std::numeric_limits<float>::max()) &&
          static_cast<double>(static_cast<float>(value)) == value;
-}
-
-template <class Number>
-std::string bytes_of(std::span<const double> values) {
-  std::string bytes;
-  bytes.reserve(values.size() * sizeof(Number));
-  for (const double value : values) {
-    formats::append_value(bytes, static_cast<Number>(value));
-  }
-  return bytes;
 }
 
 template <class Number>
@@ -106,32 +93,5 @@ formats::NpyType ColumnTypes::time_type() const {
 }
 
 std::int64_t nanoseconds(double time_s) { return std::llround(time_s / kNanosecond); }
-
-formats::NpyArray array_of(formats::NpyType type, std::vector<std::size_t> shape, std::span<const double> values) {
-  formats::NpyArray array{type, std::move(shape), {}, "array"};
-  switch (type) {
-    case formats::NpyType::kFloat32:
-      array.bytes = bytes_of<float>(values);
-      break;
-    case formats::NpyType::kFloat64:
-      array.bytes = bytes_of<double>(values);
-      break;
-    case formats::NpyType::kUint8:
-      array.bytes = bytes_of<std::uint8_t>(values);
-      break;
-    case formats::NpyType::kInt32:
-      array.bytes = bytes_of<std::int32_t>(values);
-      break;
-    case formats::NpyType::kUint32:
-      array.bytes = bytes_of<std::uint32_t>(values);
-      break;
-    case formats::NpyType::kInt64:
-      array.bytes = bytes_of<std::int64_t>(values);
-      break;
-    default:
-      throw std::invalid_argument("no column is written in this type");
-  }
-  return array;
-}
 
 }  // namespace dynamic_icp::conversion

@@ -76,7 +76,4 @@ class ColumnTypes {
 /// The time as whole nanoseconds; only for times that are.
 std::int64_t nanoseconds(double time_s);
 
-/// An array of these numbers in that type, which holds them.
-formats::NpyArray array_of(formats::NpyType type, std::vector<std::size_t> shape, std::span<const double> values);
-
 }  // namespace dynamic_icp::conversion

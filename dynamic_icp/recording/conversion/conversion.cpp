@@ -36,10 +36,6 @@ constexpr std::array<Layout, 4> kLayouts = {{{"dicp", Target::kDicp, write_dicp_
 
 const Layout& layout_of(Target target) { return kLayouts[static_cast<std::size_t>(target)]; }
 
-void write_text(const fs::path& path, const std::string& text) {
-  formats::write_bytes(path, std::as_bytes(std::span(text)));
-}
-
 class Converter {
  public:
   Converter(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target, const fs::path& folder,
@@ -106,7 +102,7 @@ class Converter {
 
   void write_poses(const formats::Trajectory& poses) const {
     const fs::path path = folder_ / "ref_poses.txt";
-    write_text(path, formats::format_tum(poses, path.string()));
+    formats::write_bytes(path, formats::format_tum(poses, path.string()));
   }
 
   /// The truth at the stamp of every scan; nothing where a scan has none.
@@ -170,7 +166,7 @@ class Converter {
     const nlohmann::ordered_json json = {{"T_V_to_S",
                                           {{"translation", {{"x", t.x()}, {"y", t.y()}, {"z", t.z()}}},
                                            {"quaternion", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}}}};
-    write_text(folder_ / "calibration.json", json.dump(2) + "\n");
+    formats::write_bytes(folder_ / "calibration.json", json.dump(2) + "\n");
   }
 
   const datasets::Dataset& dataset_;

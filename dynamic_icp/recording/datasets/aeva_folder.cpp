@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 // HeRCULES and HeLiPR: scans of an Aeva sensor in LiDAR/Aeva/<stamp_ns>.bin and what lies beside them, in any spelling
 // of upper and lower case.
-#include <algorithm>
 #include <array>
 #include <string>
 #include <string_view>
@@ -16,7 +15,6 @@
 #include "dynamic_icp/recording/datasets/record_dataset.hpp"
 #include "dynamic_icp/recording/datasets/record_guess.hpp"
 #include "dynamic_icp/recording/formats/text_lines.hpp"
-#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -35,25 +33,18 @@ bool holds_aeva(const fs::path& folder) {
 /// folders of their own: what is not in `folder` is looked for in the one above and in those beside it that hold no
 /// scans themselves.
 fs::path find_part(const fs::path& folder, std::string_view name) {
-  fs::path found = child(folder, name);
-  if (!found.empty()) {
-    return found;
-  }
   const fs::path above = named_path(folder).parent_path();
-  found = child(above, name);
-  if (!found.empty()) {
-    return found;
+  for (const fs::path& place : {folder, above}) {
+    if (fs::path found = child(place, name); !found.empty()) {
+      return found;
+    }
   }
-  std::vector<fs::path> beside;
-  std::error_code fault;
-  for (fs::directory_iterator entry(above, fault); !fault && entry != fs::directory_iterator();
-       entry.increment(fault)) {
-    beside.push_back(entry->path());
-  }
-  std::sort(beside.begin(), beside.end());
-  for (const fs::path& part : beside) {
-    found = fs::is_directory(part, fault) && !holds_aeva(part) ? child(part, name) : fs::path();
-    if (!found.empty()) {
+  const auto is_part = [](const fs::directory_entry& entry) {
+    std::error_code ignored;
+    return entry.is_directory(ignored) && !holds_aeva(entry.path());
+  };
+  for (const fs::path& part : entries_of(above, is_part)) {
+    if (fs::path found = child(part, name); !found.empty()) {
       return found;
     }
   }
@@ -96,15 +87,10 @@ fs::path find_aeva_folder(const fs::path& input) {
 
 Eigen::Isometry3d read_imu_lidar(const fs::path& path) {
   constexpr std::string_view kKey = "Tr_lidar_to_imu:";
-  const std::string text = formats::read_text_file(path);
-  std::string_view rest = text;
-  std::size_t number = 1;
-  for (std::optional<std::string_view> line = formats::take_line(rest); line; line = formats::take_line(rest)) {
-    if (const std::size_t key = line->find(kKey); key != std::string_view::npos) {
-      const std::string place = fmt::format("{}: line {}", path.string(), number);
-      return rigid_transform(numbers_in(line->substr(key + kKey.size()), place), place);
+  for (const auto& [place, line] : formats::read_lines(path)) {
+    if (const std::size_t key = line.find(kKey); key != std::string::npos) {
+      return rigid_transform(numbers_in(std::string_view(line).substr(key + kKey.size()), place), place);
     }
-    ++number;
   }
   throw DataError(fmt::format("{}: no line '{}' with 12 numbers", path.string(), kKey));
 }

@@ -263,8 +263,7 @@ class AevaScenesDataset final : public Dataset {
     if (found->values.size() == rows_before) {
       const std::vector<double> values = formats::column_as_doubles(array);
       found->values.insert(found->values.end(), values.begin(), values.end());
-      found->is_integer =
-          found->is_integer && array.type != formats::NpyType::kFloat32 && array.type != formats::NpyType::kFloat64;
+      found->is_integer = found->is_integer && !formats::is_float(array.type);
     }
   }
 
@@ -283,8 +282,7 @@ fs::path find_aevascenes(const fs::path& input) {
   if (input.filename() == kSequenceFile && is_sequence(input.parent_path())) {
     return input.parent_path();
   }
-  const fs::path normal = fs::absolute(input).lexically_normal();
-  const fs::path whole = normal.has_filename() ? normal : normal.parent_path();
+  const fs::path whole = named_path(input);
   const bool holds_points = whole.filename() == kRawFolder || whole.filename() == kCompensatedFolder;
   if (holds_points && is_sequence(whole.parent_path())) {
     return whole;

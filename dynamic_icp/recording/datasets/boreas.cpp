@@ -27,21 +27,6 @@ constexpr std::array<const RecordLayout*, 5> kCandidates = {&formats::kBoreas40,
                                                             &formats::kBoreas28BeamThenTime, &formats::kBoreas24,
                                                             &formats::kBoreas32};
 
-/// The lines of a file that hold something, each with its place for messages.
-std::vector<std::pair<std::string, std::string>> lines_of(const fs::path& path) {
-  const std::string text = formats::read_text_file(path);
-  std::vector<std::pair<std::string, std::string>> lines;
-  std::string_view rest = text;
-  std::size_t number = 1;
-  for (std::optional<std::string_view> line = formats::take_line(rest); line; line = formats::take_line(rest)) {
-    if (!formats::words_of(*line).empty()) {
-      lines.emplace_back(fmt::format("{}: line {}", path.string(), number), *line);
-    }
-    ++number;
-  }
-  return lines;
-}
-
 void check_rows(const fs::path& path, std::size_t rows, std::size_t scans) {
   if (rows != scans) {
     throw DataError(fmt::format("{}: {} lines for {} scans, expected one per scan", path.string(), rows, scans));
@@ -119,7 +104,7 @@ RecordRecording frames_recording(const fs::path& folder) {
   if (poses.empty()) {
     return recording;
   }
-  const auto pose_lines = lines_of(poses);
+  const auto pose_lines = formats::read_lines(poses);
   check_rows(poses, pose_lines.size(), recording.scans.files.size());
   for (std::size_t i = 0; i < pose_lines.size(); ++i) {
     const auto& [place, line] = pose_lines[i];
@@ -133,7 +118,7 @@ RecordRecording frames_recording(const fs::path& folder) {
 
 std::vector<Stamp> read_boreas_times(const fs::path& path) {
   std::vector<Stamp> stamps;
-  for (const auto& [place, line] : lines_of(path)) {
+  for (const auto& [place, line] : formats::read_lines(path)) {
     const std::vector<std::string_view> words = formats::words_of(line);
     const std::optional<Stamp> stamp = parse_seconds(words.front());
     if (words.size() != 1 || !stamp) {

@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -12,7 +13,6 @@
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/truth.hpp"
 #include "dynamic_icp/recording/formats/text_lines.hpp"
-#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -54,18 +54,14 @@ formats::StampedPose pose_in(std::string_view line, const std::string& place) {
 }  // namespace
 
 formats::Trajectory read_boreas_poses(const std::filesystem::path& path) {
-  const std::string text = formats::read_text_file(path);
   formats::Trajectory poses;
-  std::string_view rest = text;
-  std::size_t number = 1;
-  for (std::optional<std::string_view> line = formats::take_line(rest); line; line = formats::take_line(rest)) {
-    const std::string place = fmt::format("{}: line {}", path.string(), number);
-    const bool is_header = number == 1 && line->find_first_of("0123456789") != 0;
-    ++number;
-    if (is_header || formats::words_of(*line).empty()) {
+  bool may_be_header = true;
+  for (const auto& [place, line] : formats::read_lines(path)) {
+    const bool is_header = std::exchange(may_be_header, false) && line.find_first_of("0123456789") != 0;
+    if (is_header) {
       continue;
     }
-    const formats::StampedPose pose = pose_in(*line, place);
+    const formats::StampedPose pose = pose_in(line, place);
     if (!poses.empty() && pose.stamp <= poses.back().stamp) {
       throw DataError(fmt::format("{}: the time stamp {} comes after {}, expected increasing stamps", place,
                                   format_seconds(pose.stamp), format_seconds(poses.back().stamp)));

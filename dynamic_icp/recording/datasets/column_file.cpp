@@ -15,21 +15,8 @@ constexpr const char* kDoppler = "doppler";
 
 /// The column as an array; integers get the one type that holds them all.
 formats::NpyArray array_of(const formats::PlyColumn& column) {
-  const formats::NpyType type = column.type == formats::PlyType::kFloat32   ? formats::NpyType::kFloat32
-                                : column.type == formats::PlyType::kFloat64 ? formats::NpyType::kFloat64
-                                                                            : formats::NpyType::kInt64;
-  formats::NpyArray array{type, {column.values.size()}, {}, {}};
-  array.bytes.reserve(column.values.size() * formats::size_of(type));
-  for (const double value : column.values) {
-    if (type == formats::NpyType::kInt64) {
-      formats::append_value(array.bytes, static_cast<std::int64_t>(value));
-    } else if (type == formats::NpyType::kFloat32) {
-      formats::append_value(array.bytes, static_cast<float>(value));
-    } else {
-      formats::append_value(array.bytes, value);
-    }
-  }
-  return array;
+  const formats::NpyType type = formats::is_float(column.type) ? column.type : formats::NpyType::kInt64;
+  return formats::array_of(type, {column.values.size()}, column.values);
 }
 
 const formats::PlyElement& vertices(const formats::PlyFile& file, const std::filesystem::path& path) {

@@ -160,8 +160,7 @@ class ColumnDataset final : public Dataset {
       const bool of_points = (array.shape.size() == 1 || array.shape.size() == 2) && array.shape.front() == points;
       for (std::size_t k = 0; of_points && k < formats::columns_of(array); ++k) {
         columns.push_back({formats::columns_of(array) == 1 ? name : fmt::format("{}[{}]", name, k),
-                           formats::column_as_doubles(array, k),
-                           array.type != formats::NpyType::kFloat32 && array.type != formats::NpyType::kFloat64});
+                           formats::column_as_doubles(array, k), !formats::is_float(array.type)});
       }
     }
     return columns;
@@ -187,18 +186,14 @@ class ColumnDataset final : public Dataset {
   }
 
   void say_what_has_no_doppler(const fs::path& folder) {
-    std::vector<fs::path> alone;
-    for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    const std::vector<fs::path> alone = entries_of(folder, [](const fs::directory_entry& entry) {
       const fs::path& path = entry.path();
-      if (path.extension() == ".npy" && !path.filename().string().ends_with(kDopplerEnding) && !is_npy_pair(path)) {
-        alone.push_back(path);
-      }
-    }
+      return path.extension() == ".npy" && !path.filename().string().ends_with(kDopplerEnding) && !is_npy_pair(path);
+    });
     if (!alone.empty()) {
-      const fs::path& first = *std::min_element(alone.begin(), alone.end());
       assumptions_.push_back(
-          fmt::format("{}: {} of the *.npy have no *{} beside them and are left out, this is the first", first.string(),
-                      alone.size(), kDopplerEnding));
+          fmt::format("{}: {} of the *.npy have no *{} beside them and are left out, this is the first",
+                      alone.front().string(), alone.size(), kDopplerEnding));
     }
   }
 

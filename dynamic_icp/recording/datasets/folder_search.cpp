@@ -19,27 +19,11 @@ constexpr int kSearchDepth = 3;
 
 char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; }
 
-/// What lies in a folder and passes the test, in the order of names; nothing when the folder cannot be read. Folders of
-/// scans are large: the entry knows its type without asking the system again.
-template <class Test>
-std::vector<fs::path> entries_of(const fs::path& folder, const Test& test) {
-  std::vector<fs::path> entries;
-  std::error_code fault;
-  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
-       entry.increment(fault)) {
-    if (test(*entry)) {
-      entries.push_back(entry->path());
-    }
-  }
-  std::sort(entries.begin(), entries.end());
-  return entries;
-}
-
 /// Links to folders are not: they may lead round in circles. Nor are hidden folders, such as that of a recording which
 /// is being written, or was when its program was ended.
 bool is_own_folder(const fs::directory_entry& entry) {
   std::error_code ignored;
-  return entry.path().filename().string().front() != '.' && !entry.is_symlink(ignored) && entry.is_directory(ignored);
+  return is_visible_folder(entry) && !entry.is_symlink(ignored);
 }
 
 void search(const fs::path& folder, const std::function<bool(const fs::path&)>& wanted, int levels,
@@ -56,6 +40,24 @@ void search(const fs::path& folder, const std::function<bool(const fs::path&)>& 
 }
 
 }  // namespace
+
+std::vector<fs::path> entries_of(const fs::path& folder, const std::function<bool(const fs::directory_entry&)>& test) {
+  std::vector<fs::path> entries;
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
+       entry.increment(fault)) {
+    if (test(*entry)) {
+      entries.push_back(entry->path());
+    }
+  }
+  std::sort(entries.begin(), entries.end());
+  return entries;
+}
+
+bool is_visible_folder(const fs::directory_entry& entry) {
+  std::error_code ignored;
+  return entry.path().filename().string().front() != '.' && entry.is_directory(ignored);
+}
 
 fs::path named_path(const fs::path& path) { return (fs::absolute(path) / ".").lexically_normal().parent_path(); }
 
@@ -92,17 +94,9 @@ bool holds_files(const fs::path& folder, std::string_view extension) {
   return false;
 }
 
-std::vector<fs::path> find_folders(const fs::path& input, const std::function<bool(const fs::path&)>& wanted) {
+fs::path find_folder(const fs::path& input, const std::function<bool(const fs::path&)>& wanted) {
   std::vector<fs::path> found;
   search(input, wanted, kSearchDepth, found);
-  return found;
-}
-
-fs::path find_folder(const fs::path& input, const std::function<bool(const fs::path&)>& wanted) {
-  return only_one(input, find_folders(input, wanted));
-}
-
-fs::path only_one(const fs::path& input, const std::vector<fs::path>& found) {
   if (found.size() > 1) {
     std::string names;
     for (const fs::path& path : found) {

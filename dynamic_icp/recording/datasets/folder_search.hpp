@@ -9,6 +9,14 @@
 
 namespace dynamic_icp::datasets {
 
+/// What lies in a folder and passes the test, in the order of names; nothing when the folder cannot be read. Folders of
+/// scans are large: the entry knows its type without asking the system again.
+std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder,
+                                              const std::function<bool(const std::filesystem::directory_entry&)>& test);
+
+/// A folder, or a link to one, that is not hidden.
+bool is_visible_folder(const std::filesystem::directory_entry& entry);
+
 // Names are compared without regard to upper and lower case (of ASCII letters): releases of the same data set differ.
 
 /// The absolute path without a slash at its end and without "." and "..", so that it has a name and a parent.
@@ -23,17 +31,10 @@ std::filesystem::path child(const std::filesystem::path& folder, std::string_vie
 /// Whether it is a folder with at least one file of this extension (".bin") that is not hidden.
 bool holds_files(const std::filesystem::path& folder, std::string_view extension);
 
-/// The folder `input` or those up to three levels below it that are what is looked for, in the order of names. Below
-/// one that is there is no further search. Archives are often unpacked into a folder more than expected.
-std::vector<std::filesystem::path> find_folders(const std::filesystem::path& input,
-                                                const std::function<bool(const std::filesystem::path&)>& wanted);
-
-/// The only one of them, or empty when there is none. Throws NotARecording that lists them when there are
-/// several.
+/// The only folder that is what is looked for, of `input` and those up to three levels below it; empty when there is
+/// none. Below one that is there is no further search. Archives are often unpacked into a folder more than expected.
+/// Throws NotARecording that lists them when there are several.
 std::filesystem::path find_folder(const std::filesystem::path& input,
                                   const std::function<bool(const std::filesystem::path&)>& wanted);
-
-/// The only one of recordings already found, as above.
-std::filesystem::path only_one(const std::filesystem::path& input, const std::vector<std::filesystem::path>& found);
 
 }  // namespace dynamic_icp::datasets

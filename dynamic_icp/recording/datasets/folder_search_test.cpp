@@ -60,7 +60,6 @@ TEST_F(FolderSearch, GoesThreeLevelsDown) {
 TEST_F(FolderSearch, SeveralMustBeNamed) {
   make("b/wanted/x");
   make("a/wanted/x");
-  EXPECT_EQ(find_folders(folder_, is_wanted), (std::vector<fs::path>{folder_ / "a/wanted", folder_ / "b/wanted"}));
   try {
     find_folder(folder_, is_wanted);
     FAIL();

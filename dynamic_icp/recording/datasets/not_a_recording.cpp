@@ -2,12 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/datasets/not_a_recording.hpp"
 
-#include <algorithm>
 #include <system_error>
-#include <vector>
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
 
 namespace dynamic_icp::datasets {
@@ -31,15 +30,8 @@ std::string known_obstacle(const fs::path& input) {
   if (fs::is_regular_file(input, fault)) {
     return sentence_of(input);
   }
-  std::vector<fs::path> files;
-  for (fs::directory_iterator entry(input, fault); !fault && entry != fs::directory_iterator();
-       entry.increment(fault)) {
-    if (entry->is_regular_file(fault)) {
-      files.push_back(entry->path());
-    }
-  }
-  std::sort(files.begin(), files.end());
-  for (const fs::path& file : files) {
+  const auto is_file = [&](const fs::directory_entry& entry) { return entry.is_regular_file(fault); };
+  for (const fs::path& file : entries_of(input, is_file)) {
     if (std::string sentence = sentence_of(file); !sentence.empty()) {
       return sentence;
     }

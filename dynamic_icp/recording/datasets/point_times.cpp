@@ -20,10 +20,6 @@ constexpr double kLongestSpan_s = 10.0;  // of a scan, in whatever unit
 constexpr double kFarAway_s = 10.0;
 constexpr double kNanosecond = 1e-9;
 
-bool is_float(formats::NpyType type) {
-  return type == formats::NpyType::kFloat32 || type == formats::NpyType::kFloat64;
-}
-
 struct Range {
   double smallest = std::numeric_limits<double>::infinity();
   double largest = -std::numeric_limits<double>::infinity();
@@ -64,7 +60,7 @@ std::int64_t unix_unit(double value) {
 }
 
 std::int64_t unit_of_offsets(const formats::NpyArray& column, const Range& range, double period_s) {
-  if (!is_float(column.type)) {
+  if (!formats::is_float(column.type)) {
     return 1;
   }
   if (range.span() < kLongestSpan_s) {
@@ -80,7 +76,7 @@ TimeUnit time_unit(std::string_view name, const formats::NpyArray& column, doubl
   const Range range = range_of(column);
   TimeUnit unit;
   // Integers so large cannot be nanoseconds after a stamp of some scan: 1e15 ns are 11 days.
-  const bool is_unix = !range.empty() && range.smallest >= (is_float(column.type) ? kUnixSeconds : 1e15);
+  const bool is_unix = !range.empty() && range.smallest >= (formats::is_float(column.type) ? kUnixSeconds : 1e15);
   for (const UnitName& known : kUnits) {
     if (name.ends_with(known.ending)) {
       unit.ns = known.ns;
@@ -92,7 +88,7 @@ TimeUnit time_unit(std::string_view name, const formats::NpyArray& column, doubl
   unit.ns = is_unix ? unix_unit(range.smallest) : unit_of_offsets(column, range, period_s);
   unit.assumption = fmt::format("times of points in column '{}' are taken as {} {}: they are {} from {} to {}", name,
                                 name_of(unit.ns), is_unix ? "since 1970" : "after the stamp of the scan",
-                                is_float(column.type) ? "floating-point numbers" : "integers",
+                                formats::is_float(column.type) ? "floating-point numbers" : "integers",
                                 range.empty() ? 0.0 : range.smallest, range.empty() ? 0.0 : range.largest);
   return unit;
 }
@@ -107,7 +103,7 @@ std::vector<double> times_after(Stamp stamp, const formats::NpyArray& column, co
     }
     return times;
   }
-  if (!is_float(column.type)) {
+  if (!formats::is_float(column.type)) {
     const std::vector<std::int64_t> exact = formats::column_as_integers(column);
     const std::int64_t smallest = exact.empty() ? 0 : *std::min_element(exact.begin(), exact.end());
     // Differences in unsigned numbers: exact where they are small, and defined where they are not.

@@ -4,12 +4,40 @@
 
 #include <utility>
 
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/foreign_numbers.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/record_file.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// Seconds after the stamp, one float32 per point.
+std::vector<double> read_times(const fs::path& path, const RawScan& scan, const fs::path& scan_file) {
+  const std::size_t points = scan.points.size();
+  formats::RecordFile file(path, sizeof(float));
+  if (file.records() != points || (points > 0 && !file.warning().empty())) {
+    // A scan that was cut has fewer points than it had times; so has one that is empty, or ends within a record.
+    const bool is_cut = !scan.warning.empty() || points < file.records();
+    throw DataError(is_cut ? fmt::format("{}: {} points, expected {} as there are times in {}: the scan is cut short{}",
+                                         scan_file.string(), points, file.records(), path.string(),
+                                         scan.warning.empty() ? "" : fmt::format(" ({})", scan.warning))
+                           : fmt::format("{}: {} times for the {} points of {}, expected one float32 per point",
+                                         path.string(), file.records(), points, scan_file.string()));
+  }
+  std::vector<double> times;
+  times.reserve(points);
+  for (std::string_view block = file.next(); !block.empty(); block = file.next()) {
+    for (std::size_t at = 0; at < block.size(); at += sizeof(float)) {
+      times.push_back(formats::value_at<float>(block, at));
+    }
+  }
+  return times;
+}
 
 class RecordDataset final : public Dataset {
  public:
@@ -33,6 +61,9 @@ class RecordDataset final : public Dataset {
     RawScan raw = formats::read_points(file, layout);
     refuse_foreign_numbers(raw, file, layout);
     raw.stamp = recording_.scans.stamps[index];
+    if (!recording_.times.empty()) {
+      raw.times = read_times(recording_.times / file.filename(), raw, file);
+    }
     return raw;
   }
 

@@ -20,6 +20,7 @@ struct RecordRecording {
   std::string_view format;
   StampedFiles scans;  ///< at least one
   std::function<const formats::RecordLayout&(const std::filesystem::path& file, Stamp stamp)> layout_of;
+  std::filesystem::path times = {};  ///< folder of the times of points, a file of float32 for each scan; empty: none
   Truth truth;
   std::optional<Eigen::Isometry3d> T_vehicle_sensor;
 };

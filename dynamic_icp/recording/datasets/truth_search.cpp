@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 
 namespace dynamic_icp::datasets {
@@ -17,23 +18,10 @@ namespace fs = std::filesystem;
 
 constexpr double kNear_s = 0.2;
 
-bool is_candidate(const fs::path& path) {
-  const std::string name = path.filename().string();
+bool is_candidate(const fs::directory_entry& entry) {
+  const std::string name = entry.path().filename().string();
   return name == "ref_poses.txt" || name == "ground_truth.txt" || name == "gt.txt" || name == "poses.txt" ||
          (name.ends_with("_gt.txt") && name.front() != '.');
-}
-
-std::vector<fs::path> candidates_in(const fs::path& folder) {
-  std::vector<fs::path> found;
-  std::error_code ignored;
-  for (fs::directory_iterator entry(folder, ignored); !ignored && entry != fs::directory_iterator();
-       entry.increment(ignored)) {
-    if (is_candidate(entry->path())) {
-      found.push_back(entry->path());
-    }
-  }
-  std::sort(found.begin(), found.end());
-  return found;
 }
 
 bool is_near(const formats::Trajectory& poses, Stamp stamp) {
@@ -59,7 +47,7 @@ std::string misfit(const formats::Trajectory& poses, const std::vector<Stamp>& s
 std::vector<Truth> fitting_in(const fs::path& folder, const std::vector<Stamp>& stamps, bool stamps_are_indices,
                               std::vector<std::string>& assumptions) {
   std::vector<Truth> fitting;
-  for (const fs::path& path : candidates_in(folder)) {
+  for (const fs::path& path : entries_of(folder, is_candidate)) {
     try {
       formats::Trajectory poses = formats::read_tum(path).trajectory;
       const std::string reason = misfit(poses, stamps, stamps_are_indices);
@@ -79,9 +67,7 @@ std::vector<Truth> fitting_in(const fs::path& folder, const std::vector<Stamp>& 
 
 Truth search_truth(const fs::path& folder, const std::vector<Stamp>& stamps, bool stamps_are_indices,
                    std::vector<std::string>& assumptions) {
-  const fs::path whole = fs::absolute(folder).lexically_normal();  // with a slash at the end its parent is itself
-  const fs::path above = whole.has_filename() ? whole.parent_path() : whole.parent_path().parent_path();
-  for (const fs::path& place : {folder, above}) {
+  for (const fs::path& place : {folder, named_path(folder).parent_path()}) {
     std::vector<Truth> fitting = fitting_in(place, stamps, stamps_are_indices, assumptions);
     if (fitting.size() > 1) {
       std::string names;

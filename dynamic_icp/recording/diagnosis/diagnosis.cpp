@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
+#include <set>
+
 #include "dynamic_icp/recording/diagnosis/evidence.hpp"
 #include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
@@ -43,7 +45,11 @@ const Finding& Diagnosis::of(Question question) const { return findings.at(stati
 Diagnosis diagnose(const datasets::Dataset& dataset, const DiagnosisConfig& config, const Workers& workers) {
   const Evidence evidence = gather(dataset, config, workers);
   Diagnosis diagnosis;
-  diagnosis.scans_looked_at = evidence.looks.size();
+  std::set<Stamp> stamps;  // stretches of a short recording overlap
+  for (const ScanLook& look : evidence.looks) {
+    stamps.insert(look.stamp);
+  }
+  diagnosis.scans_looked_at = stamps.size();
   diagnosis.period_s = evidence.period_s;
   const std::optional<NoDoppler> none = no_doppler(evidence);
   diagnosis.has_doppler = !none || none->may_be_static;

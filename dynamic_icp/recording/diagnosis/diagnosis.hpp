@@ -57,9 +57,9 @@ struct Finding {
 /// All answers, in the order of the questions.
 struct Diagnosis {
   std::vector<Finding> findings;
-  std::size_t scans_looked_at = 0;
-  double period_s = 0.0;    ///< from scan to scan, median; 0 of one scan
-  bool has_doppler = true;  ///< off: what stands for it is zeros or other numbers, see kDopplerKind
+  std::size_t scans_looked_at = 0;  ///< each counted once
+  double period_s = 0.0;            ///< from scan to scan, median; 0 of one scan
+  bool has_doppler = true;          ///< off: what stands for it is zeros or other numbers, see kDopplerKind
 
   [[nodiscard]] const Finding& of(Question question) const;
 };

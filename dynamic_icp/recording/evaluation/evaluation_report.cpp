@@ -13,59 +13,24 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-const char* status_name(AlignmentStatus status) {
-  switch (status) {
-    case AlignmentStatus::kGiven:
-      return "given";
-    case AlignmentStatus::kUnique:
-      return "unique";
-    case AlignmentStatus::kLine:
-      return "line";
-    case AlignmentStatus::kPoint:
-      return "point";
-    case AlignmentStatus::kNotRun:
-      break;
-  }
-  return "not-run";
-}
+// In the order of their types.
+constexpr const char* kStatusNames[] = {"not-run", "given", "unique", "line", "point"};
+constexpr const char* kUnitNames[] = {"frames", "seconds", "meters"};
+constexpr const char* kAlignmentNames[] = {"none", "first", "se3", "sim3"};
+constexpr const char* kAlignmentTexts[] = {"not aligned", "first poses made equal", "best rigid alignment",
+                                           "best alignment with scale"};
 
-const char* unit_name(GapUnit unit) {
-  switch (unit) {
-    case GapUnit::kSeconds:
-      return "seconds";
-    case GapUnit::kMeters:
-      return "meters";
-    case GapUnit::kFrames:
-      break;
-  }
-  return "frames";
+template <class Enum, std::size_t kCount>
+const char* name_of(const char* const (&names)[kCount], Enum value) {
+  return names[static_cast<std::size_t>(value)];
 }
 
 /// "1 frame", "12 frames", "0.5 s", "100 m".
 std::string gap_text(const RelativeGap& gap) {
-  switch (gap.unit) {
-    case GapUnit::kSeconds:
-      return fmt::format("{} s", gap.length);
-    case GapUnit::kMeters:
-      return fmt::format("{} m", gap.length);
-    case GapUnit::kFrames:
-      break;
+  if (gap.unit == GapUnit::kFrames) {
+    return fmt::format("{:g} frame{}", gap.length, gap.length == 1.0 ? "" : "s");
   }
-  return fmt::format("{:g} frame{}", gap.length, gap.length == 1.0 ? "" : "s");
-}
-
-std::string alignment_text(Alignment alignment) {
-  switch (alignment) {
-    case Alignment::kFirst:
-      return "first poses made equal";
-    case Alignment::kSe3:
-      return "best rigid alignment";
-    case Alignment::kSim3:
-      return "best alignment with scale";
-    case Alignment::kNone:
-      break;
-  }
-  return "not aligned";
+  return fmt::format("{} {}", gap.length, gap.unit == GapUnit::kSeconds ? "s" : "m");
 }
 
 std::string number_text(std::optional<double> number) { return number ? fmt::format("{:.4g}", *number) : "-"; }
@@ -100,7 +65,7 @@ std::string errors_text(const Evaluation& evaluation) {
                                  "p95", "max", "n");
   text += statistics_row(fmt::format("RTE  m, translation over {}", gap), evaluation.relative.translation_m);
   text += statistics_row(fmt::format("RRE  deg, rotation over {}", gap), evaluation.relative.rotation_deg);
-  text += statistics_row(fmt::format("ATE  m, position, {}", alignment_text(evaluation.absolute.alignment)),
+  text += statistics_row(fmt::format("ATE  m, position, {}", name_of(kAlignmentTexts, evaluation.absolute.alignment)),
                          evaluation.absolute.translation_m);
   return text;
 }
@@ -185,7 +150,7 @@ Json alignment_json(const AbsoluteError& absolute) {
   const Eigen::Vector3d t = absolute.T_reference_estimate.translation();
   const Eigen::Quaterniond q(absolute.T_reference_estimate.linear());
   return {{"kind", alignment_name(absolute.alignment)},
-          {"status", status_name(absolute.status)},
+          {"status", name_of(kStatusNames, absolute.status)},
           {"scale", absolute.scale},
           {"translation", {t.x(), t.y(), t.z()}},
           {"quaternion_xyzw", {q.x(), q.y(), q.z(), q.w()}}};
@@ -206,19 +171,7 @@ Json segments_json(const SegmentError& segments) {
 
 }  // namespace
 
-const char* alignment_name(Alignment alignment) {
-  switch (alignment) {
-    case Alignment::kFirst:
-      return "first";
-    case Alignment::kSe3:
-      return "se3";
-    case Alignment::kSim3:
-      return "sim3";
-    case Alignment::kNone:
-      break;
-  }
-  return "none";
-}
+const char* alignment_name(Alignment alignment) { return name_of(kAlignmentNames, alignment); }
 
 std::string evaluation_table(const Evaluation& evaluation, const EvaluationSource& source) {
   return matching_text(evaluation, source) + errors_text(evaluation) + segments_text(evaluation.segments) +
@@ -242,7 +195,7 @@ std::string evaluation_json(const Evaluation& evaluation, const EvaluationSource
   json["path_length_m"] = number(evaluation.reference_path_length_m);
   json["estimate_path_length_m"] = number(evaluation.estimate_path_length_m);
   json["repeated_reference_poses"] = evaluation.repeated_reference_poses;
-  json["relative_gap"] = {{"unit", unit_name(evaluation.relative.gap.unit)},
+  json["relative_gap"] = {{"unit", name_of(kUnitNames, evaluation.relative.gap.unit)},
                           {"length", evaluation.relative.gap.length}};
   json["relative_steps"] = evaluation.relative.steps.size();
   json["relative_steps_over_unmatched"] = evaluation.relative.steps_over_unmatched;

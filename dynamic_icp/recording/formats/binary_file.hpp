@@ -15,9 +15,12 @@ namespace dynamic_icp::formats {
 
 static_assert(std::endian::native == std::endian::little, "binary files are written as they lie in memory");
 
-/// Writes bytes to a new file of an output folder (output_folder.hpp): not synchronised one by one, because the folder
-/// only counts once it is committed. Throws DataError naming file and reason.
+/// Writes bytes, or a text, to a new file of an output folder (output_folder.hpp): not synchronised one by one, because
+/// the folder only counts once it is committed. Throws DataError naming file and reason.
 void write_bytes(const std::filesystem::path& path, std::span<const std::byte> bytes);
+inline void write_bytes(const std::filesystem::path& path, std::string_view bytes) {
+  write_bytes(path, std::as_bytes(std::span(bytes)));
+}
 
 /// Writes numbers one after the other, little-endian.
 template <class Number>

@@ -41,6 +41,25 @@ constexpr Mark kMarks[] = {
     {"FIELDS ", FileKind::kPcd},   // others the version too
 };
 
+// In the order of FileKind.
+constexpr std::string_view kSentences[] = {
+    "",
+    "is a Git LFS pointer, not data; run 'git lfs pull' where it came from",
+    "is a zip archive; unpack it first",
+    "is compressed with gzip; unpack it first ('gunzip', or 'tar xzf' for a .tar.gz)",
+    "is compressed with Zstandard; unpack it first ('zstd -d')",
+    "is a 7z archive; unpack it first",
+    "is a tar archive; unpack it first ('tar xf')",
+    "is an array of NumPy (.npy)",
+    "is an MCAP recording",
+    "is a ROS 1 bag",
+    "is a ROS bag from before version 2.0; convert it with 'rosbag fix' first",
+    "is an SQLite database, as the .db3 files of ROS 2 bags are",
+    "is a PLY file",
+    "is a PCD file",
+};
+static_assert(std::size(kSentences) == static_cast<std::size_t>(FileKind::kPcd) + 1);
+
 unsigned char byte_at(std::string_view head, std::size_t at) { return static_cast<unsigned char>(head[at]); }
 
 /// Two marking bytes alone could begin a coordinate: method, flags, level and system must be possible as well.
@@ -109,39 +128,7 @@ FileKind kind_of_file(const std::filesystem::path& path) {
   return kind_of({head.data(), static_cast<std::size_t>(file.gcount())});
 }
 
-std::string_view sentence(FileKind kind) {
-  switch (kind) {
-    case FileKind::kUnknown:
-      return "";
-    case FileKind::kLfsPointer:
-      return "is a Git LFS pointer, not data; run 'git lfs pull' where it came from";
-    case FileKind::kZip:
-      return "is a zip archive; unpack it first";
-    case FileKind::kGzip:
-      return "is compressed with gzip; unpack it first ('gunzip', or 'tar xzf' for a .tar.gz)";
-    case FileKind::kZstd:
-      return "is compressed with Zstandard; unpack it first ('zstd -d')";
-    case FileKind::kSevenZip:
-      return "is a 7z archive; unpack it first";
-    case FileKind::kTar:
-      return "is a tar archive; unpack it first ('tar xf')";
-    case FileKind::kNpy:
-      return "is an array of NumPy (.npy)";
-    case FileKind::kMcap:
-      return "is an MCAP recording";
-    case FileKind::kRosBag:
-      return "is a ROS 1 bag";
-    case FileKind::kOldRosBag:
-      return "is a ROS bag from before version 2.0; convert it with 'rosbag fix' first";
-    case FileKind::kSqlite:
-      return "is an SQLite database, as the .db3 files of ROS 2 bags are";
-    case FileKind::kPly:
-      return "is a PLY file";
-    case FileKind::kPcd:
-      return "is a PCD file";
-  }
-  return "";
-}
+std::string_view sentence(FileKind kind) { return kSentences[static_cast<std::size_t>(kind)]; }
 
 void refuse_other_kind(const std::filesystem::path& path, std::string_view head, FileKind expected) {
   const FileKind kind = kind_of(head);

@@ -50,36 +50,12 @@ const Json& JsonRow::get(const char* key) const {
   return *found;
 }
 
-const Json& JsonRow::list(const char* key) const {
+const Json& JsonRow::get(const char* key, bool (Json::*is_kind)() const noexcept, std::string_view expected) const {
   const Json& value = get(key);
-  if (!value.is_array()) {
-    fail(key, "a list");
+  if (!(value.*is_kind)()) {
+    fail(key, expected);
   }
   return value;
-}
-
-std::int64_t JsonRow::integer(const char* key) const {
-  const Json& value = get(key);
-  if (!value.is_number_integer()) {
-    fail(key, "a whole number");
-  }
-  return value.get<std::int64_t>();
-}
-
-bool JsonRow::truth(const char* key) const {
-  const Json& value = get(key);
-  if (!value.is_boolean()) {
-    fail(key, "true or false");
-  }
-  return value.get<bool>();
-}
-
-std::string JsonRow::text(const char* key) const {
-  const Json& value = get(key);
-  if (!value.is_string()) {
-    fail(key, "a text");
-  }
-  return value.get<std::string>();
 }
 
 double JsonRow::number(const Json& value, const char* key) const {

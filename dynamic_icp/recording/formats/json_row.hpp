@@ -23,10 +23,14 @@ class JsonRow {
 
   [[nodiscard]] bool has(const char* key) const { return object_.contains(key); }
   [[nodiscard]] const Json& get(const char* key) const;
-  [[nodiscard]] const Json& list(const char* key) const;
-  [[nodiscard]] std::int64_t integer(const char* key) const;
-  [[nodiscard]] bool truth(const char* key) const;
-  [[nodiscard]] std::string text(const char* key) const;
+  [[nodiscard]] const Json& list(const char* key) const { return get(key, &Json::is_array, "a list"); }
+  [[nodiscard]] std::int64_t integer(const char* key) const {
+    return get(key, &Json::is_number_integer, "a whole number").get<std::int64_t>();
+  }
+  [[nodiscard]] bool truth(const char* key) const { return get(key, &Json::is_boolean, "true or false").get<bool>(); }
+  [[nodiscard]] std::string text(const char* key) const {
+    return get(key, &Json::is_string, "a text").get<std::string>();
+  }
 
   /// NaN where the value is null.
   [[nodiscard]] double number(const char* key) const { return number(get(key), key); }
@@ -51,6 +55,8 @@ class JsonRow {
   [[noreturn]] void fail(const char* key, std::string_view expected) const;
 
  private:
+  [[nodiscard]] const Json& get(const char* key, bool (Json::*is_kind)() const noexcept,
+                                std::string_view expected) const;
   void check_size(const char* key, std::size_t size) const;
 
   const Json& object_;

@@ -48,33 +48,6 @@ void reverse_items(std::string& bytes, std::size_t item_bytes) {
   }
 }
 
-/// Calls `use` with a zero of the type's numbers.
-template <class Use>
-void with_type(NpyType type, const Use& use) {
-  switch (type) {
-    case NpyType::kFloat32:
-      return use(float{});
-    case NpyType::kFloat64:
-      return use(double{});
-    case NpyType::kInt8:
-      return use(std::int8_t{});
-    case NpyType::kInt16:
-      return use(std::int16_t{});
-    case NpyType::kInt32:
-      return use(std::int32_t{});
-    case NpyType::kInt64:
-      return use(std::int64_t{});
-    case NpyType::kUint8:
-      return use(std::uint8_t{});
-    case NpyType::kUint16:
-      return use(std::uint16_t{});
-    case NpyType::kUint32:
-      return use(std::uint32_t{});
-    case NpyType::kUint64:
-      return use(std::uint64_t{});
-  }
-}
-
 /// An array may have any number of rows that take no bytes, as long as it has no columns.
 void check_column(const NpyArray& array, std::size_t column) {
   if (column >= columns_of(array)) {
@@ -133,6 +106,17 @@ NpyArray npy_array(NpyType type, std::vector<std::size_t> shape, std::span<const
   NpyArray array{type, std::move(shape), {}, "array"};
   array.bytes.assign(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   check_size(array);
+  return array;
+}
+
+NpyArray array_of(NpyType type, std::vector<std::size_t> shape, std::span<const double> values) {
+  NpyArray array{type, std::move(shape), {}, "array"};
+  array.bytes.reserve(values.size() * size_of(type));
+  with_type(type, [&](auto zero) {
+    for (const double value : values) {
+      append_value(array.bytes, static_cast<decltype(zero)>(value));
+    }
+  });
   return array;
 }
 

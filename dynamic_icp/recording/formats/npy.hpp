@@ -66,6 +66,9 @@ NpyArray npy_array(std::vector<std::size_t> shape, std::span<const Number> value
   return npy_array(npy_type_of<Number>(), std::move(shape), std::as_bytes(values));
 }
 
+/// The same of numbers of any type, which holds them.
+NpyArray array_of(NpyType type, std::vector<std::size_t> shape, std::span<const double> values);
+
 /// N and k of an array of shape (N, k); k is 1 for (N,). Throws DataError for other shapes.
 std::size_t rows_of(const NpyArray& array);
 std::size_t columns_of(const NpyArray& array);

@@ -127,13 +127,13 @@ void read_type(LiteralReader& reader, NpyHeader& header, std::string_view origin
   const std::string_view order = described.substr(0, 1);
   const std::string_view code =
       described == "|b1" ? "u1" : described.substr(std::min<std::size_t>(1, described.size()));
-  const auto* const found = std::find(kCodes.begin(), kCodes.end(), code);
+  const std::optional<NpyType> type = type_of_code(code);
   const bool ordered = order == "<" || order == ">" || (order == "|" && code.ends_with('1'));
-  if (found == kCodes.end() || !ordered) {
+  if (!type || !ordered) {
     throw DataError(fmt::format("{}: has the type '{}', expected one of {} after '<' or '>'", origin, described,
                                 fmt::join(kCodes, " ")));
   }
-  header.type = static_cast<NpyType>(found - kCodes.begin());
+  header.type = *type;
   header.big_endian = order == ">";
 }
 
@@ -163,6 +163,11 @@ std::pair<std::size_t, std::size_t> text_range(std::string_view content, std::st
 }  // namespace
 
 std::string_view code_of(NpyType type) { return kCodes.at(static_cast<std::size_t>(type)); }
+
+std::optional<NpyType> type_of_code(std::string_view code) {
+  const auto* const found = std::find(kCodes.begin(), kCodes.end(), code);
+  return found == kCodes.end() ? std::nullopt : std::optional(static_cast<NpyType>(found - kCodes.begin()));
+}
 
 std::size_t size_of(NpyType type) { return static_cast<std::size_t>(code_of(type)[1] - '0'); }
 

@@ -4,13 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
 namespace dynamic_icp::formats {
 
-/// The types of numbers in NPY files.
+/// The types of numbers in NPY files; those of PCD and PLY are among them.
 enum class NpyType : std::uint8_t {
   kFloat32,
   kFloat64,
@@ -27,8 +28,41 @@ enum class NpyType : std::uint8_t {
 /// NumPy's code for the type, e.g. "f4": its kind and the number of bytes.
 std::string_view code_of(NpyType type);
 
+/// The type of that code; nothing for other texts.
+std::optional<NpyType> type_of_code(std::string_view code);
+
 /// The bytes of one number.
 std::size_t size_of(NpyType type);
+
+constexpr bool is_float(NpyType type) { return type == NpyType::kFloat32 || type == NpyType::kFloat64; }
+
+/// Calls `use` with a zero of the type's numbers.
+template <class Use>
+auto with_type(NpyType type, const Use& use) {
+  switch (type) {
+    case NpyType::kFloat32:
+      return use(float{});
+    case NpyType::kFloat64:
+      return use(double{});
+    case NpyType::kInt8:
+      return use(std::int8_t{});
+    case NpyType::kInt16:
+      return use(std::int16_t{});
+    case NpyType::kInt32:
+      return use(std::int32_t{});
+    case NpyType::kInt64:
+      return use(std::int64_t{});
+    case NpyType::kUint8:
+      return use(std::uint8_t{});
+    case NpyType::kUint16:
+      return use(std::uint16_t{});
+    case NpyType::kUint32:
+      return use(std::uint32_t{});
+    case NpyType::kUint64:
+      break;
+  }
+  return use(std::uint64_t{});
+}
 
 /// What stands before the data of an NPY file.
 struct NpyHeader {

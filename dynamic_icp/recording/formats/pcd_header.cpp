@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/formats/pcd_header.hpp"
 
 #include <algorithm>
+#include <cctype>
 #include <limits>
 #include <map>
 #include <optional>
@@ -34,12 +35,8 @@ std::string printable(std::string_view text) {
 
 /// TYPE and SIZE as they stand in the file; nothing for what is no type of numbers.
 std::optional<NpyType> type_of(std::string_view type, std::string_view size) {
-  const std::map<std::string_view, NpyType> known = {
-      {"F4", NpyType::kFloat32}, {"F8", NpyType::kFloat64}, {"I1", NpyType::kInt8},  {"I2", NpyType::kInt16},
-      {"I4", NpyType::kInt32},   {"I8", NpyType::kInt64},   {"U1", NpyType::kUint8}, {"U2", NpyType::kUint16},
-      {"U4", NpyType::kUint32},  {"U8", NpyType::kUint64}};
-  const auto found = known.find(fmt::format("{}{}", type, size));
-  return found == known.end() ? std::nullopt : std::optional(found->second);
+  const bool is_known = type == "F" || type == "I" || type == "U";
+  return is_known ? type_of_code(fmt::format("{:c}{}", std::tolower(type.front()), size)) : std::nullopt;
 }
 
 class HeaderReader {

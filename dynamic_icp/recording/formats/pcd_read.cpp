@@ -40,29 +40,7 @@ bool append_text(std::string& bytes, std::string_view text) {
 }
 
 bool append_text(std::string& bytes, NpyType type, std::string_view text) {
-  switch (type) {
-    case NpyType::kFloat32:
-      return append_text<float>(bytes, text);
-    case NpyType::kFloat64:
-      return append_text<double>(bytes, text);
-    case NpyType::kInt8:
-      return append_text<std::int8_t>(bytes, text);
-    case NpyType::kInt16:
-      return append_text<std::int16_t>(bytes, text);
-    case NpyType::kInt32:
-      return append_text<std::int32_t>(bytes, text);
-    case NpyType::kInt64:
-      return append_text<std::int64_t>(bytes, text);
-    case NpyType::kUint8:
-      return append_text<std::uint8_t>(bytes, text);
-    case NpyType::kUint16:
-      return append_text<std::uint16_t>(bytes, text);
-    case NpyType::kUint32:
-      return append_text<std::uint32_t>(bytes, text);
-    case NpyType::kUint64:
-      return append_text<std::uint64_t>(bytes, text);
-  }
-  return false;
+  return with_type(type, [&](auto zero) { return append_text<decltype(zero)>(bytes, text); });
 }
 
 /// Copies `kBytes` from the beginning of each record.

@@ -12,7 +12,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/random_source.hpp"
-#include "dynamic_icp/recording/formats/pcd.hpp"
+#include "dynamic_icp/recording/formats/point_table.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -233,7 +233,7 @@ TEST(PcdRead, GivesBackWhatWasWrittenBitByBit) {
     for (int k = 0; k < fields; ++k) {
       columns.push_back(random_array(source.fork(static_cast<std::uint64_t>(k)), rows, k));
     }
-    const PcdFile file = parse(pcd_table_bytes(columns));
+    const PcdFile file = parse(pcd_bytes(columns));
     ASSERT_EQ(file.points(), rows);
     ASSERT_EQ(file.names().size(), columns.size());
     for (const NamedArray& column : columns) {
@@ -248,10 +248,10 @@ TEST(PcdRead, GivesBackWhatWasWrittenBitByBit) {
 TEST(PcdRead, WrongTablesAreRefused) {
   const std::vector<float> two = {1, 2};
   const NamedArray x{"x", npy_array<float>({2}, two)};
-  EXPECT_THROW(pcd_table_bytes({}), std::invalid_argument);
-  EXPECT_THROW(pcd_table_bytes(std::vector<NamedArray>{x, x}), std::invalid_argument);
-  EXPECT_THROW(pcd_table_bytes(std::vector<NamedArray>{x, {"y z", x.array}}), std::invalid_argument);
-  EXPECT_THROW(pcd_table_bytes(std::vector<NamedArray>{x, {"y", npy_array<float>({1}, std::span(two).first(1))}}),
+  EXPECT_THROW(pcd_bytes({}), std::invalid_argument);
+  EXPECT_THROW(pcd_bytes(std::vector<NamedArray>{x, x}), std::invalid_argument);
+  EXPECT_THROW(pcd_bytes(std::vector<NamedArray>{x, {"y z", x.array}}), std::invalid_argument);
+  EXPECT_THROW(pcd_bytes(std::vector<NamedArray>{x, {"y", npy_array<float>({1}, std::span(two).first(1))}}),
                std::invalid_argument);
 }
 

@@ -3,16 +3,16 @@
 #include "dynamic_icp/recording/formats/ply.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <optional>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/parse_number.hpp"
-#include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
 #include "dynamic_icp/recording/formats/ply_values.hpp"
@@ -27,6 +27,14 @@ enum class Encoding { kAscii, kLittleEndian, kBigEndian };
 // No file has that many but a damaged one; each is looked up among the others by its name.
 constexpr std::size_t kMaxElements = 1024;
 constexpr std::size_t kMaxColumns = 1024;  // of an element
+
+/// The least and the largest number of a type.
+std::pair<double, double> range_of(NpyType type) {
+  return with_type(type, [](auto zero) {
+    using Limits = std::numeric_limits<decltype(zero)>;
+    return std::pair(static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max()));
+  });
+}
 
 class Reader {
  public:
@@ -118,8 +126,8 @@ class Reader {
     count_types_.emplace_back();
   }
 
-  PlyType type_of(std::string_view name) const {
-    const std::optional<PlyType> type = ply_type_of(name);
+  NpyType type_of(std::string_view name) const {
+    const std::optional<NpyType> type = ply_type_of(name);
     if (!type) {
       fail(
           fmt::format("type '{}', expected one of: int8, uint8, int16, uint16, int32, uint32, float32, float64", name));
@@ -138,8 +146,8 @@ class Reader {
     if (element.find(name) != nullptr) {
       fail(fmt::format("property '{}' of element '{}' for the second time", name, element.name));
     }
-    const PlyType length_type = type_of(count_type.value_or("uint8"));
-    if (!traits(length_type).whole) {
+    const NpyType length_type = type_of(count_type.value_or("uint8"));
+    if (is_float(length_type)) {
       fail(fmt::format("list '{}' has lengths of type '{}', expected a whole-number type", name, *count_type));
     }
     element.columns.push_back({std::string(name), type_of(type), count_type.has_value(), {}, {}});
@@ -147,12 +155,12 @@ class Reader {
   }
 
   /// Takes memory for the records, if the file is long enough for so many.
-  void reserve(PlyElement& element, const std::vector<PlyType>& count_types) {
+  void reserve(PlyElement& element, const std::vector<NpyType>& count_types) {
     const bool ascii = encoding_ == Encoding::kAscii;
     std::size_t min_bytes = 0;  // of a record
     for (std::size_t i = 0; i < count_types.size(); ++i) {
-      const PlyType first = element.columns[i].is_list ? count_types[i] : element.columns[i].type;
-      min_bytes += ascii ? 2 : traits(first).bytes;  // a digit and a blank
+      const NpyType first = element.columns[i].is_list ? count_types[i] : element.columns[i].type;
+      min_bytes += ascii ? 2 : size_of(first);  // a digit and a blank
     }
     const std::size_t room = rest_.size() + (ascii ? 1 : 0);  // the last line may have no end
     if (min_bytes == 0 ? element.count > 0 : element.count > room / min_bytes) {
@@ -169,7 +177,7 @@ class Reader {
     }
   }
 
-  void read_element(PlyElement& element, const std::vector<PlyType>& count_types) {
+  void read_element(PlyElement& element, const std::vector<NpyType>& count_types) {
     reserve(element, count_types);
     if (encoding_ != Encoding::kAscii && has_no_lists(element)) {
       read_columns(element);
@@ -193,13 +201,13 @@ class Reader {
   void read_columns(PlyElement& element) {
     std::size_t record_bytes = 0;
     for (const PlyColumn& column : element.columns) {
-      record_bytes += traits(column.type).bytes;
+      record_bytes += size_of(column.type);
     }
     const char* field = rest_.data();
     for (PlyColumn& column : element.columns) {
       column.values.resize(element.count);
-      load_column(column, field, record_bytes, encoding_ == Encoding::kBigEndian);
-      field += traits(column.type).bytes;
+      load_numbers(column.type, field, record_bytes, encoding_ == Encoding::kBigEndian, column.values);
+      field += size_of(column.type);
     }
     rest_.remove_prefix(element.count * record_bytes);
   }
@@ -217,7 +225,7 @@ class Reader {
     for (PlyColumn& column : element.columns) {
       std::size_t length = 1;
       if (column.is_list) {
-        length = static_cast<std::size_t>(parse(words, used++, column, PlyType::kUint32));
+        length = static_cast<std::size_t>(parse(words, used++, column, NpyType::kUint32));
       }
       for (std::size_t i = 0; i < length; ++i) {
         column.values.push_back(parse(words, used++, column, column.type));
@@ -230,28 +238,24 @@ class Reader {
   }
 
   [[nodiscard]] double parse(const std::vector<std::string_view>& words, std::size_t i, const PlyColumn& column,
-                             PlyType type) const {
+                             NpyType type) const {
     if (i >= words.size()) {
       fail(fmt::format("{} values, expected more: '{}' is missing", words.size(), column.name));
     }
     const std::optional<double> number = parse_number<double>(words[i]);
-    const PlyTypeTraits& range = traits(type);
-    const bool fits =
-        number &&
-        (!range.whole || (*number >= range.minimum && *number <= range.maximum && *number == std::floor(*number)));
-    if (!fits) {
-      fail(fmt::format(
-          "value {} ('{}') is '{}', expected {}", i + 1, column.name, words[i],
-          range.whole ? fmt::format("a whole number from {} to {}", range.minimum, range.maximum) : "a number"));
+    const auto [least, most] = range_of(type);
+    if (!number || (!is_float(type) && !(*number >= least && *number <= most && *number == std::floor(*number)))) {
+      fail(fmt::format("value {} ('{}') is '{}', expected {}", i + 1, column.name, words[i],
+                       is_float(type) ? "a number" : fmt::format("a whole number from {} to {}", least, most)));
     }
     return *number;
   }
 
-  void read_record(PlyElement& element, const std::vector<PlyType>& count_types, std::size_t record) {
+  void read_record(PlyElement& element, const std::vector<NpyType>& count_types, std::size_t record) {
     for (std::size_t i = 0; i < count_types.size(); ++i) {
       PlyColumn& column = element.columns[i];
-      const auto expect_bytes = [&](double count, PlyType type) {
-        if (count < 0.0 || count * static_cast<double>(traits(type).bytes) > static_cast<double>(rest_.size())) {
+      const auto expect_bytes = [&](double count, NpyType type) {
+        if (count < 0.0 || count * static_cast<double>(size_of(type)) > static_cast<double>(rest_.size())) {
           throw DataError(fmt::format("{}: record {} of element '{}': '{}' has {} values, the file has {} bytes left",
                                       origin_.string(), record + 1, element.name, column.name, count, rest_.size()));
         }
@@ -270,15 +274,11 @@ class Reader {
   }
 
   /// The next value of a binary file, which has enough bytes left.
-  double take(PlyType type) {
-    std::array<char, 8> bytes{};
-    const std::size_t size = traits(type).bytes;
-    std::copy_n(rest_.begin(), size, bytes.begin());
-    if (encoding_ == Encoding::kBigEndian) {
-      std::reverse(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    }
-    rest_.remove_prefix(size);
-    return load_number(type, bytes.data());
+  double take(NpyType type) {
+    double value = 0.0;
+    load_numbers(type, rest_.data(), 0, encoding_ == Encoding::kBigEndian, std::span(&value, 1));
+    rest_.remove_prefix(size_of(type));
+    return value;
   }
 
   static void end_list(PlyColumn& column) {
@@ -292,7 +292,7 @@ class Reader {
   std::size_t line_ = 0;  // of the header and of ascii data
   Encoding encoding_ = Encoding::kAscii;
   PlyFile file_;
-  std::vector<std::vector<PlyType>> count_types_;  // of the lengths of lists, for each element's columns
+  std::vector<std::vector<NpyType>> count_types_;  // of the lengths of lists, for each element's columns
 };
 
 }  // namespace

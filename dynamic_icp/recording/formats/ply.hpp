@@ -9,18 +9,14 @@
 #include <string_view>
 #include <vector>
 
-#include <Eigen/Core>
-
-#include "dynamic_icp/recording/formats/npy.hpp"
+#include "dynamic_icp/recording/formats/npy_header.hpp"
 
 namespace dynamic_icp::formats {
-
-enum class PlyType { kInt8, kUint8, kInt16, kUint16, kInt32, kUint32, kFloat32, kFloat64 };
 
 /// One property of all records of an element. Every type of the format fits a double exactly.
 struct PlyColumn {
   std::string name;
-  PlyType type = PlyType::kFloat32;  ///< in the file
+  NpyType type = NpyType::kFloat32;  ///< in the file; of at most 32 bits where it is of integers
   bool is_list = false;
   std::vector<double> values;            ///< one per record; of lists one record's after the other's
   std::vector<std::size_t> list_begins;  ///< of lists only: where each record's values begin, and their end
@@ -56,18 +52,5 @@ PlyFile read_ply(const std::filesystem::path& path);
 
 /// The same for the content of a file; `origin` is the file that messages name.
 PlyFile parse_ply(std::string_view content, const std::filesystem::path& origin);
-
-/// The bytes of a PLY 1.0 file, binary_little_endian: the element "vertex" with x, y, z (m) as float32. No points make
-/// a valid file with no records. Throws as `point_table` does.
-std::string ply_bytes(std::span<const Eigen::Vector3d> points);
-
-/// The same with the element "vertex" of any columns, each with the type it has, bit by bit: arrays of shape (N,), at
-/// least one. Numbers that are not finite stay. Throws as `checked_rows` does, and std::invalid_argument for integers
-/// of 64 bits, which PLY does not know.
-std::string ply_table_bytes(std::span<const NamedArray> columns);
-
-/// Writes a file of points whole or not at all (see write_whole_file). Throws as `ply_bytes` does, and DataError naming
-/// file and reason when the machine fails.
-void write_ply(const std::filesystem::path& path, std::span<const Eigen::Vector3d> points);
 
 }  // namespace dynamic_icp::formats

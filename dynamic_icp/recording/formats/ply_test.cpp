@@ -15,6 +15,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/point_table.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
@@ -55,7 +56,7 @@ TEST(Ply, ReadsAscii) {
   EXPECT_EQ(vertex.count, 2u);
   EXPECT_EQ(vertex.find("x")->values, (std::vector<double>{1.5, -2000.0}));
   EXPECT_EQ(vertex.find("red")->values, (std::vector<double>{255.0, 0.0}));
-  EXPECT_EQ(vertex.find("red")->type, PlyType::kUint8);
+  EXPECT_EQ(vertex.find("red")->type, NpyType::kUint8);
   const PlyColumn& indices = *file.find("face")->find("vertex_indices");
   EXPECT_TRUE(indices.is_list);
   EXPECT_EQ(std::vector<double>(indices.list(0).begin(), indices.list(0).end()), (std::vector<double>{0.0, 1.0, -7.0}));
@@ -181,7 +182,7 @@ TEST(Ply, LyingCountsTakeNoMemory) {
 constexpr const char* kPointsEnd = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
 
 TEST(PlyPoints, AnEmptyCloudIsAFileWithoutRecords) {
-  const std::string content = ply_bytes({});
+  const std::string content = ply_bytes(point_table({}));
   EXPECT_EQ(content, std::string("ply\nformat binary_little_endian 1.0\nelement vertex 0") + kPointsEnd);
   EXPECT_EQ(parse(content).find("vertex")->count, 0u);
 }
@@ -189,12 +190,12 @@ TEST(PlyPoints, AnEmptyCloudIsAFileWithoutRecords) {
 // x = 1, y = -2, z = 0.5 as IEEE 754 has them, lowest byte first.
 TEST(PlyPoints, TheBytesAreThoseOfTheFormat) {
   const std::string record("\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f", 12);
-  EXPECT_EQ(ply_bytes(std::vector<Eigen::Vector3d>{{1.0, -2.0, 0.5}}),
+  EXPECT_EQ(ply_bytes(point_table(std::vector<Eigen::Vector3d>{{1.0, -2.0, 0.5}})),
             std::string("ply\nformat binary_little_endian 1.0\nelement vertex 1") + kPointsEnd + record);
 }
 
 TEST(PlyPoints, TheReaderFindsEveryPoint) {
-  const PlyFile file = parse(ply_bytes(std::vector<Eigen::Vector3d>{{1.25, -2.0, 0.5}, {1e-3, 4e4, -0.1}}));
+  const PlyFile file = parse(ply_bytes(point_table(std::vector<Eigen::Vector3d>{{1.25, -2.0, 0.5}, {1e-3, 4e4, -0.1}})));
   ASSERT_EQ(file.elements.size(), 1u);
   const PlyElement& vertex = *file.find("vertex");
   const auto rounded = [](float a, float b) { return std::vector<double>{a, b}; };
@@ -202,31 +203,14 @@ TEST(PlyPoints, TheReaderFindsEveryPoint) {
   EXPECT_EQ(vertex.find("x")->values, rounded(1.25f, 1e-3f));
   EXPECT_EQ(vertex.find("y")->values, rounded(-2.0f, 4e4f));
   EXPECT_EQ(vertex.find("z")->values, rounded(0.5f, -0.1f));
-  EXPECT_EQ(vertex.find("z")->type, PlyType::kFloat32);
+  EXPECT_EQ(vertex.find("z")->type, NpyType::kFloat32);
 }
 
 TEST(PlyPoints, RefusesNumbersThatAreNotFinite) {
   constexpr double kHuge = 1e39;  // a double, but no float32
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), kHuge}) {
-    EXPECT_THROW(ply_bytes(std::vector<Eigen::Vector3d>{{0.0, bad, 0.0}}), std::invalid_argument) << bad;
+    EXPECT_THROW(ply_bytes(point_table(std::vector<Eigen::Vector3d>{{0.0, bad, 0.0}})), std::invalid_argument) << bad;
   }
-}
-
-TEST(PlyPoints, WritesAFileWholeOrNotAtAll) {
-  namespace fs = std::filesystem;
-  const fs::path folder = fs::temp_directory_path() / ("ply_points_test-" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  const fs::path path = folder / "map.ply";
-  const std::vector<Eigen::Vector3d> points(1000, Eigen::Vector3d(1.0, 2.0, 3.0));
-  write_ply(path, points);
-  EXPECT_EQ(read_whole_file(path), ply_bytes(points));
-  // What cannot be written leaves the earlier file as it was, and nothing beside it.
-  const std::vector<Eigen::Vector3d> bad(1, Eigen::Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  EXPECT_THROW(write_ply(path, bad), std::invalid_argument);
-  EXPECT_EQ(read_whole_file(path), ply_bytes(points));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
-  fs::remove_all(folder);
-  EXPECT_THROW(write_ply(path, points), DataError);
 }
 
 TEST(PlyTable, KeepsTypesAndBits) {
@@ -245,22 +229,22 @@ TEST(PlyTable, KeepsTypesAndBits) {
     expected.append(reinterpret_cast<const char*>(&x[i]), 4).append(reinterpret_cast<const char*>(&y[i]), 8);
     expected.append(reinterpret_cast<const char*>(&line[i]), 1).append(reinterpret_cast<const char*>(&time[i]), 4);
   }
-  EXPECT_EQ(ply_table_bytes(columns), expected);
+  EXPECT_EQ(ply_bytes(columns), expected);
   const PlyFile file = parse_ply(expected, "scan.ply");
   EXPECT_EQ(file.find("vertex")->find("y")->values, y);
-  EXPECT_EQ(file.find("vertex")->find("line")->type, PlyType::kUint8);
+  EXPECT_EQ(file.find("vertex")->find("line")->type, NpyType::kUint8);
   EXPECT_TRUE(std::isnan(file.find("vertex")->find("x")->values[1]));
 }
 
 TEST(PlyTable, RefusesWhatPlyCannotHold) {
   const std::vector<std::int64_t> big = {1};
   const NamedArray wide{"t", npy_array<std::int64_t>({1}, big)};
-  EXPECT_THROW(ply_table_bytes(std::vector<NamedArray>{wide}), std::invalid_argument);
-  EXPECT_THROW(ply_table_bytes({}), std::invalid_argument);
+  EXPECT_THROW(ply_bytes(std::vector<NamedArray>{wide}), std::invalid_argument);
+  EXPECT_THROW(ply_bytes({}), std::invalid_argument);
   const std::vector<float> two = {1, 2};
   const NamedArray x{"x", npy_array<float>({2}, two)};
-  EXPECT_THROW(ply_table_bytes(std::vector<NamedArray>{x, x}), std::invalid_argument);
-  EXPECT_THROW(ply_table_bytes(std::vector<NamedArray>{{"x", npy_array<float>({1, 2}, two)}}), std::invalid_argument);
+  EXPECT_THROW(ply_bytes(std::vector<NamedArray>{x, x}), std::invalid_argument);
+  EXPECT_THROW(ply_bytes(std::vector<NamedArray>{{"x", npy_array<float>({1, 2}, two)}}), std::invalid_argument);
 }
 
 }  // namespace

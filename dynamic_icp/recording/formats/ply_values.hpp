@@ -4,30 +4,22 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 #include <string_view>
 
-#include "dynamic_icp/recording/formats/ply.hpp"
+#include "dynamic_icp/recording/formats/npy_header.hpp"
 
 // The numbers of PLY files, by their types.
 namespace dynamic_icp::formats {
 
-/// Size and range of a type; floating-point types have no range.
-struct PlyTypeTraits {
-  std::size_t bytes;
-  double minimum;
-  double maximum;
-  bool whole;
-};
-
-const PlyTypeTraits& traits(PlyType type);
-
 /// The type of that name in a header, old or new; nothing for other names.
-std::optional<PlyType> ply_type_of(std::string_view name);
+std::optional<NpyType> ply_type_of(std::string_view name);
 
-/// The number at `bytes`, in the byte order of the machine.
-double load_number(PlyType type, const char* bytes);
+/// The old name of a type, which every reader knows; empty for integers of 64 bits, which PLY does not know.
+std::string_view ply_name(NpyType type);
 
-/// Fills the values of a column, as many as it has, from fields that lie `record_bytes` apart from the first one on.
-void load_column(PlyColumn& column, const char* first, std::size_t record_bytes, bool big_endian);
+/// The numbers of a field of records that lie `record_bytes` apart, as many as there is room for.
+void load_numbers(NpyType type, const char* first, std::size_t record_bytes, bool big_endian,
+                  std::span<double> numbers);
 
 }  // namespace dynamic_icp::formats

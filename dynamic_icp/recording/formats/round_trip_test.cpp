@@ -14,10 +14,10 @@
 #include <unistd.h>
 
 #include "dynamic_icp/recording/formats/npz.hpp"
-#include "dynamic_icp/recording/formats/pcd.hpp"
 #include "dynamic_icp/recording/formats/pcd_read.hpp"
 #include "dynamic_icp/recording/formats/ply.hpp"
 #include "dynamic_icp/recording/formats/point_records.hpp"
+#include "dynamic_icp/recording/formats/point_table.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/formats/xyzd_bin.hpp"
 
@@ -90,7 +90,7 @@ RC_GTEST_PROP(RoundTrip, Npz, ()) {
 
 RC_GTEST_PROP(RoundTrip, Pcd, ()) {
   const std::vector<NamedArray> table = any_table(4, kTypes);
-  const PcdFile file(pcd_table_bytes(table), "scan.pcd");
+  const PcdFile file(pcd_bytes(table), "scan.pcd");
   RC_ASSERT(file.names().size() == table.size());
   for (const NamedArray& column : table) {
     must_be_equal(file.read(column.name), column.array);
@@ -103,7 +103,7 @@ RC_GTEST_PROP(RoundTrip, Ply, ()) {
     return column.array.type == NpyType::kInt64 || column.array.type == NpyType::kUint64;
   });
   RC_PRE(!table.empty());
-  const PlyFile file = parse_ply(ply_table_bytes(table), "scan.ply");
+  const PlyFile file = parse_ply(ply_bytes(table), "scan.ply");
   for (const NamedArray& column : table) {
     const std::vector<double> written = column_as_doubles(column.array);
     const PlyColumn* const read = file.find("vertex")->find(column.name);

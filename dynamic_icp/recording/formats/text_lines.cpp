@@ -5,6 +5,10 @@
 #include <algorithm>
 #include <cstddef>
 
+#include <fmt/format.h>
+
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
 namespace dynamic_icp::formats {
 
 std::optional<std::string_view> take_line(std::string_view& rest) {
@@ -15,6 +19,18 @@ std::optional<std::string_view> take_line(std::string_view& rest) {
   const std::string_view line = rest.substr(0, end);
   rest.remove_prefix(std::min(end + 1, rest.size()));
   return line;
+}
+
+std::vector<PlacedLine> read_lines(const std::filesystem::path& path) {
+  const std::string text = read_text_file(path);
+  std::vector<PlacedLine> lines;
+  std::string_view rest = text;
+  for (std::size_t number = 1; const std::optional<std::string_view> line = take_line(rest); ++number) {
+    if (!words_of(*line).empty()) {
+      lines.push_back({fmt::format("{}: line {}", path.string(), number), std::string(*line)});
+    }
+  }
+  return lines;
 }
 
 std::vector<std::string_view> words_of(std::string_view line) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -11,6 +12,15 @@ namespace dynamic_icp::formats {
 
 /// Takes the next line, without its line feed, from the front of `rest`; nothing when `rest` is empty.
 std::optional<std::string_view> take_line(std::string_view& rest);
+
+/// A line of a file and where it is: "<file>: line <n>".
+struct PlacedLine {
+  std::string place;
+  std::string text;
+};
+
+/// The lines of a text file that hold something but blanks. Throws as read_text_file does.
+std::vector<PlacedLine> read_lines(const std::filesystem::path& path);
 
 /// The words of a line: what stands between blanks, tabs, carriage returns and the like.
 std::vector<std::string_view> words_of(std::string_view line);

@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/formats/tum.hpp"
 
+#include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -13,6 +13,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/parse_number.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
 #include "dynamic_icp/recording/formats/text_lines.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
@@ -22,6 +23,7 @@ namespace {
 
 constexpr std::array<std::string_view, 8> kColumns = {"timestamp", "tx", "ty", "tz", "qx", "qy", "qz", "qw"};
 constexpr std::string_view kLayout = "timestamp tx ty tz qx qy qz qw";
+constexpr std::string_view kBlanks = " \t\r\v\f";
 constexpr double kQuaternionTolerance = 1e-3;
 // Half of the range of 64 bits, so that the difference of any two stamps fits as well: 146 years around 1970.
 constexpr std::int64_t kMaxStampNs = std::numeric_limits<std::int64_t>::max() / 2;
@@ -44,16 +46,9 @@ struct Place {
   throw DataError(fmt::format("{}: line {}: {}", place.file, place.line, message));
 }
 
-bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
-
 std::string_view without_blanks(std::string_view text) {
-  while (!text.empty() && is_blank(text.front())) {
-    text.remove_prefix(1);
-  }
-  while (!text.empty() && is_blank(text.back())) {
-    text.remove_suffix(1);
-  }
-  return text;
+  const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+  return text.substr(begin, text.find_last_not_of(kBlanks) + 1 - begin);
 }
 
 /// The columns of a line; two commas with nothing between them enclose an empty column.
@@ -62,10 +57,7 @@ std::vector<std::string_view> split_columns(std::string_view line) {
   line = without_blanks(line.substr(0, line.find('#')));
   bool after_comma = false;
   while (!line.empty() || after_comma) {
-    std::size_t length = 0;
-    while (length < line.size() && line[length] != ',' && !is_blank(line[length])) {
-      ++length;
-    }
+    const std::size_t length = std::min(line.find_first_of(" \t\r\v\f,"), line.size());
     columns.push_back(line.substr(0, length));
     line = without_blanks(line.substr(length));
     after_comma = !line.empty() && line.front() == ',';
@@ -90,17 +82,12 @@ Stamp parse_stamp(const Place& place, std::string_view text) {
   return *stamp;
 }
 
-double parse_number(const Place& place, std::string_view column, std::string_view text) {
-  std::string_view digits = text;
-  if (digits.size() > 1 && digits.front() == '+' && digits[1] != '-') {
-    digits.remove_prefix(1);
-  }
-  double number = 0.0;
-  const auto [end, fault] = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (fault != std::errc() || end != digits.data() + digits.size() || !std::isfinite(number)) {
+double finite_number(const Place& place, std::string_view column, std::string_view text) {
+  const std::optional<double> number = parse_number<double>(text);
+  if (!number || !std::isfinite(*number)) {
     fail(place, fmt::format("{} is {}, expected a finite number", column, quoted_text(text)));
   }
-  return number;
+  return *number;
 }
 
 Row parse_row(const Place& place, const std::vector<std::string_view>& columns) {
@@ -110,7 +97,7 @@ Row parse_row(const Place& place, const std::vector<std::string_view>& columns) 
   Row row;
   row.stamp = parse_stamp(place, columns[0]);
   for (std::size_t k = 0; k < row.numbers.size(); ++k) {
-    row.numbers[k] = parse_number(place, kColumns[k + 1], columns[k + 1]);
+    row.numbers[k] = finite_number(place, kColumns[k + 1], columns[k + 1]);
   }
   return row;
 }

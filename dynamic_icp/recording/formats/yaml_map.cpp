@@ -43,6 +43,11 @@ std::optional<Number> number_within(const YAML::Node& node, Limits limits) {
   return allowed ? number : std::nullopt;
 }
 
+/// A text that is not empty.
+std::optional<std::string> text_of(const YAML::Node& node) {
+  return node.IsScalar() && !node.Scalar().empty() ? std::optional(node.Scalar()) : std::nullopt;
+}
+
 }  // namespace
 
 struct YamlMap::Entry {
@@ -175,58 +180,41 @@ YamlMap YamlMap::child(const Entry& entry, const std::string& path) const {
 
 bool YamlMap::has(std::string_view key) const { return find(key) != nullptr; }
 
-std::string YamlMap::text(std::string_view key) const {
-  const Entry& entry = at(key, "a text");
-  if (!entry.value.IsScalar() || entry.value.Scalar().empty()) {
-    contents_->refuse(entry, entry.value, "a text");
+/// What `read` makes of the value, or the fallback where there is one and not the key.
+template <class Value, class Read>
+Value YamlMap::value(std::string_view key, std::optional<Value> fallback, const std::string& expected,
+                     const Read& read) const {
+  if (fallback && !has(key)) {
+    return *fallback;
   }
-  return entry.value.Scalar();
-}
-
-std::string YamlMap::text(std::string_view key, std::string_view fallback) const {
-  return has(key) ? text(key) : std::string(fallback);
-}
-
-std::string YamlMap::choice(std::string_view key, const std::vector<std::string>& allowed) const {
-  const std::string expected = fmt::format("one of: {}", joined(allowed));
   const Entry& entry = at(key, expected);
-  if (!entry.value.IsScalar() || std::find(allowed.begin(), allowed.end(), entry.value.Scalar()) == allowed.end()) {
+  const std::optional<Value> read_value = read(entry.value);
+  if (!read_value) {
     contents_->refuse(entry, entry.value, expected);
   }
-  return entry.value.Scalar();
+  return *read_value;
+}
+
+std::string YamlMap::text(std::string_view key, std::optional<std::string> fallback) const {
+  return value(key, std::move(fallback), "a text", text_of);
 }
 
 std::string YamlMap::choice(std::string_view key, const std::vector<std::string>& allowed,
-                            std::string_view fallback) const {
-  return has(key) ? choice(key, allowed) : std::string(fallback);
+                            std::optional<std::string> fallback) const {
+  return value(key, std::move(fallback), fmt::format("one of: {}", joined(allowed)), [&](const YAML::Node& node) {
+    const std::optional<std::string> text = text_of(node);
+    return text && std::find(allowed.begin(), allowed.end(), *text) != allowed.end() ? text : std::nullopt;
+  });
 }
 
-double YamlMap::number(std::string_view key, Limits limits) const {
-  const std::string expected = range_words(limits);
-  const Entry& entry = at(key, expected);
-  const std::optional<double> number = number_within<double>(entry.value, limits);
-  if (!number) {
-    contents_->refuse(entry, entry.value, expected);
-  }
-  return *number;
+double YamlMap::number(std::string_view key, Limits limits, std::optional<double> fallback) const {
+  return value(key, fallback, range_words(limits),
+               [&](const YAML::Node& node) { return number_within<double>(node, limits); });
 }
 
-double YamlMap::number(std::string_view key, Limits limits, double fallback) const {
-  return has(key) ? number(key, limits) : fallback;
-}
-
-int YamlMap::whole_number(std::string_view key, Limits limits) const {
-  const std::string expected = "a whole number from " + range_words(limits);
-  const Entry& entry = at(key, expected);
-  const std::optional<int> number = number_within<int>(entry.value, limits);
-  if (!number) {
-    contents_->refuse(entry, entry.value, expected);
-  }
-  return *number;
-}
-
-int YamlMap::whole_number(std::string_view key, Limits limits, int fallback) const {
-  return has(key) ? whole_number(key, limits) : fallback;
+int YamlMap::whole_number(std::string_view key, Limits limits, std::optional<int> fallback) const {
+  return value(key, fallback, "a whole number from " + range_words(limits),
+               [&](const YAML::Node& node) { return number_within<int>(node, limits); });
 }
 
 bool YamlMap::flag(std::string_view key, bool fallback) const {
@@ -238,11 +226,6 @@ std::vector<double> YamlMap::numbers(std::string_view key, std::size_t count, Li
   return contents_->row(entry, entry.value, fmt::format("'{}'", contents_->path_of(key)), count, limits);
 }
 
-std::vector<double> YamlMap::numbers(std::string_view key, std::size_t count, Limits limits,
-                                     const std::vector<double>& fallback) const {
-  return has(key) ? numbers(key, count, limits) : fallback;
-}
-
 std::vector<std::string> YamlMap::texts(std::string_view key) const {
   const std::string expected = "a list of texts";
   const Entry& entry = at(key, expected);
@@ -251,10 +234,11 @@ std::vector<std::string> YamlMap::texts(std::string_view key) const {
   }
   std::vector<std::string> texts;
   for (const YAML::Node& node : entry.value) {
-    if (!node.IsScalar() || node.Scalar().empty()) {
+    const std::optional<std::string> text = text_of(node);
+    if (!text) {
       contents_->refuse(entry, node, expected);
     }
-    texts.push_back(node.Scalar());
+    texts.push_back(*text);
   }
   return texts;
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -38,23 +39,18 @@ class YamlMap {
 
   // One value. Without `fallback` the key must be there.
 
-  [[nodiscard]] std::string text(std::string_view key) const;  ///< not empty
-  [[nodiscard]] std::string text(std::string_view key, std::string_view fallback) const;
-  [[nodiscard]] std::string choice(std::string_view key, const std::vector<std::string>& allowed) const;
+  /// Not empty.
+  [[nodiscard]] std::string text(std::string_view key, std::optional<std::string> fallback = {}) const;
   [[nodiscard]] std::string choice(std::string_view key, const std::vector<std::string>& allowed,
-                                   std::string_view fallback) const;
-  [[nodiscard]] double number(std::string_view key, Limits limits) const;
-  [[nodiscard]] double number(std::string_view key, Limits limits, double fallback) const;
-  [[nodiscard]] int whole_number(std::string_view key, Limits limits) const;
-  [[nodiscard]] int whole_number(std::string_view key, Limits limits, int fallback) const;
+                                   std::optional<std::string> fallback = {}) const;
+  [[nodiscard]] double number(std::string_view key, Limits limits, std::optional<double> fallback = {}) const;
+  [[nodiscard]] int whole_number(std::string_view key, Limits limits, std::optional<int> fallback = {}) const;
   [[nodiscard]] bool flag(std::string_view key, bool fallback) const;  ///< true or false
 
   // Lists of numbers.
 
   /// A list of exactly `count` numbers; with `count` 0 a list of any length but zero.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, Limits limits) const;
-  [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, Limits limits,
-                                            const std::vector<double>& fallback) const;
   /// A list of at least one list of `columns` numbers each; with `columns` 0 each is as long as the first.
   [[nodiscard]] std::vector<std::vector<double>> rows(std::string_view key, std::size_t columns, Limits limits) const;
 
@@ -100,6 +96,8 @@ class YamlMap {
 
   [[nodiscard]] const Entry* find(std::string_view key) const;
   [[nodiscard]] const Entry& at(std::string_view key, std::string_view expected) const;
+  template <class Value, class Read>
+  Value value(std::string_view key, std::optional<Value> fallback, const std::string& expected, const Read& read) const;
   [[nodiscard]] YamlMap child(const Entry& entry, const std::string& path) const;
 
   std::shared_ptr<Contents> contents_;

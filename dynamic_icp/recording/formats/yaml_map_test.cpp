@@ -38,7 +38,6 @@ TEST(YamlMap, TakesFallbacksForMissingKeysOnly) {
   EXPECT_EQ(map.number("speed", {0.0, 1.0}, 9.0), 9.0);
   EXPECT_EQ(map.whole_number("count", {0.0, 1.0}, 9), 9);
   EXPECT_TRUE(map.flag("open", true));
-  EXPECT_EQ(map.numbers("size", 2, kAny, {1.0, 2.0}), (std::vector<double>{1.0, 2.0}));
   EXPECT_EQ(map.choice("kind", {"car"}, "car"), "car");
   EXPECT_TRUE(map.list("parts").empty());
   EXPECT_TRUE(map.kinds("parts").empty());

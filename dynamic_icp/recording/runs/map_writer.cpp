@@ -8,8 +8,8 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
-#include "dynamic_icp/recording/formats/pcd.hpp"
-#include "dynamic_icp/recording/formats/ply.hpp"
+#include "dynamic_icp/recording/formats/point_table.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -81,12 +81,8 @@ void MapWriter::add(const odometry::Frame& frame) {
 
 void MapWriter::write(const fs::path& path) const {
   check_map_file(path);
-  const std::vector<Eigen::Vector3d> points = voxels_.points();
-  if (path.extension() == ".ply") {
-    formats::write_ply(path, points);
-  } else {
-    formats::write_pcd(path, points);
-  }
+  const std::vector<formats::NamedArray> table = formats::point_table(voxels_.points());
+  formats::write_whole_file(path, path.extension() == ".ply" ? formats::ply_bytes(table) : formats::pcd_bytes(table));
 }
 
 }  // namespace dynamic_icp::runs

@@ -15,8 +15,8 @@
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/formats/pcd.hpp"
 #include "dynamic_icp/recording/formats/ply.hpp"
+#include "dynamic_icp/recording/formats/point_table.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::runs {
@@ -65,7 +65,7 @@ TEST_F(MapWriterTest, NothingMakesAnEmptyMap) {
   EXPECT_EQ(map.size(), 0u);
   EXPECT_TRUE(points_of(map).empty());
   map.write(folder_ / "map.pcd");
-  EXPECT_EQ(formats::read_whole_file(folder_ / "map.pcd"), formats::pcd_bytes({}));
+  EXPECT_EQ(formats::read_whole_file(folder_ / "map.pcd"), formats::pcd_bytes(formats::point_table({})));
 }
 
 // A quarter turn to the left and ten metres ahead, all numbers exact in float32.
@@ -117,8 +117,8 @@ TEST_F(MapWriterTest, TheEndingChoosesTheFormat) {
   map.add(frame_with(points));
   map.write(folder_ / "map.ply");
   map.write(folder_ / "map.pcd");
-  EXPECT_EQ(formats::read_whole_file(folder_ / "map.ply"), formats::ply_bytes(points));
-  EXPECT_EQ(formats::read_whole_file(folder_ / "map.pcd"), formats::pcd_bytes(points));
+  EXPECT_EQ(formats::read_whole_file(folder_ / "map.ply"), formats::ply_bytes(formats::point_table(points)));
+  EXPECT_EQ(formats::read_whole_file(folder_ / "map.pcd"), formats::pcd_bytes(formats::point_table(points)));
   for (const char* name : {"map", "map.txt", "map.ply.gz", ".ply", "map.PLY", ""}) {
     EXPECT_THROW(check_map_file(name), UsageError) << name;
     EXPECT_THROW(map.write(folder_ / name), UsageError) << name;

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
@@ -105,11 +106,7 @@ std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::s
   }
   std::vector<std::int32_t> labels(points);
   for (std::size_t k = 0; k < points; ++k) {
-    std::uint32_t bits = 0;  // little-endian in the file, whatever the machine
-    for (std::size_t b = 0; b < 4; ++b) {
-      bits |= static_cast<std::uint32_t>(static_cast<unsigned char>(bytes[4 * k + b])) << (8 * b);
-    }
-    labels[k] = static_cast<std::int32_t>(bits);
+    labels[k] = formats::value_at<std::int32_t>(bytes, 4 * k);
   }
   return labels;
 }

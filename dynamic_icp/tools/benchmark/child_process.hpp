@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
@@ -28,15 +27,10 @@ struct EndedChild {
   [[nodiscard]] bool succeeded() const { return exit_status == 0; }
 };
 
-/// Waits until any child of this process ends. Throws DataError when there is none.
-EndedChild wait_for_child();
+/// Waits until a child of this process ends; any of them without its number. Throws DataError when there is none.
+EndedChild wait_for_child(pid_t child = -1);
 
-/// Runs `work` in a forked child, so that its memory is its own, and returns the text it made. An exception of the
-/// child is thrown here as DataError with its message (UsageError stays one); so is a child that was killed. This
-/// process must have no other threads.
-std::string text_of_child(const std::function<std::string()>& work);
-
-/// What a program writes to its standard output. Throws DataError when it cannot be run or fails.
-std::string output_of_program(const std::filesystem::path& program, const std::vector<std::string>& arguments);
+/// Forks: gives 0 in the child. Throws DataError when no process can be started.
+pid_t fork_child();
 
 }  // namespace dynamic_icp::benchmark

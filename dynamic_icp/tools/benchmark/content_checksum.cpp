@@ -12,6 +12,7 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::benchmark {
@@ -34,15 +35,10 @@ void collect_files(const fs::path& folder, std::set<fs::path>& seen, std::vector
   if (!seen.insert(fs::weakly_canonical(folder, fault)).second) {
     return;
   }
-  std::vector<fs::path> entries;
-  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
-       entry.increment(fault)) {
-    if (!entry->path().filename().string().starts_with(".")) {
-      entries.push_back(entry->path());
-    }
-  }
-  std::sort(entries.begin(), entries.end());
-  for (const fs::path& entry : entries) {
+  const auto is_visible = [](const fs::directory_entry& entry) {
+    return !entry.path().filename().string().starts_with(".");
+  };
+  for (const fs::path& entry : datasets::entries_of(folder, is_visible)) {
     std::error_code ignored;
     if (fs::is_directory(entry, ignored)) {
       collect_files(entry, seen, files);

@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/formats/yaml_map.hpp"
 #include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
 
@@ -55,15 +56,9 @@ std::vector<Folder> folders_below(const fs::path& root) {
     std::vector<fs::path> below;
     for (const fs::path& folder : level) {
       all.push_back({folder, comparable_parts(folder.lexically_relative(root.parent_path()))});
-      std::error_code fault;
-      for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
-        std::error_code ignored;
-        if (entry.is_directory(ignored) && !entry.path().filename().string().starts_with(".")) {
-          below.push_back(entry.path());
-        }
-      }
+      const std::vector<fs::path> inner = datasets::entries_of(folder, datasets::is_visible_folder);
+      below.insert(below.end(), inner.begin(), inner.end());
     }
-    std::sort(below.begin(), below.end());
     level = std::move(below);
   }
   return all;

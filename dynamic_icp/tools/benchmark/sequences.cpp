@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/benchmark/sequences.hpp"
 
-#include <algorithm>
 #include <memory>
 #include <set>
 
@@ -10,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/not_a_recording.hpp"
 #include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
 #include "dynamic_icp/tools/benchmark/content_checksum.hpp"
@@ -18,11 +18,6 @@ namespace dynamic_icp::benchmark {
 namespace {
 
 namespace fs = std::filesystem;
-
-fs::path normalised(const fs::path& path) {
-  const fs::path absolute = fs::absolute(path).lexically_normal();
-  return absolute.has_filename() ? absolute : absolute.parent_path();
-}
 
 fs::path object_truth_of(const fs::path& path, const datasets::Dataset& dataset) {
   for (const fs::path& folder : {dataset.ground_truth_file().parent_path(), path}) {
@@ -34,18 +29,6 @@ fs::path object_truth_of(const fs::path& path, const datasets::Dataset& dataset)
   return {};
 }
 
-std::vector<fs::path> visible_folders(const fs::path& path) {
-  std::vector<fs::path> folders;
-  std::error_code fault;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path, fault)) {
-    if (entry.is_directory(fault) && !entry.path().filename().string().starts_with(".")) {
-      folders.push_back(entry.path());
-    }
-  }
-  std::sort(folders.begin(), folders.end());
-  return folders;
-}
-
 /// The recordings among the sub-folders of a folder that is none. Throws DataError that says what is wrong with them
 /// where all are damaged; false when there is none at all.
 bool append_folders(Sequences& into, const fs::path& path, const datasets::InputSettings& settings,
@@ -53,7 +36,7 @@ bool append_folders(Sequences& into, const fs::path& path, const datasets::Input
   const std::size_t before = into.sequences.size();
   std::vector<std::string> skipped;
   std::vector<std::string> damaged;
-  for (const fs::path& folder : visible_folders(path)) {
+  for (const fs::path& folder : datasets::entries_of(path, datasets::is_visible_folder)) {
     try {
       if (folder != output) {
         into.sequences.push_back(open_sequence(folder, settings, output));
@@ -160,7 +143,7 @@ Sequences open_sequences(const std::vector<std::string>& inputs, const datasets:
                          const fs::path& output) {
   Sequences opened;
   for (const std::string& input : inputs) {
-    append_input(opened, normalised(input), settings, normalised(output));
+    append_input(opened, datasets::named_path(input), settings, datasets::named_path(output));
   }
   std::set<fs::path> seen;
   for (const Sequence& sequence : opened.sequences) {

@@ -3,80 +3,49 @@
 #include "dynamic_icp/tools/benchmark/table.hpp"
 
 #include <algorithm>
+#include <iterator>
+#include <span>
 #include <string_view>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/parse_number.hpp"
 
 namespace dynamic_icp::benchmark {
 namespace {
 
-/// The text with each character that `replacement` knows replaced; it gives nothing for the others.
-template <class Replacement>
-std::string escaped(const std::string& text, const Replacement& replacement) {
+/// What stands for a character.
+struct Escape {
+  char character;
+  std::string_view text;
+};
+
+constexpr Escape kMarkdown[] = {{'|', "\\|"},   {'*', "\\*"},  {'_', "\\_"}, {'`', "\\`"},
+                                {'\\', "\\\\"}, {'<', "&lt;"}, {'\n', " "}};
+
+constexpr Escape kLatex[] = {{'\\', "\\textbackslash{}"},
+                             {'~', "\\textasciitilde{}"},
+                             {'^', "\\textasciicircum{}"},
+                             {'&', "\\&"},
+                             {'%', "\\%"},
+                             {'$', "\\$"},
+                             {'#', "\\#"},
+                             {'_', "\\_"},
+                             {'{', "\\{"},
+                             {'}', "\\}"},
+                             {'<', "\\textless{}"},
+                             {'>', "\\textgreater{}"}};
+
+constexpr Escape kCsv[] = {{'"', "\"\""}};
+
+std::string escaped(const std::string& text, std::span<const Escape> escapes) {
   std::string result;
   for (const char c : text) {
-    const std::string_view other = replacement(c);
-    result += other.empty() ? std::string(1, c) : std::string(other);
+    const auto escape = std::ranges::find(escapes, c, &Escape::character);
+    result += escape == escapes.end() ? std::string_view(&c, 1) : escape->text;
   }
   return result;
-}
-
-std::string markdown_text(const std::string& text) {
-  return escaped(text, [](char c) -> std::string_view {
-    switch (c) {
-      case '|':
-        return "\\|";
-      case '*':
-        return "\\*";
-      case '_':
-        return "\\_";
-      case '`':
-        return "\\`";
-      case '\\':
-        return "\\\\";
-      case '<':
-        return "&lt;";
-      case '\n':
-        return " ";
-      default:
-        return {};
-    }
-  });
-}
-
-std::string latex_text(const std::string& text) {
-  return escaped(text, [](char c) -> std::string_view {
-    switch (c) {
-      case '\\':
-        return "\\textbackslash{}";
-      case '~':
-        return "\\textasciitilde{}";
-      case '^':
-        return "\\textasciicircum{}";
-      case '&':
-        return "\\&";
-      case '%':
-        return "\\%";
-      case '$':
-        return "\\$";
-      case '#':
-        return "\\#";
-      case '_':
-        return "\\_";
-      case '{':
-        return "\\{";
-      case '}':
-        return "\\}";
-      case '<':
-        return "\\textless{}";
-      case '>':
-        return "\\textgreater{}";
-      default:
-        return {};
-    }
-  });
 }
 
 /// What stands before and after an emphasised text.
@@ -105,17 +74,15 @@ std::size_t width_of(const std::string& text) {
 
 using TextRows = std::vector<std::vector<std::string>>;
 
-/// Header and rows as Markdown writes them.
-TextRows markdown_rows(const Table& table) {
+/// Header and rows by what these functions make of their titles and cells.
+template <class Title, class Cell>
+TextRows text_rows(const Table& table, const Title& title, const Cell& cell) {
   TextRows rows(1);
   for (const TableColumn& column : table.header) {
-    rows[0].push_back(markdown_text(joint_title(column)));
+    rows[0].push_back(title(joint_title(column)));
   }
   for (const std::vector<TableCell>& row : table.rows) {
-    rows.emplace_back();
-    for (const TableCell& cell : row) {
-      rows.back().push_back(emphasised(markdown_text(cell.text), cell.emphasis, {"**", "**"}, {"<u>", "</u>"}));
-    }
+    std::ranges::transform(row, std::back_inserter(rows.emplace_back()), cell);
   }
   return rows;
 }
@@ -134,15 +101,7 @@ std::string csv_text(const std::string& cell) {
   if (text.find_first_of(",\"\r\n") == std::string::npos) {
     return text;
   }
-  return '"' + escaped(text, [](char c) -> std::string_view { return c == '"' ? "\"\"" : ""; }) + '"';
-}
-
-std::string joined(const std::vector<std::string>& texts, std::string_view separator, std::string_view end) {
-  std::string line;
-  for (std::size_t i = 0; i < texts.size(); ++i) {
-    line += (i > 0 ? std::string(separator) : "") + texts[i];
-  }
-  return line + std::string(end);
+  return '"' + escaped(text, kCsv) + '"';
 }
 
 /// The two lines of a LaTeX header: groups over their columns with a rule, if there are any, and titles.
@@ -153,31 +112,36 @@ std::string latex_header(const std::vector<TableColumn>& header) {
   for (std::size_t i = 0; i < header.size();) {
     std::size_t end = i;
     for (; end < header.size() && header[end].group == header[i].group; ++end) {
-      titles.push_back(latex_text(header[end].title));
+      titles.push_back(escaped(header[end].title, kLatex));
     }
     if (header[i].group.empty()) {
       groups.insert(groups.end(), end - i, "");
     } else {
-      groups.push_back(fmt::format("\\multicolumn{{{}}}{{c}}{{\\textbf{{{}}}}}", end - i, latex_text(header[i].group)));
+      groups.push_back(
+          fmt::format("\\multicolumn{{{}}}{{c}}{{\\textbf{{{}}}}}", end - i, escaped(header[i].group, kLatex)));
       rules += fmt::format("\\cmidrule(lr){{{}-{}}}", i + 1, end);
     }
     i = end;
   }
-  const std::string above = rules.empty() ? "" : joined(groups, " & ", " \\\\ ") + rules + "\n";
-  return above + joined(titles, " & ", " \\\\\n");
+  const std::string above = rules.empty() ? "" : fmt::format("{} \\\\ {}\n", fmt::join(groups, " & "), rules);
+  return above + fmt::format("{} \\\\\n", fmt::join(titles, " & "));
 }
 
 }  // namespace
 
 std::string markdown(const Table& table) {
-  const TextRows rows = markdown_rows(table);
+  const TextRows rows = text_rows(
+      table, [](const std::string& title) { return escaped(title, kMarkdown); },
+      [](const TableCell& cell) {
+        return emphasised(escaped(cell.text, kMarkdown), cell.emphasis, {"**", "**"}, {"<u>", "</u>"});
+      });
   std::vector<std::size_t> widths(table.header.size(), 3);
   for (const auto& row : rows) {
     for (std::size_t i = 0; i < row.size(); ++i) {
       widths[i] = std::max(widths[i], width_of(row[i]));
     }
   }
-  std::string text = fmt::format("## {}\n\n", markdown_text(table.title));
+  std::string text = fmt::format("## {}\n\n", escaped(table.title, kMarkdown));
   for (std::size_t r = 0; r < rows.size(); ++r) {
     text += "|";
     for (std::size_t i = 0; i < rows[r].size(); ++i) {
@@ -193,21 +157,13 @@ std::string markdown(const Table& table) {
       text += "\n";
     }
   }
-  return text + "\n" + markdown_text(table.caption) + "\n";
+  return text + "\n" + escaped(table.caption, kMarkdown) + "\n";
 }
 
 std::string csv(const Table& table) {
-  std::vector<std::string> titles;
-  for (const TableColumn& column : table.header) {
-    titles.push_back(csv_text(joint_title(column)));
-  }
-  std::string text = joined(titles, ",", "\r\n");
-  for (const std::vector<TableCell>& row : table.rows) {
-    std::vector<std::string> texts;
-    for (const TableCell& cell : row) {
-      texts.push_back(csv_text(cell.text));
-    }
-    text += joined(texts, ",", "\r\n");
+  std::string text;
+  for (const auto& row : text_rows(table, csv_text, [](const TableCell& cell) { return csv_text(cell.text); })) {
+    text += fmt::format("{}\r\n", fmt::join(row, ","));
   }
   return text;
 }
@@ -221,12 +177,12 @@ std::string latex(const Table& table) {
   for (const std::vector<TableCell>& row : table.rows) {
     std::vector<std::string> texts;
     for (const TableCell& cell : row) {
-      texts.push_back(emphasised(latex_text(cell.text), cell.emphasis, {"\\textbf{", "}"}, {"\\underline{", "}"}));
+      texts.push_back(emphasised(escaped(cell.text, kLatex), cell.emphasis, {"\\textbf{", "}"}, {"\\underline{", "}"}));
     }
-    text += joined(texts, " & ", " \\\\\n");
+    text += fmt::format("{} \\\\\n", fmt::join(texts, " & "));
   }
   text += fmt::format("\\bottomrule\n\\end{{tabular}}%\n}}\n\\caption{{{}}}\n\\label{{tab:{}}}\n\\end{{table*}}\n",
-                      latex_text(table.caption), table.name);
+                      escaped(table.caption, kLatex), table.name);
   return text;
 }
 

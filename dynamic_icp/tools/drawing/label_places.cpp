@@ -42,7 +42,9 @@ double LabelPlaces::overlap(const PixelBox& box) const {
 Pixel LabelPlaces::place(const PixelBox& thing, std::string_view text, double size) {
   const double width = estimated_width(text, size);
   const double height = 1.2 * size;
-  const double middle = thing.left + 0.5 * (thing.width - width);
+  // Above and below it moves aside as far as it takes to stay in the area.
+  const double middle = std::clamp(thing.left + 0.5 * (thing.width - width), area_.left,
+                                   std::max(area_.left, area_.right() - width));
   const double level = thing.top + 0.5 * (thing.height - height);
   std::optional<PixelBox> best;
   for (const double gap : {4.0, 16.0, 32.0}) {

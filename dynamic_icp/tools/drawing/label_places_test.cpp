@@ -48,6 +48,16 @@ TEST(LabelPlaces, KeepAwayFromEachOtherAndFromWhatIsBlocked) {
   }
 }
 
+TEST(LabelPlaces, AtTheEdgeALongLabelStaysAboveItsOwnThing) {
+  LabelPlaces places({0.0, 0.0, 400.0, 300.0});
+  const PixelBox thing{5.0, 150.0, 12.0, 12.0};
+  places.block_line({11.0, 156.0}, {90.0, 156.0});
+  places.block({110.0, 125.0, 30.0, 18.0});
+  const PixelBox label = box_of(places.place(thing, "sensor and its speed", kSize), "sensor and its speed");
+  EXPECT_LT(label.left, thing.right());
+  EXPECT_TRUE(label.bottom() < thing.top || label.top > thing.bottom());
+}
+
 TEST(LabelPlaces, LinesWithoutEndAreIgnored) {
   LabelPlaces places({0.0, 0.0, 400.0, 300.0});
   places.block_line({0.0, 0.0}, {std::numeric_limits<double>::quiet_NaN(), 0.0});

@@ -61,12 +61,15 @@ std::string description_of(const runs::ObjectRow& object) {
   return fmt::format("object {}: {} points, {}", object.id, drawing::compact_number(object.points, 0), velocity);
 }
 
+/// Of its mark, its arrow and its label, which may stand near another thing.
+const std::string& sensor_colour(const drawing::Theme& theme) { return theme.series[2]; }
+
 }  // namespace
 
 void draw_sensor(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground,
                  const Eigen::Vector3d& ego_velocity) {
   const drawing::Pixel origin = ground.at(0.0, 0.0);
-  const std::string& colour = theme.series[2];
+  const std::string& colour = sensor_colour(theme);
   svg.arrow(origin, ground.at(kArrowSeconds * ego_velocity), {.stroke = colour, .width = 3.0});
   svg.circle(origin, 6.0, {.fill = colour, .stroke = theme.panel, .width = 2.0, .title = "sensor"});
 }
@@ -84,9 +87,10 @@ void draw_object_marks(drawing::Svg& svg, const drawing::Theme& theme, const Gro
     places.block(mark.box);
     places.block_line(mark.middle, mark.tip);
   }
-  const drawing::TextStyle style{.colour = theme.ink, .size = 13.0, .bold = true, .halo = theme.panel};
+  drawing::TextStyle style{.colour = sensor_colour(theme), .size = 13.0, .bold = true, .halo = theme.panel};
   const std::string own = "sensor · " + speed_text(view.ego_velocity);
   svg.text(places.place({origin.x - 6.0, origin.y - 6.0, 12.0, 12.0}, own, style.size), own, style);
+  style.colour = theme.ink;
   for (std::size_t k = 0; k < std::min(marks.size(), kMaxNamed); ++k) {
     const std::string text = fmt::format("{} · {}", marks[k].object.id, speed_text(marks[k].object.velocity));
     svg.text(places.place(marks[k].box, text, style.size), text, style);

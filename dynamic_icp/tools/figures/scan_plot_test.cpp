@@ -57,6 +57,16 @@ TEST(ScanPlot, NamesObjectsWithTheirSpeed) {
   EXPECT_EQ(drawing::count_of(document, "Ego-motion compensated"), 1u);
 }
 
+TEST(ScanPlot, TheLabelOfTheSensorHasTheColourOfItsMark) {
+  const std::string document = drawn(random_view(2000));
+  const auto fill_before = [&](const std::string& end) {
+    const std::size_t fill = document.rfind("fill=\"", document.find(end)) + 6;
+    return document.substr(fill, document.find('"', fill) - fill);
+  };
+  EXPECT_EQ(fill_before(">sensor · "), fill_before("<title>sensor</title>"));
+  EXPECT_NE(fill_before(">sensor · "), fill_before(">4 · "));
+}
+
 TEST(ScanPlot, WithoutEgoVelocityThereIsOnePanel) {
   ScanView view = random_view(2000);
   view.ego_velocity.setConstant(kNaN);

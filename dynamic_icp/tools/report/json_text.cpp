@@ -33,19 +33,7 @@ Json significant(double value, int digits) {
 std::string embeddable(const Json& value) {
   std::string text;
   for (const char c : value.dump(-1, ' ', false, Json::error_handler_t::replace)) {
-    switch (c) {
-      case '<':
-        text += "\\u003c";
-        break;
-      case '>':
-        text += "\\u003e";
-        break;
-      case '&':
-        text += "\\u0026";
-        break;
-      default:
-        text += c;
-    }
+    text += c == '<' || c == '>' || c == '&' ? fmt::format("\\u{:04x}", static_cast<int>(c)) : std::string(1, c);
   }
   return text;
 }

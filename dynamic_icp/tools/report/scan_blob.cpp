@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/tools/drawing/raster.hpp"
-#include "dynamic_icp/tools/report/column_bytes.hpp"
 #include "dynamic_icp/tools/report/zlib_stream.hpp"
 
 namespace dynamic_icp::report {
@@ -39,13 +39,24 @@ std::vector<std::int64_t> in_units(const std::vector<Eigen::Vector3d>& points, i
   return column;
 }
 
+/// Appends each value of a column as its difference to the one before, modulo the range of `Unsigned`; the first one as
+/// the difference to 0.
+template <class Unsigned>
+void append_differences(std::string& bytes, const std::vector<std::int64_t>& column) {
+  std::int64_t before = 0;
+  for (const std::int64_t value : column) {
+    formats::append_value(bytes, static_cast<Unsigned>(value - before));
+    before = value;
+  }
+}
+
 /// Speeds in 0.01 m/s, limited; `unknown` for those that are not finite.
 void append_speeds(std::string& bytes, const std::vector<double>& speeds, std::int64_t unknown) {
   for (const double speed : speeds) {
     const double limit = static_cast<double>(kLargest16);
     const std::int64_t value =
         std::isfinite(speed) ? std::llround(std::clamp(speed / kDopplerUnit_mps, -limit, limit)) : unknown;
-    append_little_endian(bytes, static_cast<std::uint16_t>(value));
+    formats::append_value(bytes, static_cast<std::uint16_t>(value));
   }
 }
 
@@ -62,9 +73,9 @@ std::uint8_t residual_byte(double distance_m) {
 std::string scan_bytes(const figures::ShownScan& scan) {
   std::string bytes;
   bytes.reserve(8 + 12 * scan.size());
-  append_little_endian(bytes, static_cast<std::uint32_t>(scan.size()));
+  formats::append_value(bytes, static_cast<std::uint32_t>(scan.size()));
   const float unit = unit_of(scan.points);
-  append_float32(bytes, unit);
+  formats::append_value(bytes, unit);
   for (int axis = 0; axis < 3; ++axis) {
     append_differences<std::uint16_t>(bytes, in_units(scan.points, axis, 0.0, unit));
   }
@@ -81,15 +92,15 @@ std::string scan_bytes(const figures::ShownScan& scan) {
 
 std::string map_bytes(const std::vector<Eigen::Vector3d>& points) {
   std::string bytes;
-  append_little_endian(bytes, static_cast<std::uint32_t>(points.size()));
+  formats::append_value(bytes, static_cast<std::uint32_t>(points.size()));
   const auto unit = static_cast<float>(kMapUnit_m);
-  append_float32(bytes, unit);
+  formats::append_value(bytes, unit);
   Eigen::Vector3d origin = points.empty() ? Eigen::Vector3d::Zero() : points.front();
   for (const Eigen::Vector3d& point : points) {
     origin = origin.cwiseMin(point);
   }
   for (int axis = 0; axis < 3; ++axis) {
-    append_float64(bytes, origin[axis]);
+    formats::append_value(bytes, origin[axis]);
   }
   for (int axis = 0; axis < 3; ++axis) {
     append_differences<std::uint32_t>(bytes, in_units(points, axis, origin[axis], unit));

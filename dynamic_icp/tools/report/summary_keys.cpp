@@ -49,23 +49,20 @@ std::string rounded(double number) {
 }  // namespace
 
 std::string value_with_unit(const runs::Settings& summary, std::string_view key) {
-  for (const auto& [name, value] : summary) {
-    const double* number = name == key ? std::get_if<double>(&value) : nullptr;
-    if (number == nullptr) {
-      continue;
-    }
-    if (has_part(key, "_ratio") || has_part(key, "_rate")) {
-      return rounded(100.0 * *number) + " %";
-    }
-    const std::string_view unit = key.ends_with("_m")      ? " m"
-                                  : key.ends_with("_deg")  ? "°"
-                                  : key.starts_with("ms_") ? " ms"
-                                  : key == "fps"           ? " 1/s"
-                                                           : "";
-    return fmt::format("{}{}", rounded(*number), unit);
+  const std::optional<double> number = runs::number_of(summary, key);
+  if (!number) {
+    const std::string text = runs::text_of(summary, key);
+    return text.empty() ? "-" : text;
   }
-  const std::string text = runs::text_of(summary, key);
-  return text.empty() ? "-" : text;
+  if (has_part(key, "_ratio") || has_part(key, "_rate")) {
+    return rounded(100.0 * *number) + " %";
+  }
+  const std::string_view unit = key.ends_with("_m")      ? " m"
+                                : key.ends_with("_deg")  ? "°"
+                                : key.starts_with("ms_") ? " ms"
+                                : key == "fps"           ? " 1/s"
+                                                         : "";
+  return fmt::format("{}{}", rounded(*number), unit);
 }
 
 std::string_view meaning_of(std::string_view key) {

@@ -61,10 +61,6 @@ TriangleMesh make_cylinder(double radius, double height, int sides) {
   return make_prism(circle, height);
 }
 
-TriangleMesh make_sphere(double radius, int rings, int sides) {
-  return make_ellipsoid(Eigen::Vector3d::Constant(radius), rings, sides);
-}
-
 TriangleMesh make_ellipsoid(const Eigen::Vector3d& radii, int rings, int sides) {
   std::vector<Eigen::Vector3d> points;
   for (int ring = 0; ring <= rings; ++ring) {

@@ -35,7 +35,6 @@ constexpr double kConcrete = 0.3;
 constexpr double kZinc = 0.5;
 constexpr double kSign = 5.0;  ///< retroreflecting
 constexpr double kWater = 0.02;
-constexpr double kGlass = 0.05;
 constexpr double kRubber = 0.05;
 constexpr double kClothes = 0.4;
 }  // namespace reflectivity
@@ -59,9 +58,6 @@ TriangleMesh make_box(const Eigen::Vector3d& size);
 /// A closed upright cylinder on the plane z = 0 with its axis on z. It is a prism: the middle of a face lies
 /// radius * (1 - cos(pi / sides)) inside the round cylinder, its edges lie on it.
 TriangleMesh make_cylinder(double radius, double height, int sides);
-
-/// A closed sphere about the origin with vertices on the round surface.
-TriangleMesh make_sphere(double radius, int rings, int sides);
 
 /// A closed ellipsoid about the origin with vertices on the round surface.
 TriangleMesh make_ellipsoid(const Eigen::Vector3d& radii, int rings, int sides);

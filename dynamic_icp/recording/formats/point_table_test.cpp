@@ -1,10 +1,9 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/formats/pcd.hpp"
+#include "dynamic_icp/recording/formats/point_table.hpp"
 
 #include <cstdint>
 #include <cstring>
-#include <iterator>
 #include <limits>
 #include <map>
 #include <sstream>
@@ -12,11 +11,6 @@
 #include <vector>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
-
-#include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/formats/point_table.hpp"
-#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -57,7 +51,7 @@ ReadBack read_back(const std::string& bytes, std::size_t fields) {
 }
 
 TEST(Pcd, AnEmptyCloudIsAFileOfWidthZero) {
-  const ReadBack file = read_back(pcd_bytes({}), 3);
+  const ReadBack file = read_back(pcd_bytes(point_table({})), 3);
   EXPECT_EQ(file.header.at("WIDTH"), "0");
   EXPECT_EQ(file.header.at("POINTS"), "0");
   EXPECT_TRUE(file.records.empty());
@@ -71,7 +65,7 @@ TEST(Pcd, HeaderSaysWhatTheBytesAre) {
   std::vector<NamedArray> table = point_table(points);
   table.push_back({"doppler", npy_array<float>({2}, doppler)});
   table.push_back({"label", npy_array<float>({2}, label)});
-  const ReadBack file = read_back(pcd_table_bytes(table), 5);
+  const ReadBack file = read_back(pcd_bytes(table), 5);
   const std::map<std::string, std::string> expected = {{"#", ".PCD v0.7 - Point Cloud Data file format"},
                                                        {"VERSION", "0.7"},
                                                        {"FIELDS", "x y z doppler label"},
@@ -93,7 +87,7 @@ TEST(Pcd, HeaderSaysWhatTheBytesAre) {
 TEST(Pcd, DataBeginRightAfterTheHeader) {
   const std::vector<Vector3d> points = {{1.0, -2.0, 0.5}};
   const std::string record("\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f", 12);
-  EXPECT_TRUE(pcd_bytes(points).ends_with("\nDATA binary\n" + record));
+  EXPECT_TRUE(pcd_bytes(point_table(points)).ends_with("\nDATA binary\n" + record));
 }
 
 TEST(Pcd, RefusesColumnsThatDoNotBelong) {
@@ -102,7 +96,7 @@ TEST(Pcd, RefusesColumnsThatDoNotBelong) {
     for (const auto& [name, count] : columns) {
       table.push_back({name, npy_array<float>({count}, std::vector<float>(count, 1.0F))});
     }
-    return pcd_table_bytes(table);
+    return pcd_bytes(table);
   };
   EXPECT_NO_THROW(write({{"a", 2}, {"b", 2}}));
   EXPECT_THROW(write({{"a", 2}, {"b", 3}}), std::invalid_argument);
@@ -115,24 +109,8 @@ TEST(Pcd, RefusesColumnsThatDoNotBelong) {
 TEST(Pcd, RefusesNumbersThatAreNotFinite) {
   constexpr double kHuge = 1e39;  // a double, but no float32
   for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(), kHuge}) {
-    EXPECT_THROW(pcd_bytes(std::vector<Vector3d>{{0.0, bad, 0.0}}), std::invalid_argument) << bad;
+    EXPECT_THROW(pcd_bytes(point_table(std::vector<Vector3d>{{0.0, bad, 0.0}})), std::invalid_argument) << bad;
   }
-}
-
-TEST(Pcd, WritesAFileWholeOrNotAtAll) {
-  const fs::path folder = fs::temp_directory_path() / ("pcd_test-" + std::to_string(::getpid()));
-  fs::create_directories(folder);
-  const fs::path path = folder / "map.pcd";
-  const std::vector<Vector3d> points(1000, Vector3d(1.0, 2.0, 3.0));
-  write_pcd(path, points);
-  EXPECT_EQ(read_whole_file(path), pcd_bytes(points));
-  // What cannot be written leaves the earlier file as it was, and nothing beside it.
-  const std::vector<Vector3d> bad(1, Vector3d::Constant(std::numeric_limits<double>::quiet_NaN()));
-  EXPECT_THROW(write_pcd(path, bad), std::invalid_argument);
-  EXPECT_EQ(read_whole_file(path), pcd_bytes(points));
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder), fs::directory_iterator()), 1);
-  fs::remove_all(folder);
-  EXPECT_THROW(write_pcd(path, points), DataError);
 }
 
 }  // namespace

@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/tools/benchmark/child_process.hpp"
+#include "benchmarks/sequence/child_text.hpp"
 
 #include <csignal>
 
@@ -8,7 +8,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 
-namespace dynamic_icp::benchmark {
+namespace dynamic_icp::speed {
 namespace {
 
 std::string message_of(const std::function<std::string()>& work) {
@@ -20,12 +20,12 @@ std::string message_of(const std::function<std::string()>& work) {
   return "no error";
 }
 
-TEST(ChildProcess, HandsBackLongTextsWhole) {
+TEST(ChildText, HandsBackLongTextsWhole) {
   const std::string text(300000, 'x');  // more than a pipe holds
   EXPECT_EQ(text_of_child([&] { return text; }), text);
 }
 
-TEST(ChildProcess, LeavesTheParentAsItWas) {
+TEST(ChildText, LeavesTheParentAsItWas) {
   int value = 1;
   text_of_child([&] {
     value = 2;
@@ -34,7 +34,7 @@ TEST(ChildProcess, LeavesTheParentAsItWas) {
   EXPECT_EQ(value, 1);
 }
 
-TEST(ChildProcess, ErrorsKeepTheirKindAndMessage) {
+TEST(ChildText, ErrorsKeepTheirKindAndMessage) {
   EXPECT_EQ(message_of([]() -> std::string { throw DataError("no such scan"); }), "no such scan");
   EXPECT_THROW(text_of_child([]() -> std::string { throw UsageError("no such preset"); }), UsageError);
   EXPECT_NE(message_of([]() -> std::string {
@@ -44,11 +44,11 @@ TEST(ChildProcess, ErrorsKeepTheirKindAndMessage) {
             std::string::npos);
 }
 
-TEST(ChildProcess, ProgramsAreHeard) {
-  EXPECT_EQ(output_of_program("/bin/echo", {"two words", "x"}), "two words x\n");
-  EXPECT_THROW(output_of_program("/bin/false", {}), DataError);
-  EXPECT_THROW(output_of_program("/nowhere/at/all", {}), DataError);
+TEST(ChildText, ProgramsAreHeard) {
+  EXPECT_EQ(output_of_program("/bin/echo", "two words"), "two words\n");
+  EXPECT_THROW(output_of_program("/bin/false", ""), DataError);
+  EXPECT_THROW(output_of_program("/nowhere/at/all", ""), DataError);
 }
 
 }  // namespace
-}  // namespace dynamic_icp::benchmark
+}  // namespace dynamic_icp::speed
