@@ -85,6 +85,12 @@ class Scan {
   /// Moves the point of one row by `displacement` (m, sensor frame).
   void displace(std::size_t row, const Eigen::Vector3d& displacement) { points_[row] += displacement; }
 
+  /// Corrects the Doppler of one row by `change_mps`, for an error that is known by now.
+  void shift_doppler(std::size_t row, double change_mps) { doppler_[row] += change_mps; }
+
+  /// Whether several sensors measured the points, each from a known place.
+  [[nodiscard]] bool is_of_rig() const { return !mountings_.empty(); }
+
  private:
   template <class Visit>
   void for_each_column(Visit visit);

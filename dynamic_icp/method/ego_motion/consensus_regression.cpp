@@ -23,13 +23,9 @@ constexpr int kMaxSteps = 20;
 constexpr double kStepToleranceMps = 3e-4;  // a tenth of the standard deviation of a good estimate
 constexpr double kUnobservableSigma_mps =
     2.0;                                 // who knows a component no better than this knows it better by any prior
-constexpr double kFloorMps = 1e-3;       // errors of all lines of sight together: 0.003 degrees at 20 m/s
-constexpr double kMinSlope = 0.6;        // of psi' to the weights; 0.8 for normal noise at the default cutoff
-constexpr double kWider = 1.4;           // of the scale, in one step: twice the variance
 constexpr double kMinVariance = 1e-12;   // a prior without any doubt must not divide by zero
 constexpr double kUnknown_mps = 30.0;    // of a velocity of which nothing is known
 constexpr double kBonusSigma_mps = 0.3;  // a velocity this near to the expected one still earns most of its bonus
-constexpr double kJerk = 10.0;           // m/s^3, of hard braking and steering
 
 // Refining a mode: the first steps look farther than the cutoff, because a mode begins away from its best velocity.
 constexpr double kFirstStepsWider = 1.5;
@@ -75,15 +71,6 @@ EgoPrior inflated(const EgoPrior& prior) {
     open.covariance(k, k) = std::max(prior.covariance(k, k), start(k, k));
   }
   return open;
-}
-
-/// Whether the prior velocity may take part: one far from what the scan shows is wrong, not informative.
-bool agrees(const EgoPrior& prior, const Vector7d& x) {
-  constexpr double kSigmas2 = 16.0;
-  const Eigen::Vector3d difference = x.head<3>() - prior.mean.head<3>();
-  const Eigen::Matrix3d covariance =
-      prior.covariance.topLeftCorner<3, 3>() + kMinVariance * Eigen::Matrix3d::Identity();
-  return prior.has_velocity && difference.dot(covariance.ldlt().solve(difference)) < kSigmas2;
 }
 
 /// The whole prior, for the fit to all points of the static scene.
@@ -245,7 +232,7 @@ struct Fit {
 
 Fit fit_all(const DopplerRows& rows, const ModeHypothesis& hypothesis, const EgoPrior& prior,
             const ConsensusRegressionConfig& config, const Workers& workers) {
-  const bool as_expected = agrees(prior, hypothesis.x);
+  const bool as_expected = agrees(prior, hypothesis.x.head<3>());
   const DopplerModel without_velocity =
       consensus_model(prior.has_velocity && !as_expected ? inflated(prior) : prior, config);
   const DopplerModel model = as_expected ? fitting_model(prior, config) : without_velocity;
@@ -254,18 +241,11 @@ Fit fit_all(const DopplerRows& rows, const ModeHypothesis& hypothesis, const Ego
   fit.x = hypothesis.x;
   while (!fit.converged && fit.iterations < kMaxSteps) {
     const FitSums sums = sum_fit(rows, fit.x, scale, model.has_bias, workers);
-    // Neighbours that err together, as where the Doppler has coarse steps, make the noise look small. The cutoff then
-    // lies where residuals are still dense, and their pull falls as they grow: the scale must widen.
-    const bool too_narrow = sums.slopes < kMinSlope * sums.weights && scale.noise_mps < config.max_noise_mps;
+    const bool too_narrow = widen_if_too_narrow(sums, config.max_noise_mps, scale);
     const FitStep step = solve_fit(sums, fit.x, model, kUnobservableSigma_mps);
     fit.x += step.step;
     ++fit.iterations;
     fit.converged = !too_narrow && step.step.head<3>().norm() < kStepToleranceMps;
-    if (too_narrow) {
-      scale.noise_mps *= kWider;
-      scale.cutoff_mps *= kWider;
-      scale.surface_mps *= kWider;
-    }
   }
   std::vector<Vector7d> gradients;
   fit.sums = sum_fit(rows, fit.x, scale, model.has_bias, workers, &gradients);
@@ -273,13 +253,6 @@ Fit fit_all(const DopplerRows& rows, const ModeHypothesis& hypothesis, const Ego
   fit.open = solve_fit(fit.sums, fit.x, without_velocity, kUnobservableSigma_mps).open;
   fit.covariance = sandwich_covariance(rows, fit.sums, fit.open, model, gradients);
   return fit;
-}
-
-/// (m/s)^2 that the covariance of v never falls below.
-double floor_variance(const DopplerRows& rows) {
-  // A jerk j leaves j dt^2/2 unexplained, j T^2/24 on average over a sweep of duration T.
-  const double unexplained = kJerk * rows.duration_s * rows.duration_s / 24.0;
-  return kFloorMps * kFloorMps + unexplained * unexplained;
 }
 
 EgoVelocityStatus status_of(const Fit& fit, const ModeHypothesis& hypothesis) {
@@ -318,6 +291,14 @@ bool is_plausible(const EgoVelocity& ego) {
 }
 
 }  // namespace
+
+bool agrees(const EgoPrior& prior, const Eigen::Vector3d& velocity) {
+  constexpr double kSigmas2 = 16.0;
+  const Eigen::Vector3d difference = velocity - prior.mean.head<3>();
+  const Eigen::Matrix3d covariance =
+      prior.covariance.topLeftCorner<3, 3>() + kMinVariance * Eigen::Matrix3d::Identity();
+  return prior.has_velocity && difference.dot(covariance.ldlt().solve(difference)) < kSigmas2;
+}
 
 ConfigFields fields(ConsensusRegressionConfig& config) {
   return {
@@ -365,8 +346,9 @@ EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, co
   result.velocity_sensor = fit.x.head<3>() + fit.open * (result.velocity_sensor - fit.x.head<3>());
   result.joint_covariance = fit.covariance;
   result.joint_covariance.topLeftCorner<3, 3>() +=
-      fit.open * result.covariance * fit.open + floor_variance(rows) * (Eigen::Matrix3d::Identity() - fit.open);
-  result.joint_covariance(6, 6) += kFloorMps * kFloorMps;
+      fit.open * result.covariance * fit.open +
+      floor_variance(rows.duration_s) * (Eigen::Matrix3d::Identity() - fit.open);
+  result.joint_covariance(6, 6) += floor_variance(0.0);
   result.covariance = result.joint_covariance.topLeftCorner<3, 3>();
   result.acceleration_sensor = fit.x.segment<3>(3);
   if (config.estimate_bias) {

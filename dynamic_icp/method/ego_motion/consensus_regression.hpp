@@ -39,6 +39,10 @@ struct EgoPrior {
   static Matrix7d default_covariance() { return Vector7d(Vector7d{{1, 1, 1, 9, 9, 9, 0.04}}).asDiagonal(); }
 };
 
+/// Whether the prior velocity may take part: one more than four sigmas from what the scan shows is wrong, not
+/// informative.
+bool agrees(const EgoPrior& prior, const Eigen::Vector3d& velocity);
+
 /// The velocity of the sensor where most of the points may move.
 ///
 /// 1. Velocities from samples of three points are voted on. Half of all votes is spread over the cells of space, half

@@ -15,6 +15,8 @@ namespace dynamic_icp::ego_motion {
 namespace {
 
 constexpr double kUnknowns = 7.0;
+constexpr double kFloorMps = 1e-3;  // errors of all lines of sight together: 0.003 degrees at 20 m/s
+constexpr double kJerk = 10.0;      // m/s^3, of hard braking and steering
 
 /// H and the priors. psi' instead of the weights: in the tails of the kernel a residual that grows loses pull, so the
 /// weights alone overstate what a step changes.
@@ -83,6 +85,12 @@ Matrix7d sandwich_covariance(const DopplerRows& rows, const FitSums& sums, const
   Matrix7d covariance = solver.solve(half.transpose());
   covariance = keep * covariance * keep;
   return 0.5 * (covariance + covariance.transpose());
+}
+
+double floor_variance(double duration_s) {
+  // A jerk j leaves j dt^2/2 unexplained, j T^2/24 on average over a sweep of duration T.
+  const double unexplained = kJerk * duration_s * duration_s / 24.0;
+  return kFloorMps * kFloorMps + unexplained * unexplained;
 }
 
 double noise_from_neighbours(const DopplerRows& rows, const Vector7d& x, double minimum_mps, double maximum_mps) {

@@ -35,6 +35,10 @@ FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& mo
 Matrix7d sandwich_covariance(const DopplerRows& rows, const FitSums& sums, const Eigen::Matrix3d& open,
                              const DopplerModel& model, const std::vector<Vector7d>& cell_gradients);
 
+/// (m/s)^2 that the covariance of a velocity never falls below: 1 mm/s, and for a sweep of `duration_s` the change of
+/// velocity that a constant acceleration leaves out.
+double floor_variance(double duration_s);
+
 /// Deviation of the Doppler of single points, from differences between neighbours within a cell. They belong to the
 /// same surface, so moving ones count like static ones and no crowd widens it. Falls back on the residuals themselves
 /// where cells hold single points. Zero rows give `maximum`; the result is within the two bounds.

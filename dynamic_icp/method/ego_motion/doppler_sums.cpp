@@ -16,6 +16,8 @@ namespace {
 constexpr std::size_t kCellsPerBlock = 128;
 constexpr std::size_t kMaxRows = 1024;  // at a time: what is computed of them stays near the processor
 constexpr std::size_t kLanes = simd::kSumLanes;
+constexpr double kMinSlope = 0.6;  // of psi' to the weights; 0.8 for normal noise at the default cutoff
+constexpr double kWider = 1.4;     // of the scale, in one step: twice the variance
 
 /// What is computed of some rows that follow each other.
 struct RowWork {
@@ -236,6 +238,16 @@ FitSums& FitSums::operator+=(const FitSums& other) {
   inlier_squared += other.inlier_squared;
   inliers += other.inliers;
   return *this;
+}
+
+bool widen_if_too_narrow(const FitSums& sums, double max_noise_mps, RobustScale& scale) {
+  if (sums.slopes >= kMinSlope * sums.weights || scale.noise_mps >= max_noise_mps) {
+    return false;
+  }
+  scale.noise_mps *= kWider;
+  scale.cutoff_mps *= kWider;
+  scale.surface_mps *= kWider;
+  return true;
 }
 
 FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& scale, bool has_bias,

@@ -42,6 +42,11 @@ struct FitSums {
   FitSums& operator+=(const FitSums& other);
 };
 
+/// Widens the scale by a step, up to `max_noise_mps`, where residuals are still dense at the cutoff, so that their pull
+/// falls as they grow: neighbours that err together, as where the Doppler has coarse steps, make the noise look small.
+/// Returns whether it did.
+bool widen_if_too_narrow(const FitSums& sums, double max_noise_mps, RobustScale& scale);
+
 /// The sums at x. If `cell_gradients` is given it receives the part of each cell in the gradient. Cells of more than
 /// a thousand points are judged in parts.
 FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& scale, bool has_bias,

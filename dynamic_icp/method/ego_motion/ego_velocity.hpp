@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string_view>
 
 #include <Eigen/Core>
@@ -24,6 +25,12 @@ enum class EgoVelocityStatus {
 
 std::string_view to_string(EgoVelocityStatus status);
 
+/// How fast the sensor rotates.
+struct AngularVelocity {
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();       ///< rad/s, sensor axes
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< (rad/s)^2; (10 rad/s)^2 where nothing is known
+};
+
 /// The velocity of the sensor over ground, from the Doppler of one scan.
 struct EgoVelocity {
   EgoVelocityStatus status = EgoVelocityStatus::kNotRun;
@@ -43,6 +50,8 @@ struct EgoVelocity {
   double reference_time_s = 0.0;
   double bias_mps = 0.0;       ///< constant error of the Doppler, s_i = -u_i . v + bias
   double bias_variance = 0.0;  ///< (m/s)^2
+  /// Of a rig of several sensors: the angular velocity that the Doppler alone shows.
+  std::optional<AngularVelocity> rotation;
   /// Of [velocity; acceleration; bias], for the filter over scans; the parts above are marginal to it.
   Matrix7d joint_covariance = Matrix7d::Zero();
 };

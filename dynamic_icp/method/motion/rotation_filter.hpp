@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/method/ego_motion/rig_regression.hpp"
 #include "dynamic_icp/method/motion/rotation_filter_config.hpp"
 
 namespace dynamic_icp::motion {
@@ -32,6 +33,9 @@ RotationState predict(const RotationState& state, double dt_s, const RotationFil
 /// no exact parabola: what the noise of the angular acceleration leaves to the fit is added to the covariance.
 RotationState updated(RotationState found, const RotationState& predicted, double duration_s,
                       const RotationFilterConfig& config);
+
+/// The state with what the Doppler of a rig says of the angular velocity `after_s` later (rig_regression.hpp).
+RotationState fused(const RotationState& state, double after_s, const ego_motion::AngularInformation& doppler);
 
 // Standard deviation of the error at the begin of a sweep of 1 s (angle, rad, and angular velocity, rad/s) of
 // a parabola that least squares fit to a rotation angle whose acceleration does a random walk of 1 rad/s^2 over the

@@ -143,5 +143,35 @@ TEST(RotationFilter, KnowsHowARandomWalkOfTheAccelerationDefeatsAParabola) {
   EXPECT_NEAR(kParabolaMisfit_rad_s, std::sqrt(variance[1]), 0.03 * kParabolaMisfit_rad_s);
 }
 
+TEST(RotationFilter, FusesTheDopplerOfARigLikeAKalmanFilter) {
+  RotationFilterConfig config;
+  RotationState state = predict(first_rotation_state(config), 0.1, config);
+  state.omega = Eigen::Vector3d(0.01, -0.02, 0.4);
+  state.alpha = Eigen::Vector3d(0.1, 0.2, -0.3);
+  constexpr double kAfter_s = 0.05;
+  ego_motion::AngularInformation doppler;
+  doppler.at << 0.0, 0.1, 0.3, 0.0, 0.0, 0.0;
+  // omega is measured with 0.01 rad/s, alpha is not.
+  doppler.information.topLeftCorner<3, 3>() = 1e4 * Eigen::Matrix3d::Identity();
+  const Eigen::Vector3d measured(0.02, -0.01, 0.45);
+  doppler.weighted_change.head<3>() = 1e4 * (measured - doppler.at.head<3>());
+  const RotationState after = fused(state, kAfter_s, doppler);
+
+  // The same by the gain of a Kalman filter.
+  Eigen::Matrix<double, 3, 9> H = Eigen::Matrix<double, 3, 9>::Zero();
+  H.block<3, 3>(0, 3).setIdentity();
+  H.block<3, 3>(0, 6) = kAfter_s * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix3d S = H * state.covariance * H.transpose() + 1e-4 * Eigen::Matrix3d::Identity();
+  const Eigen::Matrix<double, 9, 3> gain = state.covariance * H.transpose() * S.inverse();
+  const Vector9d change = gain * (measured - state.omega - kAfter_s * state.alpha);
+  EXPECT_LT((after.omega - state.omega - change.segment<3>(3)).norm(), 1e-9);
+  EXPECT_LT((after.alpha - state.alpha - change.tail<3>()).norm(), 1e-9);
+  EXPECT_LT((log_so3(after.R_map_sensor * state.R_map_sensor.transpose()) - change.head<3>()).norm(), 1e-9);
+  const Matrix9d covariance = (Matrix9d::Identity() - gain * H) * state.covariance;
+  EXPECT_LT((after.covariance - covariance).norm(), 1e-7 * covariance.norm());
+
+  EXPECT_EQ(fused(state, kAfter_s, {}).omega, state.omega) << "no information, no change";
+}
+
 }  // namespace
 }  // namespace dynamic_icp::motion

@@ -84,6 +84,18 @@ TEST(CompensatedMotion, ThePaperFollowsADrive) {
   EXPECT_EQ(frames.back().ego.status, ego_motion::EgoVelocityStatus::kFromMotion);
 }
 
+TEST(CompensatedMotion, ThePublishedProtocolFollowsADriveFromItsFirstPair) {
+  const Drive drive{street_with_cars(), agile(10.0), {}};
+  PaperConfig config;
+  config.published_compensated = true;
+  DynamicIcp odometry(config, 2);
+  const std::vector<Frame> frames = run(drive, odometry, 12);
+  const MotionError error = rms_error(drive, frames, 1);
+  EXPECT_LT(error.move_m, 0.05);
+  EXPECT_LT(error.turn_deg, 0.3);
+  EXPECT_GT(frames.back().alignment.doppler.count, 0u) << "the authors keep the Doppler term";
+}
+
 TEST(CompensatedMotion, DopplerIcpIsLeftWithItsGeometry) {
   const Drive drive{street(), circle(1.0, 0.0), {}};
   SensorContext context;

@@ -79,6 +79,9 @@ ConfigFields fields(PaperConfig& config) {
   append_fields(all, "dynamics.velocity", fields(config.dynamics.velocity));
   append_fields(all, "dynamics", {{"predict", &config.dynamics.predict, 0, 0, "", kPredict}});
   append_fields(all, "registration", fields(config.registration));
+  append_fields(all, "registration",
+                {{"published_compensated", &config.published_compensated, 0, 0, "",
+                  "compensated Doppler: align as published for AevaScenes; off: without a Doppler term"}});
   append_stream(all, config.stream);
   return all;
 }

@@ -59,6 +59,9 @@ struct PaperConfig {
   PaperEgoMotionConfig ego_motion;
   DynamicsConfig dynamics;
   registration::AlignConfig registration;
+  /// Compensated Doppler as in the table on AevaScenes, see published_compensated.hpp; off: aligned without a Doppler
+  /// term, because there is no rotation of the sensor in such Doppler.
+  bool published_compensated = false;
   StreamConfig stream;
 };
 

@@ -9,6 +9,21 @@
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
 
 namespace dynamic_icp::odometry {
+namespace {
+
+/// Of a scan with compensated Doppler.
+Scan static_points(const Scan& scan, const ego_motion::VelocityFilterConfig& filter) {
+  const std::vector<std::uint8_t> is_moving = ego_motion::dynamic_mask(scan, scan.doppler(), filter);
+  std::vector<std::uint32_t> rows;
+  for (std::uint32_t row = 0; row < scan.size(); ++row) {
+    if (is_moving[row] == 0) {
+      rows.push_back(row);
+    }
+  }
+  return scan.select(rows);
+}
+
+}  // namespace
 
 /// What is kept of the last usable scan: the source of the next alignment.
 struct DynamicIcp::Reference {
@@ -66,7 +81,7 @@ Frame DynamicIcp::process(const ScanView& raw) {
   return frame;
 }
 
-void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const {
+void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock) {
   const registration::PreparedTarget prepared(scan, config_.normals, workers_);
   clock.finish(Stage::kNormals);
 
@@ -74,9 +89,14 @@ void DynamicIcp::align_to_last(const Scan& scan, Frame& frame, StageClock& clock
   const Scan source = dynamics::predict(last_->scan, last_->is_dynamic, last_->clusters, dt_s);  // Eq. (9), (11)
   const registration::Target target = prepared.target();
   const Eigen::Isometry3d T_start = predicted_motion();
-  frame.alignment = scan.doppler_kind() == DopplerKind::kRelative
-                        ? registration::align(source, target, T_start, config_.registration, workers_)  // Eq. (12)-(14)
-                        : by_geometry_.align(source, target, T_start, dt_s, config_.registration, workers_);
+  if (scan.doppler_kind() == DopplerKind::kRelative) {
+    frame.alignment = registration::align(source, target, T_start, config_.registration, workers_);  // Eq. (12)-(14)
+  } else if (config_.published_compensated) {
+    frame.alignment = published_.align(source, static_points(last_->scan, config_.ego_motion.filter), target,
+                                       static_points(scan, config_.ego_motion.filter), config_, workers_);
+  } else {
+    frame.alignment = by_geometry_.align(source, target, T_start, dt_s, config_.registration, workers_);
+  }
   const FrameStatus status = frame_status(frame.alignment, dt_s);
   set_motion(frame, status, last_->T_world_sensor, is_aligned(status) ? frame.alignment.T_target_source : T_start);
   clock.finish(Stage::kRegistration);

@@ -11,6 +11,7 @@
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/odometry/motion_by_geometry.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/method/odometry/published_compensated.hpp"
 #include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
 
@@ -41,7 +42,7 @@ class DynamicIcp final : public Odometry {
  private:
   struct Reference;
 
-  void align_to_last(const Scan& scan, Frame& frame, StageClock& clock) const;
+  void align_to_last(const Scan& scan, Frame& frame, StageClock& clock);
   std::vector<double> estimate_ego_motion(const Scan& scan, Frame& frame);
   [[nodiscard]] Eigen::Isometry3d predicted_motion() const;
   [[nodiscard]] Eigen::Vector3d velocity_prior(const Frame& frame) const;
@@ -53,6 +54,7 @@ class DynamicIcp final : public Odometry {
   ScanStream stream_;
   std::unique_ptr<Reference> last_;  ///< the last usable scan; empty before the first
   MotionByGeometry by_geometry_;     ///< where the Doppler is compensated
+  PublishedCompensated published_;   ///< likewise, as published
 };
 
 }  // namespace dynamic_icp::odometry

@@ -7,15 +7,13 @@
 #include <utility>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
-#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
-#include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
-#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/mapping/rotation_search.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/motion/motion_uncertainty.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_labels.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
+#include "dynamic_icp/method/odometry/rig_origin.hpp"
 #include "dynamic_icp/method/registration/gauss_newton.hpp"
 
 namespace dynamic_icp::odometry {
@@ -66,19 +64,6 @@ bool is_lost(const mapping::MapAlignment& found, double min_match) {
          found.matched < kMinAgreement * static_cast<double>(found.on_planes);
 }
 
-/// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
-ego_motion::VelocityFilterConfig filter_for(const EgoMotionConfig& config, const ego_motion::EgoVelocity& ego) {
-  ego_motion::VelocityFilterConfig filter = config.filter;
-  filter.tau_0_mps = std::max(filter.tau_0_mps, config.static_sigmas * ego.inlier_rms_mps);
-  return filter;
-}
-
-/// Those of `rows` that are static.
-std::vector<std::uint32_t> static_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
-  std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
-  return rows;
-}
-
 }  // namespace
 
 MapOdometry::MapOdometry(const MapOdometryConfig& config, int threads, DopplerKind expected)
@@ -94,6 +79,11 @@ std::vector<std::string> MapOdometry::assumptions() const {
 }
 
 Frame MapOdometry::process(const ScanView& raw) {
+  Frame frame = process_at_middle(raw);
+  return middle_ ? seen_from_origin(std::move(frame), *middle_) : frame;
+}
+
+Frame MapOdometry::process_at_middle(const ScanView& raw) {
   stream_.check_order(raw.stamp);
   Frame frame;
   StageClock clock(frame.times);
@@ -140,6 +130,10 @@ void MapOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
   const ScanView timed = motion::retimed(raw, config_.sweep, memory_.times);
   const Scan& whole = memory_.whole;
   assign(timed, config_.preprocess, workers_, memory_.whole, frame);
+  if (whole.is_of_rig()) {
+    middle_ = middle_.value_or(middle_of_sensors(whole));
+    memory_.whole = whole.transformed(Eigen::Isometry3d(Eigen::Translation3d(-*middle_)));
+  }
   workers_.both(
       [&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, memory_.thinned); },
       [&] {
@@ -147,45 +141,6 @@ void MapOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
                                     memory_.rows);
       });
   frame.points_used = memory_.thinned.size();
-}
-
-/// The velocity of the sensor at this scan, and the points that are static.
-MapOdometry::ScanState MapOdometry::separate_static_points() {
-  const Scan& whole = memory_.whole;
-  ScanState now;
-  now.stamp_s = stream_.elapsed_s();
-  now.middle_s = memory_.rows.reference_time_s;
-  now.duration_s = memory_.rows.duration_s;
-  now.is_relative = whole.doppler_kind() == DopplerKind::kRelative;
-  now.filtered = estimate_ego(now.stamp_s);
-  now.ego =
-      now.is_relative ? ego_motion::average_over_bias_models(now.filtered, config_.ego_motion.drift) : now.filtered;
-  const ego_motion::EgoVelocity in_doppler = now.is_relative ? now.ego : static_frame(whole);
-  ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
-  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(config_.ego_motion, in_doppler), workers_,
-                           memory_.is_moving);
-  now.static_points = whole.select(static_rows(memory_.thinned, memory_.is_moving));
-  return now;
-}
-
-ego_motion::EgoVelocity MapOdometry::estimate_ego(double stamp_s) const {
-  const EgoMotionConfig& config = config_.ego_motion;
-  const Scan& scan = memory_.whole;
-  const ego_motion::DopplerRows& rows = memory_.rows;
-  if (scan.doppler_kind() == DopplerKind::kCompensated) {
-    return state_ ? propagate(state_->filtered, stamp_s - state_->stamp_s) : unknown_velocity();
-  }
-  if (!config.use_consensus) {
-    const Eigen::Vector3d start = state_ ? state_->filtered.velocity_sensor : Eigen::Vector3d::Zero();
-    ego_motion::EgoVelocity ego = ego_motion::estimate_velocity(scan, start, config.regression, workers_);
-    ego.reference_time_s = rows.reference_time_s;
-    return ego;
-  }
-  const double dt_s =
-      state_ ? std::min(stamp_s + rows.reference_time_s - state_->velocities.back().time_s, kMaxPrediction_s) : 0.0;
-  const ego_motion::EgoPrior prior =
-      state_ ? ego_motion::predict(state_->filtered, dt_s, config.drift) : ego_motion::first_prior(config.drift);
-  return ego_motion::estimate_velocity(rows, prior, config.consensus, workers_);
 }
 
 /// A new map with this scan as its first, at a known place.
@@ -200,6 +155,11 @@ void MapOdometry::begin(const ScanState& now, const Eigen::Isometry3d& T_map_sen
   state.rotation = motion::first_rotation_state(config_.rotation);
   state.rotation.R_map_sensor = T_map_sensor.linear();
   state.sweep = sweep_without_rotation(now.ego, now.middle_s);
+  if (now.rotation) {
+    state.rotation = motion::fused(state.rotation, now.middle_s, *now.rotation);
+    state.rotation.R_map_sensor = T_map_sensor.linear();
+    state.sweep.omega = state.rotation.omega;
+  }
   state.first = now;
   state.velocities = {
       {now.stamp_s + now.middle_s, now.ego.velocity_sensor, now.ego.covariance, state.rotation.R_map_sensor}};
@@ -218,7 +178,10 @@ std::vector<motion::VelocitySample> MapOdometry::velocities_with(const ScanState
 /// Where the scan should be: the turn as it was expected, the way by the velocities of this and the last scans.
 mapping::MotionPrior MapOdometry::motion_prior(const ScanState& now) const {
   const double dt_s = now.stamp_s - state_->stamp_s;
-  const motion::RotationState rotation = motion::predict(state_->rotation, dt_s, config_.rotation);
+  motion::RotationState rotation = motion::predict(state_->rotation, dt_s, config_.rotation);
+  if (now.rotation) {
+    rotation = motion::fused(rotation, now.middle_s, *now.rotation);
+  }
   mapping::MotionPrior prior;
   prior.R_map_sensor = rotation.R_map_sensor;
   prior.sweep = sweep_without_rotation(now.ego, now.middle_s);

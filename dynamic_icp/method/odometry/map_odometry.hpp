@@ -16,6 +16,7 @@
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/method/odometry/rig_velocity.hpp"
 #include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
 #include "dynamic_icp/method/preprocess/voxel_grid.hpp"
@@ -48,6 +49,7 @@ class MapOdometry final : public Odometry {
     bool is_relative = true;  ///< the Doppler shows the sensor's motion; else `ego` is that of the alignments before
     ego_motion::EgoVelocity ego;
     ego_motion::EgoVelocity filtered;  ///< the same as the filter carries it on, see average_over_bias_models
+    std::optional<ego_motion::AngularInformation> rotation;  ///< what the Doppler of a rig says of it
   };
 
   /// What is known of the sensor at the last usable scan.
@@ -78,9 +80,11 @@ class MapOdometry final : public Odometry {
     spatial::CellOrder sort;
   };
 
+  Frame process_at_middle(const ScanView& raw);
   void thin_and_sort(const ScanView& raw, Frame& frame);
   [[nodiscard]] ScanState separate_static_points();
   [[nodiscard]] ego_motion::EgoVelocity estimate_ego(double stamp_s) const;
+  [[nodiscard]] ego_motion::RigEstimate estimate_rig(double stamp_s);
   void begin(const ScanState& now, const Eigen::Isometry3d& T_map_sensor);
   void update(const ScanState& now, Frame& frame);
   void mark_lost(const ScanState& now, const mapping::MotionPrior& prior, Frame& frame);
@@ -112,7 +116,9 @@ class MapOdometry final : public Odometry {
   mapping::PlaneMap map_;
   tracking::ObjectTracker tracker_;
   ScanStream stream_;
-  std::optional<State> state_;  ///< empty before the first usable scan
+  RigVelocity rig_;
+  std::optional<Eigen::Vector3d> middle_;  ///< m, of the sensors of a rig, as its first scan has it: see rig_origin.hpp
+  std::optional<State> state_;             ///< empty before the first usable scan
 };
 
 }  // namespace dynamic_icp::odometry

@@ -142,7 +142,7 @@ Eigen::Isometry3d ScanToScanIcp::predicted_motion() const {
 registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {
   registration::Objective objective;
   objective.geometry = config_.geometry;
-  objective.max_correspondence_distance_m = config_.registration.max_correspondence_distance_m;
+  objective.gate.max_distance_m = config_.registration.max_correspondence_distance_m;
   objective.doppler = registration::DopplerTerm::kNone;
   objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
   if (!doppler_icp_) {

@@ -22,8 +22,7 @@ class ScanToScan : public Problem {
         target_(target),
         objective_(objective),
         workers_(workers),
-        search_(source.scan, target, objective.max_correspondence_distance_m,
-                objective.geometry == GeometryTerm::kPointToPlane, workers),
+        search_(source.scan, target, objective.gate, objective.geometry == GeometryTerm::kPointToPlane, workers),
         fast_(has_step_equations(objective)) {}
 
   Correspondences find(const Eigen::Isometry3d& T_target_source) override { return search_.find(T_target_source); }
@@ -83,7 +82,7 @@ void check_inputs(const Source& source, const Target& target, const Objective& o
 
 Objective dynamic_icp_objective(const AlignConfig& config) {
   Objective objective;
-  objective.max_correspondence_distance_m = config.max_correspondence_distance_m;
+  objective.gate = {config.max_correspondence_distance_m, config.correspondence_range_scale};
   objective.doppler_weight = config.doppler_weight;
   objective.tukey_geometry_m = config.tukey_geometry_m;
   objective.tukey_doppler_mps = config.tukey_doppler_mps;

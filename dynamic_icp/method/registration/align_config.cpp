@@ -28,6 +28,8 @@ ConfigFields fields(AlignConfig& config) {
        "point-to-plane residuals beyond this have no weight (rho_g)"},
       {"tukey_doppler_mps", &config.tukey_doppler_mps, 1e-6, 1e3, "m/s",
        "Doppler residuals beyond this have no weight (rho_v)"},
+      {"correspondence_range_scale", &config.correspondence_range_scale, 0.0, 1.0, "m/m",
+       "growth of max_correspondence_distance_m with the distance of the point from the sensor"},
   };
   std::ranges::copy(fields(static_cast<MatchingConfig&>(config)), std::back_inserter(all));
   return all;

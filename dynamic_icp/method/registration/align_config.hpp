@@ -20,6 +20,9 @@ struct AlignConfig : MatchingConfig {
   double doppler_weight = 0.2;     ///< lambda_v; 0 leaves the Doppler term out (ablation "w/o DR")
   double tukey_geometry_m = 0.5;   ///< rho_g
   double tukey_doppler_mps = 0.3;  ///< rho_v
+  /// The paper's "distance-aware correspondence threshold": a source point d metres from the sensor has a partner up to
+  /// max_correspondence_distance_m + correspondence_range_scale * d away. The published value is 0.
+  double correspondence_range_scale = 0.0;
 };
 
 ConfigFields fields(MatchingConfig& config);

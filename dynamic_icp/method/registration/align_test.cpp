@@ -102,7 +102,7 @@ TEST(Align, FirstStepIsTheWeightedLeastSquaresStep) {
   AlignConfig config;
   config.max_iterations = 1;
   const Eigen::Isometry3d T0 = Eigen::Isometry3d::Identity();
-  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, true, workers).find(T0);
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), Gate{0.3}, true, workers).find(T0);
   Eigen::Matrix<double, Eigen::Dynamic, 6> A(2 * static_cast<Eigen::Index>(pairs.pairs.size()), 6);
   Eigen::VectorXd b(A.rows());
   Eigen::Index row = 0;
@@ -145,7 +145,7 @@ TEST(Align, CostDoesNotChangeWhenBothScansAreTurned) {
   const Room room(3, 600, 0.03);
   const Eigen::Isometry3d T = motion(0.02, 0.1);
   const Scan source = room.moved(T);
-  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.3, true, workers).find(T);
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), Gate{0.3}, true, workers).find(T);
   const double expected = cost(source, room.target(), pairs, T);
   Vector6d rotation;
   rotation << 0.4, -1.1, 0.7, 0.0, 0.0, 0.0;
@@ -165,7 +165,7 @@ TEST(Align, NormalEquationsAreTheGradientOfTheCost) {
   const Room room(4, 600, 0.05);
   const Scan source = room.moved(motion(0.01, 0.1));
   const Eigen::Isometry3d T = motion(0.012, 0.12);
-  const Correspondences pairs = CorrespondenceSearch(source, room.target(), 0.5, true, workers).find(T);
+  const Correspondences pairs = CorrespondenceSearch(source, room.target(), Gate{0.5}, true, workers).find(T);
   const Linearisation linear = linearise({{source}, room.target(), pairs}, T, {}, 0, Workers(1));
   for (int k = 0; k < 6; ++k) {
     const Vector6d step = 1e-6 * Vector6d::Unit(k);
@@ -307,7 +307,7 @@ TEST(AlignTerms, PointToPointEndsWhereTheClosedFormDoes) {
   ASSERT_EQ(result.status, AlignStatus::kConverged);
   const Workers workers(1);
   const Correspondences pairs =
-      CorrespondenceSearch(source, room.target(), 0.3, false, workers).find(result.T_target_source);
+      CorrespondenceSearch(source, room.target(), Gate{0.3}, false, workers).find(result.T_target_source);
   Eigen::Matrix3Xd from(3, pairs.pairs.size());
   Eigen::Matrix3Xd to(3, pairs.pairs.size());
   for (std::size_t k = 0; k < pairs.pairs.size(); ++k) {
@@ -330,7 +330,7 @@ TEST(AlignTerms, GicpGradientIsTheSlopeOfItsCost) {
   objective.doppler = DopplerTerm::kNone;
   objective.tukey_geometry_m = std::numeric_limits<double>::infinity();
   const Workers workers(1);
-  const Correspondences pairs = CorrespondenceSearch(scan, room.target(), 0.3, false, workers).find(T);
+  const Correspondences pairs = CorrespondenceSearch(scan, room.target(), Gate{0.3}, false, workers).find(T);
   const Linearisation linear = linearise({source, room.target(), pairs}, T, objective, 0, workers);
   // 1/2 sum e^T W e with the weights W held at T, as Gauss-Newton does.
   const auto cost_at = [&](const Eigen::Isometry3d& X) {

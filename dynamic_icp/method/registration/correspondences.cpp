@@ -114,11 +114,12 @@ Correspondences evaluated(std::vector<Correspondence> pairs, std::size_t source_
   return {std::move(pairs), fit.fitness, fit.inlier_rmse};
 }
 
-CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& target, double max_distance_m,
+CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& target, const Gate& gate,
                                            bool needs_normals, const Workers& workers)
     : source_(source),
       target_(target),
-      max_distance_m_(max_distance_m),
+      gate_m_(source.size()),
+      widest_gate_m_(gate.max_distance_m),
       needs_normals_(needs_normals),
       workers_(workers),
       place_of_(source.size()),
@@ -132,6 +133,8 @@ CorrespondenceSearch::CorrespondenceSearch(const Scan& source, const Target& tar
     if (place < source.size()) {
       const std::uint32_t row = order[place];
       place_of_[row] = place;
+      gate_m_[place] = gate.at(source.points()[row]);
+      widest_gate_m_ = std::max(widest_gate_m_, gate_m_[place]);
       put(group.point, lane, source.points()[row]);
       put(group.ray, lane, source.doppler()[row] * source.directions()[row]);
     }
@@ -195,7 +198,7 @@ bool CorrespondenceSearch::choose_among_known(std::uint32_t place) {
     remember(place, point, &first, std::sqrt(second));
     return true;
   }
-  if (others > max_distance_m_) {
+  if (others > gate_m_[place]) {
     remember(place, point, nullptr, others);
     return true;
   }
@@ -206,7 +209,7 @@ void CorrespondenceSearch::search(std::span<const std::uint32_t> places) {
   if (places.empty()) {
     return;
   }
-  const double reach = kReachOverGate * max_distance_m_;
+  const double reach = kReachOverGate * widest_gate_m_;
   spatial::FewNearestSearch search(target_.tree, reach);
   std::array<Eigen::Vector3d, kBatch> points;
   std::array<spatial::FewNearest, kBatch> found;
@@ -239,7 +242,7 @@ void CorrespondenceSearch::remember(std::uint32_t place, const Eigen::Vector3d& 
   const std::uint32_t j = has_partner ? nearest->index : SourceRows::kNone;
   // Moved by m, the nearest one is at most as far as now and m, all others at least others - m.
   const double validity =
-      (has_partner ? 0.5 * (others - std::sqrt(nearest->squared_distance)) : others - max_distance_m_) - kRounding_m;
+      (has_partner ? 0.5 * (others - std::sqrt(nearest->squared_distance)) : others - gate_m_[place]) - kRounding_m;
 
   SourceRows& group = groups_[place / kLanes];
   const std::size_t lane = place % kLanes;
@@ -248,7 +251,7 @@ void CorrespondenceSearch::remember(std::uint32_t place, const Eigen::Vector3d& 
   const Eigen::Vector3d zero = Eigen::Vector3d::Zero();
   put(group.at, lane, point);
   group.squared_validity[lane] = validity > 0.0 ? validity * validity : -1.0;
-  group.squared_gate[lane] = pairs ? max_distance_m_ * max_distance_m_ : -1.0;
+  group.squared_gate[lane] = pairs ? gate_m_[place] * gate_m_[place] : -1.0;
   put(group.target, lane, has_partner ? target_.scan.points()[j] : zero);
   put(group.normal, lane, has_normal ? target_.normals[j] : zero);
   put(group.direction, lane, has_partner ? target_.scan.directions()[j] : zero);

@@ -44,7 +44,18 @@ Fit fit_of(std::size_t pairs, double squared_distances, std::size_t source_size)
 /// Pairs in the order of the source rows, with their fitness and inlier RMSE.
 Correspondences evaluated(std::vector<Correspondence> pairs, std::size_t source_size);
 
-/// Pairs each source point, moved by T_target_source, with the nearest target point at most `max_distance_m` away.
+/// How far a target point may be from a source point that it is paired with: `max_distance_m`, and for a source point
+/// at a distance d from the sensor `per_range` d more.
+struct Gate {
+  double max_distance_m = 0.3;
+  double per_range = 0.0;
+
+  [[nodiscard]] double at(const Eigen::Vector3d& source_point) const {
+    return max_distance_m + (per_range > 0.0 ? per_range * source_point.norm() : 0.0);
+  }
+};
+
+/// Pairs each source point, moved by T_target_source, with the nearest target point within the gate.
 /// A source point whose nearest target point has no normal stays alone: it gets no second choice.
 ///
 /// The search is exact and remembers: for each point it knows where it was last looked up, which few target points were
@@ -55,7 +66,7 @@ class CorrespondenceSearch {
  public:
   /// The scans must outlive the search.
   /// With `needs_normals`, pairs whose target point has no usable normal are left out.
-  CorrespondenceSearch(const Scan& source, const Target& target, double max_distance_m, bool needs_normals,
+  CorrespondenceSearch(const Scan& source, const Target& target, const Gate& gate, bool needs_normals,
                        const Workers& workers);
 
   Correspondences find(const Eigen::Isometry3d& T_target_source);
@@ -84,7 +95,8 @@ class CorrespondenceSearch {
 
   const Scan& source_;
   Target target_;
-  double max_distance_m_;
+  std::vector<double> gate_m_;  ///< by place
+  double widest_gate_m_;
   bool needs_normals_;
   const Workers& workers_;
   std::vector<std::uint32_t> place_of_;  ///< by row of the source: its place in the groups, four to a group

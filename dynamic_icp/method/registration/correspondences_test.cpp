@@ -36,7 +36,7 @@ struct TargetParts {
 
 Correspondences find_once(const Scan& source, const Target& target, const Eigen::Isometry3d& T, double gate) {
   const Workers workers(2);
-  return CorrespondenceSearch(source, target, gate, true, workers).find(T);
+  return CorrespondenceSearch(source, target, Gate{gate}, true, workers).find(T);
 }
 
 // A walk of small and large steps, on a grid full of equal distances and on random points within `size` metres.
@@ -55,7 +55,7 @@ void expect_remembered_like_fresh(double size) {
   const Scan source = scan_of(points);
   const TargetParts parts(target);
   const Workers workers(2);
-  CorrespondenceSearch search(source, parts.target(), 0.3, true, workers);
+  CorrespondenceSearch search(source, parts.target(), Gate{0.3}, true, workers);
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   for (const double step :
        {0.0, 1e-9, 1e-6, 1e-4, 1e-3, 1e-2, 1e-2, 0.03, 0.03, 0.05, 0.1, 1.0, 0.2, 1e-3, 1e-5, 0.0}) {
@@ -80,6 +80,22 @@ void expect_remembered_like_fresh(double size) {
 TEST(Correspondences, RememberedAnswersAreThoseOfAFreshSearch) {
   expect_remembered_like_fresh(3.0);  // so sparse that the search finds fewer than it may keep
   expect_remembered_like_fresh(1.0);  // so dense that it finds more
+}
+
+TEST(Correspondences, TheGateGrowsWithTheDistanceFromTheSensor) {
+  // Each point 0.5 m from its partner, at 10 m and at 30 m.
+  const Scan source = scan_of({{10.0, 0.0, 0.0}, {30.0, 0.0, 0.0}});
+  const TargetParts parts({{10.0, 0.5, 0.0}, {30.0, 0.5, 0.0}});
+  const Workers workers(1);
+  const auto pairs = [&](double per_range) {
+    return CorrespondenceSearch(source, parts.target(), {0.3, per_range}, true, workers)
+        .find(Eigen::Isometry3d::Identity())
+        .pairs;
+  };
+  EXPECT_TRUE(pairs(0.0).empty());
+  ASSERT_EQ(pairs(0.01).size(), 1u);
+  EXPECT_EQ(pairs(0.01).front().source, 1u);
+  EXPECT_EQ(pairs(0.03).size(), 2u);
 }
 
 TEST(Correspondences, EqualBruteForce) {
@@ -147,7 +163,7 @@ TEST(Correspondences, APoseThatIsNotFinitePairsNothing) {
     const Scan source = scan_of(std::vector<Vector3d>(size, Vector3d(1.0, 2.0, 3.0)));
     const TargetParts parts({{1, 2, 3}, {4, 5, 6}});
     const Workers workers(1);
-    CorrespondenceSearch search(source, parts.target(), 1.0, true, workers);
+    CorrespondenceSearch search(source, parts.target(), Gate{1.0}, true, workers);
     EXPECT_EQ(search.find(Eigen::Isometry3d::Identity()).pairs.size(), size);
     for (const double bad : kBad) {
       Eigen::Isometry3d T = Eigen::Isometry3d::Identity();

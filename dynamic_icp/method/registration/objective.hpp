@@ -25,13 +25,13 @@ enum class DopplerTerm {
 struct Objective {
   GeometryTerm geometry = GeometryTerm::kPointToPlane;
   DopplerTerm doppler = DopplerTerm::kRotation;
-  double max_correspondence_distance_m = 0.3;  ///< points farther apart make no pair
-  double doppler_weight = 0.2;                 ///< lambda; 0 leaves the Doppler term out
-  double tukey_geometry_m = 0.5;               ///< beyond this no weight; infinity: least squares
-  double tukey_doppler_mps = 0.3;              ///< likewise
-  int tukey_doppler_from_iteration = 0;        ///< before (counted from 0) the Doppler term is least squares
-  double thickness = 1e-3;                     ///< of planes, see plane_to_plane.hpp
-  VehicleMotion vehicle;                       ///< for kSensorVelocity
+  Gate gate;                             ///< points farther apart make no pair
+  double doppler_weight = 0.2;           ///< lambda; 0 leaves the Doppler term out
+  double tukey_geometry_m = 0.5;         ///< beyond this no weight; infinity: least squares
+  double tukey_doppler_mps = 0.3;        ///< likewise
+  int tukey_doppler_from_iteration = 0;  ///< before (counted from 0) the Doppler term is least squares
+  double thickness = 1e-3;               ///< of planes, see plane_to_plane.hpp
+  VehicleMotion vehicle;                 ///< for kSensorVelocity
   /// Pairs whose Doppler residual is larger have no weight in either term, from this iteration (from 0) on.
   double reject_doppler_mps = std::numeric_limits<double>::infinity();
   int reject_from_iteration = 2;

@@ -42,7 +42,7 @@ TEST(StepEquations, AreThoseOfTheGeneralLinearisation) {
     const Cloud target_cloud(2, 3000);
     const spatial::KdTree tree(target_cloud.scan.points());
     const Target target{target_cloud.scan, tree, target_cloud.normals, target_cloud.has_normal};
-    CorrespondenceSearch search(source.scan, target, 0.5, true, workers);
+    CorrespondenceSearch search(source.scan, target, Gate{0.5}, true, workers);
     Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
     for (const double tukey : {0.2, 1.0, std::numeric_limits<double>::infinity()}) {
       for (const double weight : {0.0, 0.2, 0.7}) {

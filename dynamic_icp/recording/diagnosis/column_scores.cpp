@@ -31,14 +31,17 @@ bool is_void(const Eigen::Vector3d& point, double doppler) {
   return (point.array() == 0.0).count() + (doppler == 0.0 ? 1 : 0) >= 3;
 }
 
-/// Points evenly over the scan: a few thousand tell.
+/// Points evenly over the scan: a few thousand tell. Of a rig those of its first sensor, in the frame of that sensor:
+/// one velocity explains them.
 RawScan thinned(const RawScan& scan) {
   RawScan few;
   few.stamp = scan.stamp;
+  const bool is_of_rig = !scan.mountings.empty();
+  const Eigen::Isometry3d T_sensor_scan = is_of_rig ? scan.mountings[0].inverse() : Eigen::Isometry3d::Identity();
   const std::size_t step = scan.points.size() / kMaxPoints + 1;
   for (std::size_t i = 0; i < scan.points.size(); i += step) {
-    if (!is_void(scan.points[i], scan.doppler[i])) {
-      few.points.push_back(scan.points[i]);
+    if (!is_void(scan.points[i], scan.doppler[i]) && (!is_of_rig || scan.channels.sensor[i] == 0)) {
+      few.points.push_back(is_of_rig ? Eigen::Vector3d(T_sensor_scan * scan.points[i]) : scan.points[i]);
       few.doppler.push_back(scan.doppler[i]);
     }
   }

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/method/ego_motion/rig_regression.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -59,6 +60,16 @@ DopplerValues doppler_values(const std::vector<double>& doppler, const std::vect
   return values;
 }
 
+/// Of a rig whose rotation nobody knows yet.
+void take_out_lever_arms(Scan& scan, const Workers& workers) {
+  if (scan.is_of_rig() && scan.doppler_kind() == DopplerKind::kRelative) {
+    ego_motion::RigDoppler rig;
+    rig.omega = ego_motion::first_angular_velocity(scan, {}, {}, workers);
+    rig.bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scan.mountings().size()));
+    ego_motion::reduce_to_origin(scan, rig, workers);
+  }
+}
+
 }  // namespace
 
 double scatter_of(std::vector<double> values) {
@@ -88,6 +99,7 @@ ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still) {
   look_at_times(raw, look);
   Scan scan = Scan::from_raw(raw, {}, workers, &look.dropped);
   look_at_columns(scan, look);
+  take_out_lever_arms(scan, workers);
   look.ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, {}, workers);
   std::vector<double> residuals;
   ego_motion::compensated_doppler(scan, look.ego, workers, residuals);

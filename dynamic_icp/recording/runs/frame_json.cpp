@@ -139,33 +139,37 @@ Json rejected_json(const Frame& frame) {
 
 std::string frame_line(std::size_t index, const Frame& frame) {
   const registration::Alignment& alignment = frame.alignment;
-  const Json line = {{"points", frame.points},
-                     {"points_used", frame.points_used},
-                     {"points_dropped",
-                      {{"non_finite", frame.dropped.non_finite},
-                       {"implausible", frame.dropped.implausible},
-                       {"zero_range", frame.dropped.zero_range},
-                       {"out_of_range", frame.dropped.out_of_range},
-                       {"flagged", frame.dropped.flagged}}},
-                     {"ego_velocity", vector_json(frame.ego.velocity_sensor)},
-                     {"ego_velocity_covariance", matrix_json(frame.ego.covariance)},
-                     {"ego_velocity_status", to_string(frame.ego.status)},
-                     {"dynamic_candidates", frame.dynamic_candidates},
-                     {"dynamic_clustered", frame.dynamic_clustered},
-                     {"dynamic_refined", frame.dynamic_refined},
-                     {"clusters_rejected", rejected_json(frame)},
-                     {"iterations", alignment.iterations},
-                     {"converged", odometry::converged(frame.status)},
-                     {"status", verdict(frame.status)},
-                     {"reason", to_string(frame.status)},
-                     {"fitness", alignment.fitness},
-                     {"inlier_rmse", alignment.inlier_rmse},
-                     {"pose_covariance", covariance_json(alignment)},
-                     {"twist", twist_json(frame.twist)},
-                     {"doppler_bias", frame.ego.bias_mps},
-                     {"information_ratio", alignment.information_ratio},
-                     {"degenerate", degenerate_json(alignment)},
-                     {"ms", times_json(frame.times)}};
+  Json line = {{"points", frame.points},
+               {"points_used", frame.points_used},
+               {"points_dropped",
+                {{"non_finite", frame.dropped.non_finite},
+                 {"implausible", frame.dropped.implausible},
+                 {"zero_range", frame.dropped.zero_range},
+                 {"out_of_range", frame.dropped.out_of_range},
+                 {"flagged", frame.dropped.flagged}}},
+               {"ego_velocity", vector_json(frame.ego.velocity_sensor)},
+               {"ego_velocity_covariance", matrix_json(frame.ego.covariance)},
+               {"ego_velocity_status", to_string(frame.ego.status)},
+               {"dynamic_candidates", frame.dynamic_candidates},
+               {"dynamic_clustered", frame.dynamic_clustered},
+               {"dynamic_refined", frame.dynamic_refined},
+               {"clusters_rejected", rejected_json(frame)},
+               {"iterations", alignment.iterations},
+               {"converged", odometry::converged(frame.status)},
+               {"status", verdict(frame.status)},
+               {"reason", to_string(frame.status)},
+               {"fitness", alignment.fitness},
+               {"inlier_rmse", alignment.inlier_rmse},
+               {"pose_covariance", covariance_json(alignment)},
+               {"twist", twist_json(frame.twist)},
+               {"doppler_bias", frame.ego.bias_mps},
+               {"information_ratio", alignment.information_ratio},
+               {"degenerate", degenerate_json(alignment)},
+               {"ms", times_json(frame.times)}};
+  if (frame.ego.rotation) {
+    line["angular_velocity_doppler"] = vector_json(frame.ego.rotation->omega);
+    line["angular_velocity_doppler_covariance"] = matrix_json(frame.ego.rotation->covariance);
+  }
   return stamped(index, frame.stamp, line);
 }
 
