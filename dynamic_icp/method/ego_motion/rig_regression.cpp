@@ -88,46 +88,51 @@ double longest_sweep(const std::vector<SensorRows>& sensors) {
   return longest_s;
 }
 
-/// Normal equations of all sensors at X, each with the slope of its kernel, and its part for the sandwich formula.
+/// Normal equations of all sensors at X. The scatter S of the gradients of direction sectors, whose residuals may
+/// depend on each other, is the covariance of the gradient g of a sensor with the normal matrix H: its own unknowns are
+/// known with H S^-1 H, and it pulls with H S^-1 g. So a sensor that the model fits badly, as when the acceleration
+/// changes within its sweep, counts less.
 struct RigSums {
   Eigen::MatrixXd information;  ///< without priors
-  Eigen::MatrixXd weights;      ///< the same with the weights alone
   Eigen::VectorXd gradient;
-  Eigen::MatrixXd scatter;  ///< of the gradients of the direction sectors
-  double sectors = 0.0;
   double squared = 0.0;  ///< (m/s)^2, sum over the inliers
   std::size_t inliers = 0;
   bool widened = false;
 };
 
-void add_scatter(const SensorRows& sensor, const std::vector<Vector7d>& cell_gradients, RigSums& sums) {
-  std::vector<Vector7d> by_sector(sensor.rows.sectors, Vector7d::Zero());
-  for (std::size_t c = 0; c < sensor.rows.cells(); ++c) {
-    by_sector[sensor.rows.sector[c]] += cell_gradients[c];
+/// Few sectors say little about their own scatter: see sandwich_covariance.
+Matrix7d scatter_of(const DopplerRows& rows, const std::vector<Vector7d>& cell_gradients, const Matrix7d& H) {
+  constexpr double kPresumed = 3.0 * 7.0;
+  std::vector<Vector7d> by_sector(rows.sectors, Vector7d::Zero());
+  for (std::size_t c = 0; c < rows.cells(); ++c) {
+    by_sector[rows.sector[c]] += cell_gradients[c];
   }
-  for (const Vector7d& of_sensor : by_sector) {
-    const Eigen::VectorXd gradient = sensor.A.transpose() * of_sensor;
-    sums.scatter += gradient * gradient.transpose();
-    sums.sectors += of_sensor.isZero(0.0) ? 0.0 : 1.0;
+  Matrix7d scatter = Matrix7d::Zero();
+  double sectors = 0.0;
+  for (const Vector7d& gradient : by_sector) {
+    scatter += gradient * gradient.transpose();
+    sectors += gradient.isZero(0.0) ? 0.0 : 1.0;
   }
+  scatter = (sectors * scatter + kPresumed * H) / (sectors + kPresumed);
+  scatter.diagonal().array() += 1e-9 * (1.0 + scatter.trace());
+  return scatter;
 }
 
 RigSums sum_rig(std::vector<SensorRows>& sensors, const Eigen::VectorXd& X, double max_noise_mps,
                 const Workers& workers) {
   RigSums sums;
-  sums.information = sums.weights = sums.scatter = Eigen::MatrixXd::Zero(X.size(), X.size());
+  sums.information = Eigen::MatrixXd::Zero(X.size(), X.size());
   sums.gradient = Eigen::VectorXd::Zero(X.size());
   for (SensorRows& sensor : sensors) {
     std::vector<Vector7d> cell_gradients;
     const FitSums part = sum_fit(sensor.rows, sensor.A * X, sensor.scale, true, workers, &cell_gradients);
     const double slope = part.weights > 0.0 ? std::clamp(part.slopes / part.weights, 0.5, 1.0) : 1.0;
-    const Eigen::MatrixXd H = sensor.A.transpose() * part.H * sensor.A;
-    sums.information += slope * H;
-    sums.weights += H;
-    sums.gradient += sensor.A.transpose() * part.gradient;
+    const Matrix7d H = slope * part.H;
+    const Matrix7d weight = scatter_of(sensor.rows, cell_gradients, part.H).ldlt().solve(H).transpose();
+    sums.information += sensor.A.transpose() * (weight * H) * sensor.A;
+    sums.gradient += sensor.A.transpose() * (weight * part.gradient);
     sums.squared += part.inlier_squared;
     sums.inliers += part.inliers;
-    add_scatter(sensor, cell_gradients, sums);
     sums.widened = widen_if_too_narrow(part, max_noise_mps, sensor.scale) || sums.widened;
   }
   return sums;
@@ -167,44 +172,26 @@ Priors priors_of(const RigPrior& rig, const AngularMotion& expected, const RigDo
   return priors;
 }
 
-Eigen::MatrixXd sandwich(const RigSums& sums, const Eigen::MatrixXd& prior_information) {
-  // Few sectors say little about their own scatter: see sandwich_covariance.
-  const double presumed = 3.0 * static_cast<double>(sums.gradient.size());
-  const Eigen::MatrixXd scatter =
-      (sums.sectors * sums.scatter + presumed * sums.weights) / (sums.sectors + presumed) + prior_information;
-  const Eigen::LDLT<Eigen::MatrixXd> solver(sums.information + prior_information);
-  const Eigen::MatrixXd half = solver.solve(scatter);
-  const Eigen::MatrixXd covariance = solver.solve(half.transpose());
-  return 0.5 * (covariance + covariance.transpose());
-}
-
-/// What the rows say of [omega; alpha] after all else is solved for; the residuals of a sector are not independent,
-/// so their information counts less by the factor by which the sandwich formula widens omega.
+/// What the rows say of [omega; alpha] after all else is solved for (Schur's complement).
 AngularInformation angular_information(const RigSums& sums, const Priors& priors, const Eigen::VectorXd& X,
-                                       const Eigen::MatrixXd& covariance, const RigDoppler& reduced) {
-  Priors others = priors;
-  others.information.block<6, 6>(kOmega, kOmega).setZero();
-  const Eigen::MatrixXd all = sums.information + others.information;
-  const Eigen::VectorXd pull = -(sums.gradient + others.information * (X - others.mean));
-  const Eigen::Index n = X.size();
+                                       const RigDoppler& reduced) {
+  Eigen::MatrixXd of_others = priors.information;
+  of_others.block<6, 6>(kOmega, kOmega).setZero();
+  const Eigen::MatrixXd all = sums.information + of_others;
+  const Eigen::VectorXd pull = -(sums.gradient + of_others * (X - priors.mean));
   std::vector<Eigen::Index> rest;
-  for (Eigen::Index i = 0; i < n; ++i) {
+  for (Eigen::Index i = 0; i < X.size(); ++i) {
     if (i < kOmega || i >= kBias) {
       rest.push_back(i);
     }
   }
-  const Eigen::MatrixXd of_rest = all(rest, rest);
   const Eigen::MatrixXd coupling = all(rest, Eigen::seqN(kOmega, 6));
-  const Eigen::LDLT<Eigen::MatrixXd> solver(of_rest);
-  const Eigen::MatrixXd naive =
-      Eigen::MatrixXd(sums.information + priors.information).ldlt().solve(Eigen::MatrixXd::Identity(n, n));
-  const double widening =
-      std::max(1.0, covariance.block<3, 3>(kOmega, kOmega).trace() / naive.block<3, 3>(kOmega, kOmega).trace());
+  const Eigen::LDLT<Eigen::MatrixXd> solver(all(rest, rest));
+  const Eigen::VectorXd rest_pull = pull(rest);
   AngularInformation result;
   result.at << reduced.omega + X.segment<3>(kOmega), reduced.alpha + X.segment<3>(kOmega + 3);
-  result.information = (all.block<6, 6>(kOmega, kOmega) - coupling.transpose() * solver.solve(coupling)) / widening;
-  const Eigen::VectorXd rest_pull = pull(rest);
-  result.weighted_change = (pull.segment<6>(kOmega) - coupling.transpose() * solver.solve(rest_pull)) / widening;
+  result.information = all.block<6, 6>(kOmega, kOmega) - coupling.transpose() * solver.solve(coupling);
+  result.weighted_change = pull.segment<6>(kOmega) - coupling.transpose() * solver.solve(rest_pull);
   return result;
 }
 
@@ -329,11 +316,13 @@ RigEstimate estimate_rig_motion(const Scan& scan, const RigDoppler& reduced, con
       break;
     }
   }
-  const Eigen::MatrixXd covariance = sandwich(sums, priors.information);
+  const Eigen::MatrixXd covariance = Eigen::MatrixXd(sums.information + priors.information)
+                                         .ldlt()
+                                         .solve(Eigen::MatrixXd::Identity(X.size(), X.size()));
   if (!X.allFinite() || !covariance.allFinite()) {
     return result;
   }
-  result.rotation = angular_information(sums, priors, X, covariance, reduced);
+  result.rotation = angular_information(sums, priors, X, reduced);
 
   const Eigen::Index K = reduced.bias_mps.size();
   std::vector<Eigen::Index> kept = {0, 1, 2, 3, 4, 5};

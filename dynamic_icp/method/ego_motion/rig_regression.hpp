@@ -68,9 +68,10 @@ Eigen::Vector3d first_angular_velocity(const Scan& scan, const ConsensusRegressi
                                        const DriftConfig& drift, const Workers& workers);
 
 /// Fits v, a, omega, alpha and b jointly to the rows near `start`, the velocity that the consensus regression found in
-/// `scan`, which is reduced to the origin by `reduced`. Tukey's kernel, a covariance robust to residuals that depend on
-/// each other within a direction sector; `expected`: what is known of the rotation from elsewhere. `ego.rotation` is
-/// omega by the Doppler alone. Where `start` is no velocity that was found, it is returned and nothing else is learned.
+/// `scan`, which is reduced to the origin by `reduced`. Tukey's kernel; residuals of one sensor may depend on each
+/// other within a direction sector, which counts in weights and covariance; `expected`: what is known of the rotation
+/// from elsewhere. `ego.rotation` is omega by the Doppler alone. Where `start` is no velocity that was found, it is
+/// returned and nothing else is learned.
 RigEstimate estimate_rig_motion(const Scan& scan, const RigDoppler& reduced, const EgoVelocity& start,
                                 const RigPrior& prior, const AngularMotion& expected,
                                 const ConsensusRegressionConfig& config, const DriftConfig& drift,

@@ -85,14 +85,20 @@ TEST(MapOdometry, TakesScansWhoseMiddlesCoincide) {
   }
 }
 
+RawScan empty_scan(double time_s) {
+  RawScan raw;
+  raw.stamp = stamp_at(time_s);
+  return raw;
+}
+
 TEST(MapOdometry, BridgesAnEmptyScan) {
   const Drive drive{street(), circle(10.0, 0.2), {}};
   MapOdometry odometry(with_ablation(), 1);
-  EXPECT_EQ(odometry.process({stamp_at(-0.1), {}, {}, {}, {}, {}, {}}).status, FrameStatus::kTooFewPoints);
+  EXPECT_EQ(odometry.process(empty_scan(-0.1)).status, FrameStatus::kTooFewPoints);
   for (int k = 0; k < 4; ++k) {
     EXPECT_EQ(odometry.process(drive.scan(k)).status, k == 0 ? FrameStatus::kFirst : FrameStatus::kConverged);
   }
-  const Frame empty = odometry.process({stamp_at(0.4), {}, {}, {}, {}, {}, {}});
+  const Frame empty = odometry.process(empty_scan(0.4));
   EXPECT_EQ(empty.status, FrameStatus::kTooFewPoints);
   EXPECT_LT(error_of(drive, empty, 3, 4).move_m, 0.02);
   EXPECT_LT(nis(error_of(drive, empty, 3, 4).left, *empty.alignment.covariance), 20.0);
