@@ -16,6 +16,7 @@
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/simulation/named_source.hpp"
 #include "dynamic_icp/tools/simulation/point_layout.hpp"
 
 namespace dynamic_icp::simulation {
@@ -70,11 +71,7 @@ std::string uuid(const RandomSource& source) {
 
 /// The source of a sequence's identifiers.
 RandomSource identifiers_of(const Simulation& simulation) {
-  RandomSource source(static_cast<std::uint64_t>(simulation.config().scene.seed));
-  for (const char letter : simulation.kind().name) {
-    source = source.fork(static_cast<unsigned char>(letter));
-  }
-  return source;
+  return named_source(RandomSource(static_cast<std::uint64_t>(simulation.config().scene.seed)), simulation.kind().name);
 }
 
 template <class Number, class Value>
