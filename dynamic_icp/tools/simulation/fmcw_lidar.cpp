@@ -46,6 +46,14 @@ ConfigFields fields(FmcwLidarConfig& config) {
        "two surfaces in one beam that are nearer to each other than this give one mixed return between them"},
       {"rain_rate", &config.rain_rate, 0.0, 1.0, "", "share of rays that meet a drop at long range"},
       {"rain_range_m", &config.rain_range_m, 0.1, 100.0, "m", "mean distance of the drops that are seen"},
+      {"spray_rate", &config.spray_rate, 0.0, 1.0, "",
+       "share of the rays through the spray behind moving bodies that meet a drop"},
+      {"window_rate", &config.window_rate, 0.0, 1.0, "", "share of rays that the window before the sensor sends back"},
+      {"multipath_rate", &config.multipath_rate, 0.0, 1.0, "",
+       "share of returns that are a mirror image behind the surface that is met"},
+      {"roughness_m", &config.roughness_m, 0.0, 1.0, "m",
+       "standard deviation of surfaces along their normals, fixed to them"},
+      {"foliage_sway_m", &config.foliage_sway_m, 0.0, 1.0, "m", "how far wind moves leaves, as of one sine"},
       {"range_noise_m", &config.range_noise_m, 0.0, 10.0, "m", "standard deviation of the range"},
       {"range_step_m", &config.range_step_m, 0.0, 1.0, "m", "ranges are multiples of this; 0: any"},
       {"angle_noise_deg", &config.angle_noise_deg, 0.0, 10.0, "deg",
@@ -87,6 +95,11 @@ FmcwLidarConfig without_noise(FmcwLidarConfig config) {
   config.dropout_rate = perfect.dropout_rate;
   config.beam_divergence_mrad = perfect.beam_divergence_mrad;
   config.rain_rate = perfect.rain_rate;
+  config.spray_rate = perfect.spray_rate;
+  config.window_rate = perfect.window_rate;
+  config.multipath_rate = perfect.multipath_rate;
+  config.roughness_m = perfect.roughness_m;
+  config.foliage_sway_m = perfect.foliage_sway_m;
   config.range_noise_m = perfect.range_noise_m;
   config.range_step_m = perfect.range_step_m;
   config.angle_noise_deg = perfect.angle_noise_deg;

@@ -44,6 +44,11 @@ struct FmcwLidarConfig {
   double range_resolution_m = 1.0;
   double rain_rate = 0.0;
   double rain_range_m = 5.0;
+  double spray_rate = 0.0;
+  double window_rate = 0.0;
+  double multipath_rate = 0.0;
+  double roughness_m = 0.0;
+  double foliage_sway_m = 0.0;
 
   // How well it measures.
   double range_noise_m = 0.0;

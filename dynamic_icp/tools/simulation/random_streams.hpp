@@ -26,7 +26,13 @@ enum RayStream : std::uint64_t {
   kDetection = kRainVelocity + 3,
   kAngleNoiseAcross,
   kAngleNoiseUp,
-  kDuplicate
+  kDuplicate,
+  kWindow,
+  kWindowRange,
+  kMultipath,
+  kSpray,
+  kSprayRange,
+  kSprayVelocity  // three normal numbers
 };
 
 /// Of one scan. Its forks are the rays.

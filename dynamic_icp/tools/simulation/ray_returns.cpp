@@ -2,13 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/simulation/ray_returns.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
 #include <string>
 
+#include "dynamic_icp/tools/simulation/false_returns.hpp"
 #include "dynamic_icp/tools/simulation/random_streams.hpp"
 #include "dynamic_icp/tools/simulation/scan_pattern.hpp"
+#include "dynamic_icp/tools/world/foliage.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
@@ -16,27 +19,15 @@ namespace {
 // A second surface in the beam is one of its own when it is off the plane of the first by more than this.
 constexpr double kEdgeStep = 0.02;  // m
 
+constexpr double kGrain = 0.01;    // m: cells of a rough surface of one height
+constexpr double kSteepest = 0.1;  // cosine: rough surfaces met at a smaller one hide their own valleys
+
 /// Embree must not see a pose that is not finite.
 void check_pose(const world::MotionState& motion, const char* whose, double time_s) {
   if (!motion.T_world_body.matrix().allFinite()) {
     throw std::invalid_argument(std::string("the pose of ") + whose + " is not finite at " + std::to_string(time_s) +
                                 " s");
   }
-}
-
-/// A rain drop: it falls at 6 m/s and drifts by about 1 m/s any way.
-Return drop(const Moment& moment, const Eigen::Vector3d& direction_sensor, double range, const RandomSource& random) {
-  const Eigen::Vector3d velocity_world(random.normal(kRainVelocity), random.normal(kRainVelocity + 1),
-                                       -6.0 + random.normal(kRainVelocity + 2));
-  Return result;
-  result.kind = ReturnKind::kRain;
-  result.body = kNoBody;
-  result.echo = {range, 0.0, 1.0};
-  result.true_range = range;
-  result.true_doppler =
-      range_rate(moment.sensor.T_world_body.linear() * direction_sensor, velocity_world, moment.sensor);
-  result.doppler = result.true_doppler;
-  return result;
 }
 
 }  // namespace
@@ -57,14 +48,26 @@ Moment moment_at(const Surroundings& surroundings, double time_s) {
 
 std::optional<Return> RayReturns::find(const Moment& moment, double azimuth, double elevation,
                                        const RandomSource& random) const {
+  if (config_.window_rate > 0.0 && random.uniform(kWindow) < config_.window_rate) {
+    return window_return(random);
+  }
   const Eigen::Vector3d axis = direction(azimuth, elevation);
   std::optional<Hit> hit = cast(moment, axis);
   const double free_way = hit ? hit->result.true_range : config_.max_range_m;
   if (config_.rain_rate > 0.0 && random.uniform(kRain) < config_.rain_rate) {
     const double range = -config_.rain_range_m * std::log(1.0 - random.uniform(kRainRange));
     if (range >= config_.min_range_m && range < free_way) {
-      return drop(moment, axis, range, random);
+      return rain_drop(moment, axis, range, random);
     }
+  }
+  if (config_.spray_rate > 0.0) {
+    const auto drop = spray_drop(moment, surroundings_.world, axis, free_way, config_.spray_rate, random);
+    if (drop && drop->true_range >= config_.min_range_m) {
+      return drop;
+    }
+  }
+  if (hit && config_.multipath_rate > 0.0 && random.uniform(kMultipath) < config_.multipath_rate) {
+    return mirrored(moment, *hit);
   }
   std::optional<Return> found = hit ? std::optional(hit->result) : std::nullopt;
   if (config_.beam_divergence_mrad > 0.0) {
@@ -76,7 +79,10 @@ std::optional<Return> RayReturns::find(const Moment& moment, double azimuth, dou
 /// The surface that a ray of the beam meets.
 std::optional<RayReturns::Hit> RayReturns::cast(const Moment& moment, const Eigen::Vector3d& direction_sensor) const {
   const Eigen::Isometry3d& T_world_sensor = moment.sensor.T_world_body;
-  const world::Ray ray{T_world_sensor.translation(), T_world_sensor.linear() * direction_sensor, config_.max_range_m};
+  return cast(moment, {T_world_sensor.translation(), T_world_sensor.linear() * direction_sensor, config_.max_range_m});
+}
+
+std::optional<RayReturns::Hit> RayReturns::cast(const Moment& moment, const world::Ray& ray) const {
   const std::optional<world::RayHit> surface = surroundings_.caster.cast(ray, moment.bodies);
   if (!surface) {
     return std::nullopt;
@@ -88,11 +94,50 @@ std::optional<RayReturns::Hit> RayReturns::cast(const Moment& moment, const Eige
     velocity_point = world::point_velocity(moment.bodies[*surface->body].motion, point_world);
     result.body = surroundings_.world.bodies[*surface->body].id;
   }
-  result.echo = {surface->range_m, surface->reflectivity, std::abs(surface->normal_world.dot(ray.direction_world))};
+  const double cosine = std::abs(surface->normal_world.dot(ray.direction_world));
+  double range_m = surface->range_m;
+  if (config_.roughness_m > 0.0) {
+    range_m -= roughness(moment, *surface, point_world) / std::max(cosine, kSteepest);
+  }
+  if (config_.foliage_sway_m > 0.0 && surface->foliage) {
+    const world::LeafMotion leaf = world::leaf_motion(point_world, moment.time_s, config_.foliage_sway_m);
+    range_m += ray.direction_world.dot(leaf.displacement);
+    velocity_point += leaf.velocity;
+  }
+  result.echo = {range_m, surface->reflectivity, cosine};
   result.doppler = range_rate(ray.direction_world, velocity_point, moment.sensor);
   result.true_range = result.echo.range_m;
   result.true_doppler = result.doppler;
-  return Hit{point_world, surface->normal_world, result};
+  return Hit{point_world, surface->normal_world, velocity_point, result};
+}
+
+/// Height (m) of a rough surface over the mesh at this point: a random number for each cell of 1 cm of the body.
+double RayReturns::roughness(const Moment& moment, const world::RayHit& surface,
+                             const Eigen::Vector3d& point_world) const {
+  const Eigen::Vector3d point =
+      surface.body ? Eigen::Vector3d(moment.bodies[*surface.body].motion.T_world_body.inverse() * point_world)
+                   : point_world;
+  RandomSource cell(surface.body ? *surface.body + 1 : 0);
+  for (const double coordinate : point) {
+    cell = cell.fork(static_cast<std::uint64_t>(std::llround(coordinate / kGrain)));
+  }
+  return config_.roughness_m * cell.normal(0);
+}
+
+/// What is seen in a surface as in a mirror.
+std::optional<Return> RayReturns::mirrored(const Moment& moment, const Hit& mirror) const {
+  const Eigen::Vector3d origin = moment.sensor.T_world_body.translation();
+  const Eigen::Vector3d direction_world = (mirror.point_world - origin).normalized();
+  const Eigen::Vector3d& n = mirror.normal_world;
+  const Eigen::Vector3d onward = direction_world - 2.0 * n * n.dot(direction_world);
+  constexpr double kOffTheMirror = 1e-4;  // m: or the ray meets the mirror again
+  const double way = (mirror.point_world - origin).norm() + kOffTheMirror;
+  const std::optional<Hit> seen =
+      cast(moment, {mirror.point_world + kOffTheMirror * onward, onward, config_.max_range_m - way});
+  if (!seen) {
+    return std::nullopt;
+  }
+  return ghost(moment, {direction_world, n, mirror.velocity_world, way, seen->velocity_world, seen->result.echo});
 }
 
 /// A beam has a width: a second ray within it tells whether it falls on an edge. The part of the beam beside the edge

@@ -18,10 +18,13 @@ namespace dynamic_icp::simulation {
 enum class ReturnKind : std::uint8_t {
   kSurface,  ///< one surface
   kMixed,    ///< two surfaces in one beam; the point lies between them
-  kRain      ///< a drop
+  kRain,     ///< a drop
+  kSpray,    ///< a drop behind a moving body
+  kWindow,   ///< the window before the sensor
+  kGhost     ///< the mirror image of a surface behind another
 };
 
-/// Label of returns that belong to no body and to no static surface.
+/// Label of returns that belong to no body and to no static surface: drops, the window, ghosts.
 constexpr std::int32_t kNoBody = -1;
 
 /// The true range rate (m/s, positive away) of a surface point seen along `direction_world`:
@@ -73,10 +76,15 @@ class RayReturns {
   struct Hit {
     Eigen::Vector3d point_world;
     Eigen::Vector3d normal_world;
+    Eigen::Vector3d velocity_world;
     Return result;
   };
 
+  [[nodiscard]] std::optional<Hit> cast(const Moment& moment, const world::Ray& ray) const;
   [[nodiscard]] std::optional<Hit> cast(const Moment& moment, const Eigen::Vector3d& direction_sensor) const;
+  [[nodiscard]] double roughness(const Moment& moment, const world::RayHit& surface,
+                                 const Eigen::Vector3d& point_world) const;
+  [[nodiscard]] std::optional<Return> mirrored(const Moment& moment, const Hit& mirror) const;
   [[nodiscard]] std::optional<Return> over_the_beam(const Moment& moment, const std::optional<Hit>& on_axis,
                                                     double azimuth, double elevation, const RandomSource& random) const;
   [[nodiscard]] static bool is_edge(const Hit& on_axis, const Hit& aside);

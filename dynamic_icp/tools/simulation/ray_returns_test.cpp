@@ -146,5 +146,51 @@ TEST(RayReturns, SlantedAndSmoothSurfacesHaveNoEdges) {
   EXPECT_EQ(std::count(scan.kinds.begin(), scan.kinds.end(), ReturnKind::kMixed), 0);
 }
 
+TEST(RayReturns, RoughSurfacesHaveTheirHeightAlongTheNormalAndKeepIt) {
+  for (const double slant_deg : {0.0, 60.0}) {
+    Wall wall(100.0, 0.3, slant_deg);
+    const SimulatedScan smooth = wall.scan();
+    wall.config.roughness_m = 0.005;
+    const SimulatedScan scan = wall.scan();
+    ASSERT_EQ(scan.bodies.size(), smooth.bodies.size());
+    const Vector3d normal(std::cos(slant_deg * std::numbers::pi / 180.0),
+                          std::sin(slant_deg * std::numbers::pi / 180.0), 0.0);
+    Statistics heights;
+    for (std::size_t i = 0; i < scan.bodies.size(); ++i) {
+      heights.add(normal.dot(scan.measured.points[i] - smooth.measured.points[i]));
+      EXPECT_NEAR(scan.measured.points[i].norm(), scan.true_range[i], 1e-9) << "it is no error of measurement";
+    }
+    EXPECT_NEAR(heights.mean(), 0.0, 4.0 * 0.005 / std::sqrt(heights.n));
+    EXPECT_NEAR(heights.deviation(), 0.005, 4.0 * 0.005 / std::sqrt(2.0 * heights.n));
+    wall.config.dropout_rate = 1e-9;
+    EXPECT_EQ(wall.scan().measured.points, scan.measured.points);
+  }
+}
+
+TEST(RayReturns, LeavesSwayAndTheirDopplerIsTheChangeOfRange) {
+  Wall wall(20.1, 0.5);
+  wall.world.statics = world::leafy(wall.world.statics);
+  wall.caster = std::make_unique<world::RayCaster>(wall.world);
+  wall.config.horizontal_fov_deg = wall.config.vertical_fov_deg = 60.0;
+  EXPECT_EQ(wall.scan().measured.doppler.front(), 0.0);
+  wall.config.foliage_sway_m = 0.05;
+  const ScanPattern pattern = scan_pattern(wall.config);
+  const auto scan_at = [&](std::int64_t ns) {
+    return simulate_scan({wall.world, *wall.caster, wall.sensor}, pattern, SensorUnit(wall.config), {Stamp{ns}},
+                         RandomSource(3), Workers(1));
+  };
+  const SimulatedScan before = scan_at(1'000'000'000);
+  const SimulatedScan now = scan_at(1'001'000'000);
+  const SimulatedScan after = scan_at(1'002'000'000);
+  Statistics doppler;
+  for (std::size_t i = 0; i < now.bodies.size(); ++i) {
+    EXPECT_EQ(now.bodies[i], 0);
+    EXPECT_NEAR(now.measured.doppler[i], (after.true_range[i] - before.true_range[i]) / 0.002, 2e-4);
+    doppler.add(now.measured.doppler[i]);
+  }
+  EXPECT_GT(doppler.deviation(), 0.05);
+  EXPECT_LT(doppler.deviation(), 0.5);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::simulation

@@ -123,9 +123,11 @@ class RayMeasurement {
     return turned(azimuth / kRadians) < turned(config_.blind_to_deg);
   }
 
-  /// Rain is given as the share of drops that are seen.
+  /// Drops and the window are given as the share of them that is seen.
   [[nodiscard]] double found_probability(const Return& found) const {
-    return found.kind == ReturnKind::kRain ? 1.0 : detection_probability(config_, found.echo);
+    const bool certain =
+        found.kind == ReturnKind::kRain || found.kind == ReturnKind::kSpray || found.kind == ReturnKind::kWindow;
+    return certain ? 1.0 : detection_probability(config_, found.echo);
   }
 
   [[nodiscard]] double intensity_db(const Return& found) const {

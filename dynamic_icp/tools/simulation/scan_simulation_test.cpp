@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -174,6 +175,38 @@ TEST(SimulateScan, QuantisedRangeIsAMultipleOfTheStep) {
   }
 }
 
+TEST(SimulateScan, BlindSectorsHaveNoReturns) {
+  Room room;
+  for (const auto& [from, to, lost] : {std::tuple{-10.0, 20.0, 30}, std::tuple{50.0, -50.0, 20}}) {
+    room.config.blind_from_deg = from;
+    room.config.blind_to_deg = to;
+    const SimulatedScan scan = room.scan(scan_pattern(room.config));
+    EXPECT_EQ(scan.bodies.size(), (120U - static_cast<std::size_t>(lost)) * 16U) << "one degree a column";
+    for (const Vector3d& p : scan.measured.points) {
+      const double azimuth = 180.0 / std::numbers::pi * std::atan2(p.y(), p.x());
+      EXPECT_FALSE(from < to ? azimuth > from && azimuth < to : azimuth > from || azimuth < to) << azimuth;
+    }
+  }
+}
+
+TEST(SimulateScan, DuplicatesAreWholePoints) {
+  Room room;
+  room.config.range_noise_m = 0.02;
+  const SimulatedScan without = room.scan(scan_pattern(room.config));
+  room.config.duplicate_rate = 0.1;
+  const SimulatedScan scan = room.scan(scan_pattern(room.config));
+  double twice = 0.0;
+  for (std::size_t i = 1; i < scan.bodies.size(); ++i) {
+    if (scan.measured.points[i] == scan.measured.points[i - 1]) {
+      twice += 1.0;
+      EXPECT_EQ(scan.true_range[i], scan.true_range[i - 1]);
+      EXPECT_EQ(scan.lines[i], scan.lines[i - 1]);
+    }
+  }
+  EXPECT_EQ(scan.bodies.size(), without.bodies.size() + static_cast<std::size_t>(twice));
+  EXPECT_NEAR(twice / 1920.0, 0.1, share_error(0.1, 1920.0));
+}
+
 TEST(SimulateScan, OneEffectDoesNotDisturbAnother) {
   Room f;
   f.config.range_noise_m = 0.02;
@@ -194,6 +227,10 @@ TEST(SimulateScan, SameBitsForAnyNumberOfThreads) {
   f.config.rain_rate = 0.1;
   f.config.range_noise_m = 0.02;
   f.config.doppler_noise_mps = 0.05;
+  f.config.doppler_error.firing_noise_mps = 0.05;
+  f.config.doppler_error.direction_mps = 0.1;
+  f.config.multipath_rate = 0.05;
+  f.config.duplicate_rate = 0.05;
   const ScanPattern pattern = scan_pattern(f.config);
   const SimulatedScan expected = f.scan(pattern, 300'000'000, 1);
   for (const int threads : {1, 2, 7}) {

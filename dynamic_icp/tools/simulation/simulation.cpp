@@ -104,6 +104,13 @@ SensorState Simulation::sensor_state(double time_s, std::size_t sensor) const {
   return {motion.T_world_body, R_sensor_world * motion.velocity_world, R_sensor_world * motion.angular_velocity_world};
 }
 
+ObjectTruth Simulation::object(std::int32_t id, double time_s, std::size_t sensor) const {
+  const std::vector<world::MovingBody>& bodies = scene_.world.bodies;
+  const world::MovingBody& body =
+      *std::find_if(bodies.begin(), bodies.end(), [&](const world::MovingBody& one) { return one.id == id; });
+  return object_truth(scene_.world, body, body.trajectory(time_s), sensor_state(time_s, sensor).T_world_sensor);
+}
+
 SimulatedFrame Simulation::frame(std::size_t index, const Workers& workers, std::size_t sensor) const {
   const ScanTime time = scan_time(index, sensor);
   const double time_s = seconds_between(Stamp{}, time.begin);

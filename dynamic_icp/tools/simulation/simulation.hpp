@@ -78,6 +78,9 @@ class Simulation {
   [[nodiscard]] const world::Trajectory& sensor(std::size_t sensor = 0) const { return sensors_.at(sensor); }
   [[nodiscard]] SensorState sensor_state(double time_s, std::size_t sensor = 0) const;
 
+  /// The truth about a moving body seen from a sensor at any time; `points` is 0. The body must exist.
+  [[nodiscard]] ObjectTruth object(std::int32_t id, double time_s, std::size_t sensor = 0) const;
+
   /// When a scan is due: whole nanoseconds, 0 for the first.
   [[nodiscard]] Stamp stamp(std::size_t index) const;
 

@@ -99,7 +99,7 @@ TruthWriter::TruthWriter(const fs::path& folder, const Simulation& simulation, s
 }
 
 void TruthWriter::add(const SimulatedFrame& frame) {
-  const std::string name = fmt::format("{:05}.bin", frame.index + 1);
+  const std::string name = fmt::format("{:05}.bin", scans_ + 1);
   formats::write_values<std::int32_t>(folder_ / "labels" / name, labels_of(frame));
   if (options_.point_truth) {
     std::vector<double> truth;
@@ -114,7 +114,7 @@ void TruthWriter::add(const SimulatedFrame& frame) {
     formats::write_values<double>(folder_ / kErrorFolder / name, frame.scan.systematic_error);
   }
   if (stamps_) {
-    stamps_->write(fmt::format("{},{},{}\n", frame.index, format_seconds(written_stamp(frame)),
+    stamps_->write(fmt::format("{},{},{}\n", scans_, format_seconds(written_stamp(frame)),
                                format_seconds({frame.begin.ns + options_.epoch_ns})));
   }
   if (scans_ == 0) {
@@ -186,7 +186,7 @@ Stamp TruthWriter::written_stamp(const SimulatedFrame& frame) const {
 
 std::string TruthWriter::line_start(const SimulatedFrame& frame) const {
   // The exact stamp as a number, which a double could not hold.
-  return fmt::format("{{\"index\":{},\"timestamp\":{}", frame.index, format_seconds(written_stamp(frame)));
+  return fmt::format("{{\"index\":{},\"timestamp\":{}", scans_, format_seconds(written_stamp(frame)));
 }
 
 }  // namespace dynamic_icp::simulation

@@ -30,7 +30,8 @@ struct TruthOptions {
 /// On request:
 ///   truth/00001.bin          float64 true range (m) and true Doppler (m/s) per point
 ///   doppler_error/00001.bin  only where there is one: float64 error (m/s) of the Doppler that is no noise, per point
-/// Rows of scans have the stamps that the sensor gave them. motion.csv is on the clock of the drive.
+/// Rows of scans have the stamps that the sensor gave them and count the scans that are there. motion.csv is on the
+/// clock of the drive and has lost scans, too.
 class TruthWriter {
  public:
   /// Writes into an existing folder. Keeps a reference to the simulation.

@@ -35,8 +35,8 @@ void check(VibrationConfig config);
 
 /// The trajectory of a body that shakes about a point of itself, with the exact twist:
 ///   T_world_body(t) * T_body_pivot * V(t) * T_body_pivot^-1,   V = (x, y, z) Rz(yaw) Ry(pitch) Rx(roll).
-/// The bump is exp(-t/T) (1 - exp(-t/T)) sin(2 pi 10 Hz t) from `bump_s` on, T = 0.03 s, scaled to a largest value of 1.
-/// The trajectory itself where no amplitude is given.
+/// The bump is exp(-t/T) (1 - exp(-t/T)) sin(2 pi 10 Hz t) from `bump_s` on, T = 0.03 s, scaled to a largest value
+/// of 1. The trajectory itself where no amplitude is given.
 Trajectory vibrating(Trajectory body, const Eigen::Isometry3d& T_body_pivot, const VibrationConfig& config,
                      const RandomSource& random);
 
