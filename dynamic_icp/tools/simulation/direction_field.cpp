@@ -14,12 +14,12 @@ DirectionField::DirectionField(double rms, const AngularSpan& span, const Random
     return;
   }
   const bool closed = span.horizontal_rad > 2.0 * pi - 1e-9;
-  const double horizontal_period = closed ? span.horizontal_rad : 2.0 * span.horizontal_rad;
+  const double period = closed ? span.horizontal_rad : 2.0 * span.horizontal_rad;
   std::uint64_t stream = 0;
   for (int m = 0; m <= 3; ++m) {
     for (int n = m == 0 ? 1 : -1; n <= 1; ++n, stream += 2) {
-      harmonics_.push_back({2.0 * pi * m / horizontal_period, pi * n / span.vertical_rad,
-                            random.uniform(stream, 0.0, 2.0 * pi), random.normal(stream + 1) / (1.0 + m)});
+      harmonics_.push_back({2.0 * pi * m / period, 2.0 * pi * n / period, random.uniform(stream, 0.0, 2.0 * pi),
+                            random.normal(stream + 1) / (1.0 + m)});
     }
   }
   constexpr int kColumns = 180;

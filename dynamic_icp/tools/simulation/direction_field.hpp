@@ -16,9 +16,9 @@ struct AngularSpan {
 };
 
 /// A random number for each direction that changes smoothly with azimuth a and elevation e:
-///   f(a, e) = sum over m = 0..3, n = -1..1 of c_mn cos(2 pi (m a / A + n e / E) + phi_mn) - mean,
-/// with random amplitudes that fall with m and random phases. A and E are twice the view; A is the view where that is
-/// the full circle, so that the field closes. Over the view its mean is 0 and its root mean square `rms`.
+///   f(a, e) = sum over m = 0..3, n = -1..1 of c_mn cos(2 pi (m a + n e) / A + phi_mn) - mean,
+/// with random amplitudes that fall with m and random phases. A is twice the horizontal view, or the full circle where
+/// that is the view, so that the field closes. Over the view its mean is 0 and its root mean square `rms`.
 class DirectionField {
  public:
   DirectionField(double rms, const AngularSpan& span, const RandomSource& random);
