@@ -53,7 +53,7 @@ struct DopplerCause {
   double range_m = 0.0;
   double cos_incidence = 1.0;
   double intensity_db = 0.0;  ///< over a 10 % surface head-on at 1 m
-  double doppler_mps = 0.0;   ///< true
+  double doppler_mps = 0.0;   ///< without any error
   double time_s = 0.0;        ///< since the first scan
 };
 
@@ -65,7 +65,7 @@ class DopplerError {
   /// The error (m/s) without drift:
   ///   sensor + line + beam + face + direction(azimuth, elevation) + range_mps_per_100m * r / 100
   ///   + near * exp(-r / 10 m) + incidence * (1 - cos) + intensity_mps_per_10db * (intensity + 30 dB) / 10
-  ///   + scale * doppler, and `restart_mps` from `restart_s` on.
+  ///   + scale * doppler, and `restart_mps` from `restart_s` on. Intensities below -60 dB count as that.
   [[nodiscard]] double systematic_mps(const DopplerCause& cause) const;
 
   /// The drift (m/s) at the begin of a scan: the sum of one step per scan before, of the standard deviation

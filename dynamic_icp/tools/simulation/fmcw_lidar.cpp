@@ -80,6 +80,10 @@ void check(FmcwLidarConfig config) {
     throw UsageError(fmt::format("configuration key 'sweep_s': {:g} s is longer than the {:g} s from scan to scan",
                                  config.sweep_s, 1.0 / config.rate_hz));
   }
+  if (config.timing.start_s * config.rate_hz >= 1.0) {
+    throw UsageError(fmt::format("configuration key 'timing.start_s': {:g} s is not below the {:g} s from scan to scan",
+                                 config.timing.start_s, 1.0 / config.rate_hz));
+  }
   if (config.row_by_row && config.rows % config.beams != 0) {
     throw UsageError(fmt::format("configuration key 'beams': {} bands of equal height cannot be made of {} rows",
                                  config.beams, config.rows));

@@ -30,6 +30,15 @@ TEST(FmcwLidar, ContradictionsAreRefused) {
   EXPECT_THROW(check(config), UsageError);
   config.rate_hz = 5.0;
   EXPECT_NO_THROW(check(config));
+  config.timing.start_s = 0.2;
+  EXPECT_THROW(check(config), UsageError);
+  config = {};
+  config.row_by_row = true;
+  config.beams = 3;
+  EXPECT_THROW(check(config), UsageError) << "64 rows";
+  config = {};
+  config.doppler_error.weak_noise_mps = 0.1;
+  EXPECT_THROW(check(config), UsageError) << "no range of detection";
 }
 
 TEST(FmcwLidar, WithoutNoiseIsThePerfectSensorWithTheSameView) {

@@ -66,14 +66,15 @@ std::optional<Return> RayReturns::find(const Moment& moment, double azimuth, dou
       return drop;
     }
   }
-  if (hit && config_.multipath_rate > 0.0 && random.uniform(kMultipath) < config_.multipath_rate) {
-    return mirrored(moment, *hit);
-  }
   std::optional<Return> found = hit ? std::optional(hit->result) : std::nullopt;
   if (config_.beam_divergence_mrad > 0.0) {
     found = over_the_beam(moment, hit, azimuth, elevation, random);
   }
-  return found && found->true_range >= config_.min_range_m ? found : std::nullopt;
+  if (!found || found->true_range < config_.min_range_m) {
+    return std::nullopt;
+  }
+  const bool is_mirror = hit && config_.multipath_rate > 0.0 && random.uniform(kMultipath) < config_.multipath_rate;
+  return is_mirror ? mirrored(moment, *hit) : found;
 }
 
 /// The surface that a ray of the beam meets.

@@ -11,7 +11,7 @@ namespace dynamic_icp::simulation {
 namespace {
 
 constexpr double kMicroseconds = 1e6;  // in a second
-constexpr double kMaxShift = 0.24;     // of a period: two of them leave the order of the scans
+constexpr double kMaxShift = 0.24;     // of a period: begin and stamp together keep the order of scans
 
 /// A normal shift of at most `limit_s` in ns.
 std::int64_t shift_ns(double sigma_s, double limit_s, double normal) {
