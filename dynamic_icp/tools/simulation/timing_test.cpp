@@ -88,25 +88,5 @@ TEST(Timing, TruthIsThatOfTheBeginAndTheStampWhatTheSensorSays) {
   }
 }
 
-TEST(Timing, VibrationIsInTruthAndDoppler) {
-  SimulationConfig config = drive();
-  const Simulation still(scenes::find_scene("street"), config);
-  config.rig.vibration.wheel = {7.0, 13.0, 1.5, 0.03};
-  const Simulation shaken(scenes::find_scene("street"), config);
-  Statistics up;
-  for (double t = 0.0; t < 40.0; t += 0.01) {
-    up.add((still.sensor()(t).T_world_body.inverse() * shaken.sensor()(t).T_world_body).translation().z());
-  }
-  EXPECT_NEAR(1e3 * up.deviation(), 1.5 / std::sqrt(2.0), 0.03);
-  const SimulatedFrame frame = shaken.frame(3, Workers(1));
-  for (std::size_t i = 0; i < frame.scan.bodies.size(); ++i) {
-    const double time_s = seconds_between(Stamp{}, frame.begin) + frame.scan.measured.times[i];
-    if (frame.scan.bodies[i] == 0) {
-      EXPECT_NEAR(frame.scan.measured.doppler[i],
-                  -frame.scan.measured.points[i].normalized().dot(shaken.sensor_state(time_s).velocity_sensor), 1e-9);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace dynamic_icp::simulation
