@@ -177,9 +177,11 @@ void print_summary(const Simulation& simulation, const SequenceCounts& counts, d
   fmt::print("drive          {} scans, {:.1f} s, {:.0f} m\n", config.frames,
              config.frames / config.rig.sensors.front().lidar.rate_hz, counts.path_length_m);
   fmt::print(
-      "points         {:.0f} a scan, {:.1f} % of the rays; {:.1f} % on moving bodies, {:.2f} % mixed, {:.2f} % rain\n",
+      "points         {:.0f} a scan, {:.1f} % of the rays; {:.1f} % on moving bodies, {:.2f} % mixed, {:.2f} % rain, "
+      "{:.2f} % false\n",
       per_scan(counts.points), percent(counts.points, counts.rays), percent(counts.moving_points, counts.points),
-      percent(counts.mixed_points, counts.points), percent(counts.rain_points, counts.points));
+      percent(counts.mixed_points, counts.points), percent(counts.rain_points, counts.points),
+      percent(counts.false_points, counts.points));
   fmt::print("moving bodies  {} in the scene, {:.1f} seen a scan\n", simulation.scene().world.bodies.size(),
              per_scan(counts.objects));
   fmt::print("time           {:.1f} s, {:.1f} scans/s\n", seconds, static_cast<double>(counts.scans) / seconds);

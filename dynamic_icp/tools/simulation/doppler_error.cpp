@@ -12,7 +12,7 @@ namespace {
 
 constexpr double kNearRange = 10.0;         // m: the data set of Toronto leaves out what is nearer than 5 to 20 m
 constexpr double kMiddleIntensity = -30.0;  // dB: a 10 % surface at 32 m
-constexpr double kLeastIntensity = -60.0;   // dB: drops have none at all
+constexpr double kMinIntensity = -60.0;     // dB: drops have none at all
 
 double term(double sigma, const RandomSource& random, std::size_t index) {
   return sigma > 0.0 ? sigma * random.normal(index) : 0.0;
@@ -82,7 +82,7 @@ double DopplerError::systematic_mps(const DopplerCause& cause) const {
   error += config_.range_mps_per_100m * cause.range_m / 100.0;
   error += config_.near_mps != 0.0 ? config_.near_mps * std::exp(-cause.range_m / kNearRange) : 0.0;
   error += config_.incidence_mps * (1.0 - cause.cos_incidence);
-  error += config_.intensity_mps_per_10db * (std::max(cause.intensity_db, kLeastIntensity) - kMiddleIntensity) / 10.0;
+  error += config_.intensity_mps_per_10db * (std::max(cause.intensity_db, kMinIntensity) - kMiddleIntensity) / 10.0;
   error += config_.scale * cause.doppler_mps;
   return error + (cause.time_s >= config_.restart_s ? config_.restart_mps : 0.0);
 }

@@ -65,7 +65,7 @@ Return rain_drop(const Moment& moment, const Eigen::Vector3d& direction_sensor, 
 }
 
 std::optional<Return> spray_drop(const Moment& moment, const world::World& world,
-                                 const Eigen::Vector3d& direction_sensor, double free_way_m, double rate,
+                                 const Eigen::Vector3d& direction_sensor, double free_range_m, double rate,
                                  const RandomSource& random) {
   if (!(random.uniform(kSpray) < rate)) {
     return std::nullopt;
@@ -83,7 +83,7 @@ std::optional<Return> spray_drop(const Moment& moment, const world::World& world
     const Eigen::AlignedBox3d cloud = cloud_behind(world.shapes[world.bodies[i].shape].box);
     const Stretch within = stretch_in(cloud, origin_body, along_body);
     const double range = within.begin + random.uniform(kSprayRange) * (within.end - within.begin);
-    if (within.begin >= within.end || range >= free_way_m) {
+    if (within.begin >= within.end || range >= free_range_m) {
       continue;
     }
     const double behind_m = cloud.max().x() - (origin_body + range * along_body).x();

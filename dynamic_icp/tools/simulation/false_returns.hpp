@@ -19,7 +19,7 @@ Return rain_drop(const Moment& moment, const Eigen::Vector3d& direction_sensor, 
 /// their way through. The cloud of a body faster than 5 m/s is a box of its width, 1.5 m high, that reaches 8 m behind
 /// it; a drop follows the body with 60 % of its velocity, e^(-1) of that 5 m behind it, and drifts by 0.5 m/s any way.
 std::optional<Return> spray_drop(const Moment& moment, const world::World& world,
-                                 const Eigen::Vector3d& direction_sensor, double free_way_m, double rate,
+                                 const Eigen::Vector3d& direction_sensor, double free_range_m, double rate,
                                  const RandomSource& random);
 
 /// The window before the sensor: 0.1 to 0.5 m away, at rest in the sensor frame.

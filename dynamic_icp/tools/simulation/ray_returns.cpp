@@ -19,8 +19,8 @@ namespace {
 // A second surface in the beam is one of its own when it is off the plane of the first by more than this.
 constexpr double kEdgeStep = 0.02;  // m
 
-constexpr double kGrain = 0.01;    // m: cells of a rough surface of one height
-constexpr double kSteepest = 0.1;  // cosine: rough surfaces met at a smaller one hide their own valleys
+constexpr double kGrain = 0.01;     // m: cells of a rough surface of one height
+constexpr double kMinCosine = 0.1;  // cosine: rough surfaces met at a smaller one hide their own valleys
 
 /// Embree must not see a pose that is not finite.
 void check_pose(const world::MotionState& motion, const char* whose, double time_s) {
@@ -98,7 +98,7 @@ std::optional<RayReturns::Hit> RayReturns::cast(const Moment& moment, const worl
   const double cosine = std::abs(surface->normal_world.dot(ray.direction_world));
   double range_m = surface->range_m;
   if (config_.roughness_m > 0.0) {
-    range_m -= roughness(moment, *surface, point_world) / std::max(cosine, kSteepest);
+    range_m -= roughness(moment, *surface, point_world) / std::max(cosine, kMinCosine);
   }
   if (config_.foliage_sway_m > 0.0 && surface->foliage) {
     const world::LeafMotion leaf = world::leaf_motion(point_world, moment.time_s, config_.foliage_sway_m);
@@ -132,13 +132,14 @@ std::optional<Return> RayReturns::mirrored(const Moment& moment, const Hit& mirr
   const Eigen::Vector3d& n = mirror.normal_world;
   const Eigen::Vector3d onward = direction_world - 2.0 * n * n.dot(direction_world);
   constexpr double kOffTheMirror = 1e-4;  // m: or the ray meets the mirror again
-  const double way = (mirror.point_world - origin).norm() + kOffTheMirror;
+  const double mirror_range_m = (mirror.point_world - origin).norm() + kOffTheMirror;
   const std::optional<Hit> seen =
-      cast(moment, {mirror.point_world + kOffTheMirror * onward, onward, config_.max_range_m - way});
+      cast(moment, {mirror.point_world + kOffTheMirror * onward, onward, config_.max_range_m - mirror_range_m});
   if (!seen) {
     return std::nullopt;
   }
-  return ghost(moment, {direction_world, n, mirror.velocity_world, way, seen->velocity_world, seen->result.echo});
+  return ghost(moment,
+               {direction_world, n, mirror.velocity_world, mirror_range_m, seen->velocity_world, seen->result.echo});
 }
 
 /// A beam has a width: a second ray within it tells whether it falls on an edge. The part of the beam beside the edge

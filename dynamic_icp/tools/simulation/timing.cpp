@@ -24,7 +24,7 @@ ConfigFields fields(TimingConfig& config) {
   return {
       {"start_s", &config.start_s, 0.0, 10.0, "s", "the sensor begins each scan by this later than others of the rig"},
       {"period_jitter_s", &config.period_jitter_s, 0.0, 1.0, "s",
-       "standard deviation of the begin of a scan; the stamp tells it"},
+       "standard deviation of the begin of a scan; its stamp is right"},
       {"stamp_jitter_s", &config.stamp_jitter_s, 0.0, 1.0, "s", "standard deviation of the stamp from the begin"},
       {"point_time_offset_s", &config.point_time_offset_s, -1.0, 1.0, "s",
        "added to the times of the points after the stamp"},
