@@ -70,6 +70,7 @@ bool has_systematic_error(const DopplerErrorConfig& config) {
 
 DopplerError::DopplerError(const DopplerErrorConfig& config, const AngularSpan& view, const RandomSource& unit)
     : config_(config),
+      is_on_(has_systematic_error(config)),
       lines_(unit.fork(kLineDoppler)),
       beams_(unit.fork(kBeamDoppler)),
       faces_(unit.fork(kFaceDoppler)),
@@ -77,6 +78,9 @@ DopplerError::DopplerError(const DopplerErrorConfig& config, const AngularSpan& 
       direction_(config.direction_mps, view, unit.fork(kDirectionDoppler)) {}
 
 double DopplerError::systematic_mps(const DopplerCause& cause) const {
+  if (!is_on_) {
+    return 0.0;
+  }
   double error = sensor_ + term(config_.line_mps, lines_, cause.line) + term(config_.beam_mps, beams_, cause.beam) +
                  term(config_.face_mps, faces_, cause.face) + direction_.at(cause.azimuth_rad, cause.elevation_rad);
   error += config_.range_mps_per_100m * cause.range_m / 100.0;

@@ -74,6 +74,7 @@ class DopplerError {
 
  private:
   DopplerErrorConfig config_;
+  bool is_on_;
   RandomSource lines_;
   RandomSource beams_;
   RandomSource faces_;

@@ -72,7 +72,8 @@ class RayMeasurement {
     const Eigen::Vector3d measured_direction =
         direction(azimuth + (angle_noise(random, kAngleNoiseAcross) + pointing.azimuth_rad),
                   elevation + (angle_noise(random, kAngleNoiseUp) + pointing.elevation_rad));
-    const double power_db = intensity_db(*found);
+    const double power = relative_power(config_, found->echo);
+    const double power_db = intensity_db(power);
     const DopplerCause cause{ray.line,
                              ray.beam,
                              face,
@@ -85,7 +86,7 @@ class RayMeasurement {
                              firing.moment.time_s};
     const double systematic = unit_.doppler.systematic_mps(cause) + which_.doppler_drift_mps + config_.doppler_bias_mps;
     scan.measured.points.emplace_back(range * measured_direction);
-    scan.measured.doppler.push_back(measured_doppler(*found, systematic, firing.doppler_noise_mps, random));
+    scan.measured.doppler.push_back(measured_doppler(*found, systematic, noise_mps(*found, power), firing, random));
     scan.measured.times.push_back(firing.time_in_scan_s + config_.timing.point_time_offset_s);
     scan.reflectivity.push_back(static_cast<float>(found->echo.reflectivity));
     scan.intensity_db.push_back(static_cast<float>(power_db));
@@ -130,9 +131,15 @@ class RayMeasurement {
     return certain ? 1.0 : detection_probability(config_, found.echo);
   }
 
-  [[nodiscard]] double intensity_db(const Return& found) const {
+  [[nodiscard]] static double intensity_db(double power) {
     constexpr double kWeakest = 1e-12;
-    return 10.0 * std::log10(std::max(kWeakest, relative_power(config_, found.echo)));
+    return 10.0 * std::log10(std::max(kWeakest, power));
+  }
+
+  [[nodiscard]] double noise_mps(const Return& found, double power) const {
+    const double power_at_detection_range = 1.0 / (config_.detection_range_m * config_.detection_range_m);
+    return doppler_noise_mps(config_.doppler_error, config_.doppler_noise_mps, found.echo.range_m,
+                             power / power_at_detection_range);
   }
 
   [[nodiscard]] double measured_range(const Return& found, double offset_m, const RandomSource& random) const {
@@ -140,12 +147,10 @@ class RayMeasurement {
     return quantised(range, config_.range_step_m);
   }
 
-  [[nodiscard]] double measured_doppler(const Return& found, double systematic, double common_noise,
-                                        const RandomSource& random) const {
-    const double reference = config_.detection_range_m * config_.detection_range_m;
-    const double sigma = doppler_noise_mps(config_.doppler_error, config_.doppler_noise_mps, found.echo.range_m,
-                                           reference * relative_power(config_, found.echo));
-    double doppler = found.doppler + systematic + (sigma * random.normal(kDopplerNoise) + common_noise);
+  [[nodiscard]] double measured_doppler(const Return& found, double systematic, double sigma_mps,
+                                        const FiringState& firing, const RandomSource& random) const {
+    const double noise = sigma_mps * random.normal(kDopplerNoise) + firing.doppler_noise_mps;
+    double doppler = found.doppler + systematic + noise;
     if (random.uniform(kOutlier) < config_.doppler_outlier_rate) {
       doppler = random.uniform(kOutlierValue, -config_.doppler_outlier_span_mps, config_.doppler_outlier_span_mps);
     }
