@@ -29,9 +29,10 @@ std::vector<std::string> conversion_files(const fs::path& /*folder*/) {
 
 /// The files of one sensor, below the folder that holds them.
 void append_sensor_files(const std::string& folder, std::vector<std::string>& files) {
-  for (const char* name : {"ref_poses.txt", "ego.jsonl", "motion.csv", "objects.jsonl", "calibration.json",
-                           "labels/#.bin", "truth/#.bin", "point_clouds/#.bin", "times/#.bin", "LiDAR/Aeva/#.bin",
-                           "PR_GT/Aeva_gt.txt", "LiDAR_GT/Aeva_gt.txt", "aeva/#.bin", "applanix/aeva_poses.csv"}) {
+  for (const char* name :
+       {"ref_poses.txt", "ego.jsonl", "motion.csv", "objects.jsonl", "calibration.json", "stamps.csv", "labels/#.bin",
+        "truth/#.bin", "doppler_error/#.bin", "point_clouds/#.bin", "times/#.bin", "LiDAR/Aeva/#.bin",
+        "PR_GT/Aeva_gt.txt", "LiDAR_GT/Aeva_gt.txt", "aeva/#.bin", "applanix/aeva_poses.csv"}) {
     files.push_back(folder + name);
   }
 }

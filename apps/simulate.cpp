@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -82,7 +83,7 @@ int show_sensor(const std::string& name) {
 
 std::string help_line(const ConfigField& field) {
   const std::string unit = field.unit.empty() ? "" : " " + field.unit;
-  return fmt::format("  {:<32} {} [{}{}; {}]\n", field.key, field.description, value_text(field), unit,
+  return fmt::format("  {:<40} {} [{}{}; {}]\n", field.key, field.description, value_text(field), unit,
                      range_text(field));
 }
 
@@ -134,8 +135,8 @@ SimulationConfig make_config(const SceneKind& kind, const SimulateOptions& optio
   if (!options.seed.empty()) {
     set_field(fields, "seed", options.seed);
   }
+  config.rig = options.noise_free ? simulation::without_noise(std::move(config.rig)) : config.rig;
   for (simulation::SensorConfig& sensor : config.rig.sensors) {
-    sensor.lidar = options.noise_free ? simulation::without_noise(sensor.lidar) : sensor.lidar;
     sensor.lidar = options.instant ? simulation::instant(sensor.lidar) : sensor.lidar;
   }
   return config;
@@ -177,9 +178,11 @@ void print_summary(const Simulation& simulation, const SequenceCounts& counts, d
   fmt::print("drive          {} scans, {:.1f} s, {:.0f} m\n", config.frames,
              config.frames / config.rig.sensors.front().lidar.rate_hz, counts.path_length_m);
   fmt::print(
-      "points         {:.0f} a scan, {:.1f} % of the rays; {:.1f} % on moving bodies, {:.2f} % mixed, {:.2f} % rain\n",
+      "points         {:.0f} a scan, {:.1f} % of the rays; {:.1f} % on moving bodies, {:.2f} % mixed, {:.2f} % rain, "
+      "{:.2f} % false\n",
       per_scan(counts.points), percent(counts.points, counts.rays), percent(counts.moving_points, counts.points),
-      percent(counts.mixed_points, counts.points), percent(counts.rain_points, counts.points));
+      percent(counts.mixed_points, counts.points), percent(counts.rain_points, counts.points),
+      percent(counts.false_points, counts.points));
   fmt::print("moving bodies  {} in the scene, {:.1f} seen a scan\n", simulation.scene().world.bodies.size(),
              per_scan(counts.objects));
   fmt::print("time           {:.1f} s, {:.1f} scans/s\n", seconds, static_cast<double>(counts.scans) / seconds);
@@ -201,7 +204,9 @@ SequenceCounts write_sequence(const Simulation& simulation, const simulation::Se
     Progress progress(fmt::format("simulating {}", simulation.kind().name), simulation.size(), options.quiet);
     for (std::size_t i = 0; i < simulation.size(); ++i) {
       for (std::size_t sensor = 0; sensor < simulation.config().rig.sensors.size(); ++sensor) {
-        writer.add(simulation.frame(i, workers, sensor), sensor);
+        if (!simulation.scan_time(i, sensor).missing) {
+          writer.add(simulation.frame(i, workers, sensor), sensor);
+        }
       }
       progress.advance();
     }
@@ -270,7 +275,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& selected) {
       ->allow_extra_args(false);
   command->add_flag("--instant", options->instant, "All rays of a scan at its stamp (wins over --set)");
   command->add_flag("--noise-free", options->noise_free,
-                    "No noise, bias, quantisation, outliers, rain, mixed or lost returns (wins over --set)");
+                    "No error of measurement or time, rain, mixed, false or lost returns, vibration (wins over --set)");
   command->add_flag("--point-truth", options->point_truth, "Write true range and true Doppler of every point");
   command->add_flag("--calibration", options->calibration,
                     "Write calibration.json, and poses of the vehicle instead of the sensor (layout dicp)");

@@ -32,7 +32,8 @@ class Simulate : public ProgramTest {
 };
 
 TEST_F(Simulate, EverySensorWorksInEveryLayout) {
-  for (const std::string sensor : {"aeries-ii", "front-pair", "spinning-360", "radar-4d"}) {
+  for (const std::string sensor :
+       {"aeries-ii", "front-pair", "aevascenes-six", "spinning-360", "radar-4d", "aeries-ii-real", "radar-4d-real"}) {
     for (const std::string layout : {"dicp", "hercules", "aevascenes"}) {
       const Outcome outcome = simulate("city --sensor " + sensor + " --layout " + layout + kFew);
       ASSERT_EQ(outcome.status, 0) << outcome.text;

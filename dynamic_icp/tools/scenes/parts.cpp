@@ -130,7 +130,8 @@ void add_tree(world::TriangleMesh& mesh, const Eigen::Isometry3d& T_world_ground
          painted(world::make_cylinder(random.uniform(23, 0.12, 0.25), trunk + 0.5, 10), world::reflectivity::kBark),
          T_world_ground);
   append(mesh,
-         painted(world::make_ellipsoid({radius, radius, 1.2 * radius}, kCrownRings, 12), world::reflectivity::kLeaves),
+         leafy(painted(world::make_ellipsoid({radius, radius, 1.2 * radius}, kCrownRings, 12),
+                       world::reflectivity::kLeaves)),
          T_world_ground * Eigen::Translation3d(0.0, 0.0, trunk + 1.1 * radius));
 }
 

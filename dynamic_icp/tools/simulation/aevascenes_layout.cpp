@@ -13,9 +13,11 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/simulation/named_source.hpp"
 #include "dynamic_icp/tools/simulation/point_layout.hpp"
 
 namespace dynamic_icp::simulation {
@@ -70,11 +72,7 @@ std::string uuid(const RandomSource& source) {
 
 /// The source of a sequence's identifiers.
 RandomSource identifiers_of(const Simulation& simulation) {
-  RandomSource source(static_cast<std::uint64_t>(simulation.config().scene.seed));
-  for (const char letter : simulation.kind().name) {
-    source = source.fork(static_cast<unsigned char>(letter));
-  }
-  return source;
+  return named_source(RandomSource(static_cast<std::uint64_t>(simulation.config().scene.seed)), simulation.kind().name);
 }
 
 template <class Number, class Value>
@@ -133,20 +131,27 @@ class AevaScenesLayout : public PointLayout {
     return frame.scan.measured.stamp.ns + kUnixTimeOfStart;
   }
 
-  static double time_s(const SimulatedFrame& frame) { return seconds_between(Stamp{}, frame.scan.measured.stamp); }
+  /// When the last frame began, on the clock of the drive.
+  [[nodiscard]] double frame_time_s() const { return seconds_between(Stamp{}, frame_time_.begin); }
 
-  [[nodiscard]] Eigen::Isometry3d T_world_vehicle(const SimulatedFrame& frame) const {
-    return simulation_.scene().vehicle(time_s(frame)).T_world_body;
+  [[nodiscard]] Eigen::Isometry3d T_world_vehicle() const {
+    return simulation_.scene().vehicle(frame_time_s()).T_world_body;
   }
 
+  /// A frame begins with the first of its scans, as their stamps say.
   void begin_frame(const SimulatedFrame& frame) {
+    frame_time_ = {frame.begin, frame.scan.measured.stamp};
+    for (std::size_t sensor = 0; sensor < simulation_.config().rig.sensors.size(); ++sensor) {
+      const ScanTime time = simulation_.scan_time(frame.index, sensor);
+      frame_time_ = !time.missing && time.stamp < frame_time_.stamp ? time : frame_time_;
+    }
     Eigen::Isometry3d T_first_vehicle = Eigen::Isometry3d::Identity();
     if (frames_.empty()) {
-      T_first_world_ = T_world_vehicle(frame).inverse();
+      T_first_world_ = T_world_vehicle().inverse();
     } else {
-      T_first_vehicle = T_first_world_ * T_world_vehicle(frame);
+      T_first_vehicle = T_first_world_ * T_world_vehicle();
     }
-    frames_.push_back({{"timestamp_ns", unix_stamp_ns(frame)},
+    frames_.push_back({{"timestamp_ns", frame_time_.stamp.ns + kUnixTimeOfStart},
                        {"frame_idx", frame.index},
                        {"frame_uuid", uuid(identifiers_.fork(0).fork(frame.index))},
                        {"ego_pose", to_json(T_first_vehicle)},
@@ -170,11 +175,20 @@ class AevaScenesLayout : public PointLayout {
                       }),
         column<std::uint32_t>("line_index", rows, [&](std::size_t i) { return scan.lines[i]; }),
         column<std::uint32_t>("time_offset_ns", rows,
-                              [&](std::size_t i) { return std::llround(kNanoseconds * scan.measured.times[i]); }),
+                              [&](std::size_t i) { return offset_ns(scan.measured, scan.measured.times[i]); }),
         column<std::int64_t>("semantic_labels_idx", rows, [&](std::size_t i) { return class_index(scan.bodies[i]); })};
     write_archive(folder_ / kRawFolder / name, members);
     members[1] = doppler(compensated_doppler(scan.measured, sensor));
     write_archive(folder_ / kCompensatedFolder / name, members);
+  }
+
+  /// Time of a point after the stamp of the frame.
+  [[nodiscard]] std::int64_t offset_ns(const RawScan& scan, double time_s) const {
+    const std::int64_t ns = scan.stamp.ns - frame_time_.stamp.ns + std::llround(kNanoseconds * time_s);
+    if (ns < 0) {
+      throw UsageError("layout aevascenes: lidar.timing.point_time_offset_s: points before their frame do not fit");
+    }
+    return ns;
   }
 
   static void write_archive(const fs::path& path, const std::vector<formats::NpzMember>& members) {
@@ -206,21 +220,21 @@ class AevaScenesLayout : public PointLayout {
   /// The bodies that no sensor before has shown in this frame.
   void add_boxes(const SimulatedFrame& frame, std::size_t sensor) {
     Json& boxes = frames_.back()["boxes"];
-    for (const ObjectTruth& object : frame.objects) {
-      const std::string id = uuid(identifiers_.fork(1).fork(static_cast<std::uint64_t>(object.id)));
+    for (const ObjectTruth& seen : frame.objects) {
+      const std::string id = uuid(identifiers_.fork(1).fork(static_cast<std::uint64_t>(seen.id)));
       if (std::none_of(boxes.begin(), boxes.end(), [&](const Json& box) { return box["id"] == id; })) {
-        boxes.push_back(box_json(object, id, frame, sensor));
+        const bool later = frame.begin != frame_time_.begin;
+        boxes.push_back(box_json(later ? simulation_.object(seen.id, frame_time_s(), sensor) : seen, id, sensor));
       }
     }
   }
 
-  [[nodiscard]] Json box_json(const ObjectTruth& object, const std::string& id, const SimulatedFrame& frame,
-                              std::size_t sensor) const {
+  [[nodiscard]] Json box_json(const ObjectTruth& object, const std::string& id, std::size_t sensor) const {
     const Eigen::Isometry3d T_vehicle_lidar = T_vehicle_sensor(sensor_config(sensor).mount);
     Eigen::Isometry3d T_vehicle_box = T_vehicle_lidar * object.T_sensor_body;
     T_vehicle_box.translation() = T_vehicle_lidar * object.center_sensor;
-    const Eigen::Vector3d turning_vehicle = T_world_vehicle(frame).linear().transpose() *
-                                            bodies_.at(object.id)->trajectory(time_s(frame)).angular_velocity_world;
+    const Eigen::Vector3d turning_vehicle = T_world_vehicle().linear().transpose() *
+                                            bodies_.at(object.id)->trajectory(frame_time_s()).angular_velocity_world;
     const ObjectClass& object_class = class_of(object.name);
     return {{"id", id},
             {"reference_frame", "VEHICLE"},
@@ -252,6 +266,7 @@ class AevaScenesLayout : public PointLayout {
   RandomSource identifiers_;
   std::map<std::int32_t, const world::MovingBody*> bodies_;  ///< by their ids
   Eigen::Isometry3d T_first_world_ = Eigen::Isometry3d::Identity();
+  ScanTime frame_time_;  ///< of the last frame
   std::vector<Json> frames_;
 };
 

@@ -257,6 +257,41 @@ TEST_F(AevaScenesLayoutFiles, ListsABodyThatTwoSensorsSeeOnce) {
   }
 }
 
+TEST_F(AevaScenesLayoutFiles, SensorsThatStartLaterShareTheTimeOfTheFrame) {
+  SimulationConfig config = two_sensors();
+  config.rig.sensors[0].mount.yaw_deg = 180.0;  // sees nothing of what is ahead
+  config.rig.sensors[1].mount = {1.5, 0.2, 1.9, 0.0, 0.0, 0.0};
+  for (SensorConfig& sensor : config.rig.sensors) {
+    sensor.lidar = instant(sensor.lidar);
+  }
+  config.rig.sensors[1].lidar.timing.start_s = 0.04;
+  const Simulation simulation(scenes::find_scene("street"), config);
+  const json sequence = sequence_of(simulation);
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    const json& frame = sequence["frames"][i];
+    EXPECT_EQ(frame["timestamp_ns"], 1'735'689'600'000'000'000 + static_cast<std::int64_t>(i) * 100'000'000);
+    const auto offset = [&](const char* name) {
+      const json& path = frame["point_cloud"][name]["point_cloud_raw_path"];
+      return cloud_in(folder_ / path.get<std::string>()).time_offset_ns.front();
+    };
+    EXPECT_EQ(offset("front_wide_lidar"), 0U);
+    EXPECT_EQ(offset("left_lidar"), 40'000'000U);
+    // Boxes are where the bodies are when the frame begins, whoever saw them.
+    const double time_s = 0.1 * static_cast<double>(i);
+    const Eigen::Isometry3d T_vehicle_world = simulation.scene().vehicle(time_s).T_world_body.inverse();
+    ASSERT_FALSE(frame["boxes"].empty());
+    for (const json& box : frame["boxes"]) {
+      double nearest = 1e9;
+      for (const world::MovingBody& body : simulation.scene().world.bodies) {
+        const Eigen::Vector3d center = simulation.scene().world.shapes[body.shape].box.center();
+        const Eigen::Vector3d expected = T_vehicle_world * body.trajectory(time_s).T_world_body * center;
+        nearest = std::min(nearest, (expected - vector_in(box["pose"]["translation"])).norm());
+      }
+      EXPECT_LT(nearest, 1e-9);
+    }
+  }
+}
+
 TEST_F(AevaScenesLayoutFiles, ClassesAreThoseOfTheDataSet) {
   const std::map<std::string, std::int64_t> documented = {
       {"unknown", 0}, {"car", 1}, {"truck", 3}, {"other_vehicle", 6}, {"pedestrian", 9}};

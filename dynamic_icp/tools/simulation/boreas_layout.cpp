@@ -23,18 +23,20 @@ namespace fs = std::filesystem;
 constexpr float kPercent = 100.0F;
 constexpr double kNanoseconds = 1e9;          // in a second
 constexpr std::int64_t kMicrosecond = 1'000;  // ns
-constexpr int kLineShift = 8;                 // where the line lies among the flags
-constexpr float kBestSignal = 1.0F;           // the simulation knows no other
+constexpr int kLineShift = 8;                 // where line, beam and face lie among the flags
+constexpr int kBeamShift = 16;
+constexpr int kFaceShift = 22;
+constexpr float kBestSignal = 1.0F;  // the simulation knows no other
 // The recordings' positions are in a frame of the whole region.
 const Eigen::Vector3d kScene(600'000.0, 4'800'000.0, 100.0);
 
-/// The flags as the number they are, in float32.
-float flags_of(std::uint16_t line) {
+/// The flags as the number they are, in float32: exact, as the lowest 8 bits are 0.
+float flags_of(std::uint16_t line, std::uint8_t beam, std::uint8_t face) {
   constexpr auto kLast = std::numeric_limits<std::uint8_t>::max();
   if (line > kLast) {
     throw UsageError(fmt::format("layout boreas: lidar.rows: line {} does not fit, lines 0 to {} do", line, kLast));
   }
-  return static_cast<float>(line << kLineShift);
+  return static_cast<float>(line << kLineShift | beam << kBeamShift | face << kFaceShift);
 }
 
 std::vector<float> values_of(const SimulatedScan& scan) {
@@ -46,7 +48,7 @@ std::vector<float> values_of(const SimulatedScan& scan) {
     values.insert(values.end(), {p.x(), p.y(), p.z(), static_cast<float>(scan.measured.doppler[i]),
                                  scan.intensity_db[i], kBestSignal, kPercent * scan.reflectivity[i],
                                  static_cast<float>(std::round(kNanoseconds * scan.measured.times[i])),
-                                 flags_of(scan.lines[i]), 0.0F});
+                                 flags_of(scan.lines[i], scan.beams[i], scan.faces[i]), 0.0F});
   }
   return values;
 }

@@ -36,7 +36,7 @@ class DicpLayout : public PointLayout {
 
   void add(const SimulatedFrame& frame, std::size_t /*sensor*/) override {
     const RawScan& scan = frame.scan.measured;
-    const std::string name = fmt::format("{:05}.bin", frame.index + 1);
+    const std::string name = fmt::format("{:05}.bin", ++scans_);
     formats::write_values<float>(points_ / name, values_of(scan));
     if (takes_time_) {
       formats::write_values<float>(times_ / name, std::vector<float>(scan.times.begin(), scan.times.end()));
@@ -47,6 +47,7 @@ class DicpLayout : public PointLayout {
   fs::path points_;
   fs::path times_;
   bool takes_time_;
+  std::size_t scans_ = 0;
 };
 
 }  // namespace

@@ -30,6 +30,15 @@ TEST(FmcwLidar, ContradictionsAreRefused) {
   EXPECT_THROW(check(config), UsageError);
   config.rate_hz = 5.0;
   EXPECT_NO_THROW(check(config));
+  config.timing.start_s = 0.2;
+  EXPECT_THROW(check(config), UsageError);
+  config = {};
+  config.row_by_row = true;
+  config.beams = 3;
+  EXPECT_THROW(check(config), UsageError) << "64 rows";
+  config = {};
+  config.doppler_error.weak_noise_mps = 0.1;
+  EXPECT_THROW(check(config), UsageError) << "no range of detection";
 }
 
 TEST(FmcwLidar, WithoutNoiseIsThePerfectSensorWithTheSameView) {
@@ -49,7 +58,8 @@ TEST(FmcwLidar, WithoutNoiseIsThePerfectSensorWithTheSameView) {
     // What is left alone: the view, the limits of range, and what only says how an effect behaves that is off now.
     const std::string& key = after[i].key;
     const bool view = key.find("fov") != std::string::npos || key.starts_with("vertical") || key == "columns" ||
-                      key == "rows" || key == "rate_hz" || key == "sweep_s" || key == "row_by_row" ||
+                      key == "rows" || key == "rate_hz" || key == "sweep_s" || key == "row_by_row" || key == "unit" ||
+                      key == "beams" || key == "faces" || key == "face_per_scan" || key == "timing.start_s" ||
                       key == "scatter_deg" || key == "min_range_m" || key == "max_range_m" ||
                       key.starts_with("weak_when") || key == "range_resolution_m" || key == "rain_range_m" ||
                       key == "doppler_outlier_span_mps";

@@ -131,10 +131,17 @@ TEST_F(PointLayouts, HeliprRecordsAreThoseOfHerculesWithoutTheirEnd) {
 }
 
 TEST_F(PointLayouts, BoreasRecordsAreTenFloats) {
-  write(make_boreas_layout(folder_));
-  EXPECT_EQ(files_in("aeva"), simulation_.size());
-  for (std::size_t i = 0; i < simulation_.size(); ++i) {
-    const SimulatedScan scan = simulation_.frame(i, workers_).scan;
+  SimulationConfig config = WrittenFiles::config();
+  config.rig.sensors.front().lidar.beams = 4;
+  config.rig.sensors.front().lidar.faces = 6;
+  const Simulation simulation(scenes::find_scene("street"), config);
+  const auto layout = make_boreas_layout(folder_);
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    layout->add(simulation.frame(i, workers_), 0);
+  }
+  EXPECT_EQ(files_in("aeva"), simulation.size());
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    const SimulatedScan scan = simulation.frame(i, workers_).scan;
     const auto values = binary<float>(folder_ / "aeva" / ("1735689600" + std::to_string(i) + "00000.bin"));
     ASSERT_EQ(values.size(), 10 * scan.bodies.size());
     for (std::size_t k = 0; k < scan.bodies.size(); ++k) {
@@ -146,7 +153,10 @@ TEST_F(PointLayouts, BoreasRecordsAreTenFloats) {
       ASSERT_EQ(record[5], 1.0F);
       ASSERT_FLOAT_EQ(record[6], 100.0F * scan.reflectivity[k]);
       ASSERT_NEAR(record[7], 1e9 * scan.measured.times[k], 4.0 + 0.5) << "steps of 8 ns";
-      ASSERT_EQ((static_cast<unsigned>(record[8]) >> 8U) & 0xFFU, scan.lines[k]);
+      const auto flags = static_cast<unsigned>(record[8]);
+      ASSERT_EQ((flags >> 8U) & 0xFFU, scan.lines[k]);
+      ASSERT_EQ((flags >> 16U) & 0xFU, scan.lines[k] % 4U);
+      ASSERT_EQ((flags >> 22U) & 0xFU, scan.faces[k]);
       ASSERT_EQ(record[9], 0.0F);
     }
   }
@@ -196,6 +206,8 @@ TEST_F(PointLayouts, BoreasRefusesWhatDoesNotFit) {
   frame.scan.reflectivity = {0.5F};
   frame.scan.intensity_db = {-20.0F};
   frame.scan.lines = {255};
+  frame.scan.beams = {0};
+  frame.scan.faces = {0};
   const auto layout = make_boreas_layout(folder_);
   EXPECT_NO_THROW(layout->add(frame, 0));
   frame.scan.measured.stamp.ns = 83'333'333;

@@ -49,10 +49,19 @@ ConfigFields fields(SensorConfig& sensor) {
   return list;
 }
 
+Rig without_noise(Rig rig) {
+  rig.vibration = {};
+  for (SensorConfig& sensor : rig.sensors) {
+    sensor.lidar = without_noise(sensor.lidar);
+  }
+  return rig;
+}
+
 void check(const Rig& rig) {
   if (rig.sensors.empty()) {
     throw UsageError(fmt::format("rig '{}' has no sensor", rig.name));
   }
+  world::check(rig.vibration);
   std::set<std::string> names;
   for (SensorConfig sensor : rig.sensors) {
     if (!is_usable_name(sensor.name) || !names.insert(sensor.name).second) {
@@ -73,6 +82,7 @@ Rig parse_rig(std::string_view yaml, const std::filesystem::path& origin) {
   Rig rig;
   rig.name = origin.stem().string();
   rig.description = map.text("description", "");
+  map.settings("vibration", world::fields(rig.vibration));
   for (const formats::YamlMap& sensor : map.list("sensors")) {
     rig.sensors.push_back(read_sensor(sensor));
   }

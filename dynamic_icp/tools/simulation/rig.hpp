@@ -9,6 +9,7 @@
 
 #include "dynamic_icp/tools/simulation/fmcw_lidar.hpp"
 #include "dynamic_icp/tools/simulation/mount.hpp"
+#include "dynamic_icp/tools/world/vibration.hpp"
 
 namespace dynamic_icp::simulation {
 
@@ -21,10 +22,11 @@ struct SensorConfig {
 
 ConfigFields fields(SensorConfig& sensor);
 
-/// The sensors of a vehicle. All make their scans at the same rate, beginning at the same times.
+/// The sensors of a vehicle. All make their scans at the same rate, each beginning `lidar.timing.start_s` late.
 struct Rig {
   std::string name;
   std::string description;
+  world::VibrationConfig vibration;   ///< of the vehicle's body with all sensors, about the first one
   std::vector<SensorConfig> sensors;  ///< at least one; names differ
 };
 
@@ -46,7 +48,10 @@ Rig find_rig(const std::string& name);
 /// Reads a rig from YAML; `origin` names it in messages.
 Rig parse_rig(std::string_view yaml, const std::filesystem::path& origin);
 
-/// Throws UsageError when a sensor is impossible, names are not usable as folders or rates differ.
+/// The same rig without any error, and at rest on its vehicle.
+Rig without_noise(Rig rig);
+
+/// Throws UsageError when a sensor or the vibration is impossible, names are not usable as folders or rates differ.
 void check(const Rig& rig);
 
 }  // namespace dynamic_icp::simulation

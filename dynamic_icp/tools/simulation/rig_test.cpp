@@ -29,6 +29,7 @@ TEST(Rig, PresetsAreValidAndDescribed) {
     EXPECT_NO_THROW(check(rig));
   }
   EXPECT_EQ(find_rig("front-pair").sensors.size(), 2U);
+  EXPECT_EQ(find_rig("aevascenes-six").sensors.size(), 6U);
 }
 
 TEST(Rig, AeriesTwoLooksAsDocumented) {
@@ -57,7 +58,28 @@ TEST(Rig, ReadsSensorsWithTheirMounts) {
   EXPECT_EQ(rig.sensors[1].lidar.rows, FmcwLidarConfig{}.rows);
 }
 
+TEST(Rig, WithoutNoiseNothingErrs) {
+  for (const char* name : {"aeries-ii-real", "radar-4d-real"}) {
+    Rig rig = without_noise(find_rig(name));
+    SensorConfig& sensor = rig.sensors.front();
+    SensorConfig perfect;
+    for (const ConfigField& field : fields(sensor)) {
+      for (const ConfigField& expected : fields(perfect)) {
+        const bool is_error =
+            field.key.find("_error.") != std::string::npos || field.key.find("timing.") != std::string::npos;
+        if (field.key == expected.key && is_error) {
+          EXPECT_EQ(value_text(field), value_text(expected)) << field.key;
+        }
+      }
+    }
+    EXPECT_EQ(rig.vibration.wheel.amplitude_mm, 0.0);
+    EXPECT_GT(find_rig(name).vibration.wheel.amplitude_mm, 0.0);
+  }
+}
+
 TEST(Rig, RefusalsNameFileLineAndRange) {
+  const std::string band = refusal("vibration:\n  wheel: {low_hz: 20}\nsensors:\n  - name: a\n");
+  EXPECT_NE(band.find("high_hz"), std::string::npos) << band;
   const std::string range = refusal("sensors:\n  - name: a\n    lidar:\n      rows: 0\n");
   EXPECT_NE(range.find("car.yaml: line 4"), std::string::npos) << range;
   EXPECT_NE(range.find("1 to 1024"), std::string::npos) << range;

@@ -14,9 +14,27 @@ constexpr double kRadians = std::numbers::pi / 180.0;
 double cell_angle(int i, int n, double fov_deg) { return fov_deg * kRadians * (0.5 - (i + 0.5) / n); }
 
 PatternRay grid_ray(const FmcwLidarConfig& config, int column, int row) {
+  const int beam = config.row_by_row ? row / (config.rows / config.beams) : row % config.beams;
+  const int face = config.face_per_scan ? 0 : column * config.faces / config.columns;
   return {cell_angle(column, config.columns, config.horizontal_fov_deg),
           config.vertical_center_deg * kRadians + cell_angle(row, config.rows, config.vertical_fov_deg),
-          static_cast<std::uint16_t>(row)};
+          static_cast<std::uint16_t>(row), static_cast<std::uint8_t>(beam), static_cast<std::uint8_t>(face)};
+}
+
+/// Place of the i-th ray of a scan.
+struct Cell {
+  int column = 0;
+  int row = 0;
+};
+
+Cell cell_of_ray(const FmcwLidarConfig& config, int i) {
+  if (!config.row_by_row) {
+    return {i / config.rows, i % config.rows};
+  }
+  // Each of the beams makes one ray, then the next column, then the next row of their bands.
+  const int beam = i % config.beams;
+  const int step = i / config.beams;
+  return {step % config.columns, beam * (config.rows / config.beams) + step / config.columns};
 }
 
 }  // namespace
@@ -26,9 +44,8 @@ ScanPattern scan_pattern(const FmcwLidarConfig& config) {
   Firing firing;
   const int rays = config.columns * config.rows;
   for (int i = 0; i < rays; ++i) {
-    const int column = config.row_by_row ? i % config.columns : i / config.rows;
-    const int row = config.row_by_row ? i / config.columns : i % config.rows;
-    firing.rays.push_back(grid_ray(config, column, row));
+    const Cell cell = cell_of_ray(config, i);
+    firing.rays.push_back(grid_ray(config, cell.column, cell.row));
     if (firing.rays.size() == static_cast<std::size_t>(config.rows)) {
       firing.time_s = config.sweep_s * static_cast<double>(pattern.size()) / config.columns;
       pattern.push_back(std::move(firing));

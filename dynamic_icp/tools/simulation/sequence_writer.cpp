@@ -122,6 +122,8 @@ void SequenceWriter::add(const SimulatedFrame& frame, std::size_t sensor) {
   counts_.points += frame.scan.bodies.size();
   counts_.mixed_points += count_kind(ReturnKind::kMixed);
   counts_.rain_points += count_kind(ReturnKind::kRain);
+  counts_.false_points +=
+      count_kind(ReturnKind::kSpray) + count_kind(ReturnKind::kWindow) + count_kind(ReturnKind::kGhost);
   counts_.objects += frame.objects.size();
   for (const ObjectTruth& object : frame.objects) {
     counts_.moving_points += object.points;
@@ -154,6 +156,7 @@ void SequenceWriter::finish(std::string_view version) {
                      {"moving_points", counts_.moving_points},
                      {"mixed_points", counts_.mixed_points},
                      {"rain_points", counts_.rain_points},
+                     {"false_points", counts_.false_points},
                      {"path_length_m", counts_.path_length_m},
                      {"static_triangles", world.statics.triangles.size()},
                      {"moving_bodies", world.bodies.size()}};

@@ -35,8 +35,9 @@ struct SequenceCounts {
   std::size_t moving_points = 0;
   std::size_t mixed_points = 0;
   std::size_t rain_points = 0;
-  std::size_t objects = 0;     ///< object records: one object in two scans counts twice
-  double path_length_m = 0.0;  ///< of the first sensor, from scan to scan
+  std::size_t false_points = 0;  ///< spray, the window, mirror images
+  std::size_t objects = 0;       ///< object records: one object in two scans counts twice
+  double path_length_m = 0.0;    ///< of the first sensor, from scan to scan
 };
 
 /// Writes a sequence scan by scan with its truth (docs/simulator.md): points in the chosen layout, the truth of each

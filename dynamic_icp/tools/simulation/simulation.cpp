@@ -4,13 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "dynamic_icp/method/base/error.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
 
-constexpr std::uint64_t kNoise = 1;  // the layout is another fork of the same seed
+// Forks of the seed, besides that of the layout.
+constexpr std::uint64_t kNoise = 1;
+constexpr std::uint64_t kVibration = 2;
 
 // A body whose middle moves slower than this and that turns slower than a tenth of it (rad/s) stands.
 constexpr double kStandingSpeed = 0.01;  // m/s
@@ -53,6 +56,7 @@ ConfigFields fields(SimulationConfig& config) {
   for (const ConfigField& field : scenes::fields(config.scene)) {
     list.push_back(field);
   }
+  append_fields(list, "vibration", world::fields(config.rig.vibration));
   return list;
 }
 
@@ -70,10 +74,15 @@ Simulation::Simulation(const scenes::SceneKind& kind, const SimulationConfig& co
       scene_(scenes::build_scene(kind, config.scene, config.frames / rate_hz(config))),
       caster_(scene_.world),
       noise_(RandomSource(static_cast<std::uint64_t>(config.scene.seed)).fork(kNoise)) {
-  for (const SensorConfig& sensor : config_.rig.sensors) {
+  const std::vector<SensorConfig>& sensors = config_.rig.sensors;
+  scene_.vehicle =
+      world::vibrating(std::move(scene_.vehicle), T_vehicle_sensor(sensors.front().mount), config_.rig.vibration,
+                       RandomSource(static_cast<std::uint64_t>(config.scene.seed)).fork(kVibration));
+  for (const SensorConfig& sensor : sensors) {
     sensors_.emplace_back([vehicle = scene_.vehicle, T = T_vehicle_sensor(sensor.mount)](double time_s) {
       return world::mounted(vehicle(time_s), T);
     });
+    units_.emplace_back(sensor.lidar, sensor.name);
     patterns_.push_back(scan_pattern(sensor.lidar));
   }
 }
@@ -84,19 +93,37 @@ Stamp Simulation::stamp(std::size_t index) const {
   return {std::llround(static_cast<double>(index) * 1e9 / rate_hz(config_))};
 }
 
+ScanTime Simulation::scan_time(std::size_t index, std::size_t sensor) const {
+  return simulation::scan_time(units_.at(sensor).config.timing, stamp(index), 1.0 / rate_hz(config_),
+                               noise_.fork(sensor).fork(index));
+}
+
 SensorState Simulation::sensor_state(double time_s, std::size_t sensor) const {
   const world::MotionState motion = sensors_.at(sensor)(time_s);
   const Eigen::Matrix3d R_sensor_world = motion.T_world_body.linear().transpose();
   return {motion.T_world_body, R_sensor_world * motion.velocity_world, R_sensor_world * motion.angular_velocity_world};
 }
 
+ObjectTruth Simulation::object(std::int32_t id, double time_s, std::size_t sensor) const {
+  const std::vector<world::MovingBody>& bodies = scene_.world.bodies;
+  const world::MovingBody& body =
+      *std::find_if(bodies.begin(), bodies.end(), [&](const world::MovingBody& one) { return one.id == id; });
+  return object_truth(scene_.world, body, body.trajectory(time_s), sensor_state(time_s, sensor).T_world_sensor);
+}
+
 SimulatedFrame Simulation::frame(std::size_t index, const Workers& workers, std::size_t sensor) const {
-  const double time_s = seconds_between(Stamp{}, stamp(index));
+  const ScanTime time = scan_time(index, sensor);
+  const double time_s = seconds_between(Stamp{}, time.begin);
   SimulatedFrame frame;
   frame.index = index;
+  frame.begin = time.begin;
   frame.sensor = sensor_state(time_s, sensor);
-  frame.scan = simulate_scan({scene_.world, caster_, sensors_.at(sensor)}, patterns_[sensor],
-                             config_.rig.sensors[sensor].lidar, stamp(index), noise_.fork(sensor).fork(index), workers);
+  const RandomSource noise = noise_.fork(sensor);
+  const SensorUnit& unit = units_[sensor];
+  const double drift_mps = unit.doppler.drift_mps(index, 1.0 / rate_hz(config_), noise);
+  frame.scan = simulate_scan({scene_.world, caster_, sensors_.at(sensor)}, patterns_[sensor], unit,
+                             {time.begin, index, drift_mps}, noise.fork(index), workers);
+  frame.scan.measured.stamp = time.stamp;
 
   std::vector<std::size_t> points(scene_.world.bodies.size() + 1, 0);
   for (const std::int32_t id : frame.scan.bodies) {

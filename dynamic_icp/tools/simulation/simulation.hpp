@@ -50,9 +50,10 @@ struct SensorState {
   Eigen::Vector3d angular_velocity_sensor;  ///< rad/s, along the sensor's axes
 };
 
-/// One scan of one sensor with the whole truth about it; sensor and bodies as they are at the scan's stamp.
+/// One scan of one sensor with the whole truth about it; sensor and bodies as they are at the scan's begin.
 struct SimulatedFrame {
   std::size_t index = 0;
+  Stamp begin;  ///< on the clock of the drive; `scan.measured.stamp` is what the sensor says
   SimulatedScan scan;
   SensorState sensor;
   std::vector<ObjectTruth> objects;  ///< bodies that move now and gave at least one return
@@ -77,10 +78,16 @@ class Simulation {
   [[nodiscard]] const world::Trajectory& sensor(std::size_t sensor = 0) const { return sensors_.at(sensor); }
   [[nodiscard]] SensorState sensor_state(double time_s, std::size_t sensor = 0) const;
 
-  /// When a scan begins: whole nanoseconds, 0 for the first.
+  /// The truth about a moving body seen from a sensor at any time; `points` is 0. The body must exist.
+  [[nodiscard]] ObjectTruth object(std::int32_t id, double time_s, std::size_t sensor = 0) const;
+
+  /// When a scan is due: whole nanoseconds, 0 for the first.
   [[nodiscard]] Stamp stamp(std::size_t index) const;
 
-  /// Makes one scan of one sensor. The bits depend on scene, configuration, index and sensor only.
+  /// When a sensor begins a scan, what stamp it gives it, and whether the scan is lost.
+  [[nodiscard]] ScanTime scan_time(std::size_t index, std::size_t sensor = 0) const;
+
+  /// Makes one scan of one sensor, lost or not. The bits depend on scene, configuration, index and sensor only.
   [[nodiscard]] SimulatedFrame frame(std::size_t index, const Workers& workers, std::size_t sensor = 0) const;
 
  private:
@@ -89,6 +96,7 @@ class Simulation {
   scenes::Scene scene_;
   world::RayCaster caster_;
   std::vector<world::Trajectory> sensors_;
+  std::vector<SensorUnit> units_;
   std::vector<ScanPattern> patterns_;
   RandomSource noise_;
 };

@@ -2,9 +2,13 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/simulation/simulation.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+
+#include "testing/scanned_worlds.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
@@ -107,6 +111,48 @@ TEST(Simulation, SensorsOfARigSeeTheSameWorldFromTheirMounts) {
       T_vehicle_world(a, config.rig.sensors[0].mount).isApprox(T_vehicle_world(b, config.rig.sensors[1].mount), 1e-12));
   EXPECT_EQ(a.scan.measured.stamp, b.scan.measured.stamp);
   EXPECT_NE(a.scan.true_range, b.scan.true_range);
+}
+
+TEST(Simulation, VibrationIsInTruthAndDoppler) {
+  SimulationConfig config = small_street();
+  config.rig.sensors.front().lidar = without_noise(config.rig.sensors.front().lidar);
+  const Simulation still(scenes::find_scene("street"), config);
+  config.rig.vibration.wheel = {7.0, 13.0, 1.5, 0.03};
+  const Simulation shaken(scenes::find_scene("street"), config);
+  Statistics up;
+  for (double t = 0.0; t < 40.0; t += 0.01) {
+    const Eigen::Isometry3d moved = still.sensor()(t).T_world_body.inverse() * shaken.sensor()(t).T_world_body;
+    up.add(moved.translation().z());
+  }
+  EXPECT_NEAR(1e3 * up.deviation(), 1.5 / std::sqrt(2.0), 0.03);
+  const SimulatedFrame frame = shaken.frame(3, Workers(1));
+  for (std::size_t i = 0; i < frame.scan.bodies.size(); ++i) {
+    const double time_s = seconds_between(Stamp{}, frame.begin) + frame.scan.measured.times[i];
+    if (frame.scan.bodies[i] == 0) {
+      const Vector3d velocity_sensor = shaken.sensor_state(time_s).velocity_sensor;
+      EXPECT_NEAR(frame.scan.measured.doppler[i], -frame.scan.measured.points[i].normalized().dot(velocity_sensor),
+                  1e-9);
+    }
+  }
+}
+
+TEST(Simulation, SensorsOfARigShakeAsOneBody) {
+  SimulationConfig config = small_street();
+  SensorConfig second = config.rig.sensors.front();
+  second.name = "second";
+  second.mount = {-1.0, -0.7, 2.2, 0.0, 3.0, 170.0};
+  config.rig.sensors.push_back(second);
+  config.rig.vibration.engine = {20.0, 30.0, 2.0, 0.5};
+  const Simulation simulation(scenes::find_scene("street"), config);
+  const auto T_first_second = [&](double t) {
+    return simulation.sensor(0)(t).T_world_body.inverse() * simulation.sensor(1)(t).T_world_body;
+  };
+  for (double t = 0.0; t < 1.0; t += 0.013) {
+    EXPECT_TRUE(T_first_second(t).isApprox(T_first_second(0.0), 1e-12));
+    const Eigen::Isometry3d T_vehicle =
+        simulation.sensor(0)(t).T_world_body * T_vehicle_sensor(config.rig.sensors[0].mount).inverse();
+    EXPECT_TRUE(simulation.scene().vehicle(t).T_world_body.isApprox(T_vehicle, 1e-12)) << "poses of the vehicle, too";
+  }
 }
 
 }  // namespace

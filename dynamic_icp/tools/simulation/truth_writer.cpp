@@ -19,6 +19,12 @@ using Json = nlohmann::ordered_json;
 
 constexpr int kMotionSamples = 20;  // a scan
 
+constexpr const char* kErrorFolder = "doppler_error";
+
+bool has_systematic_error(const FmcwLidarConfig& lidar) {
+  return lidar.doppler_bias_mps != 0.0 || has_systematic_error(lidar.doppler_error);
+}
+
 Json to_json(const Eigen::Vector3d& v) { return {v.x(), v.y(), v.z()}; }
 
 Json object_json(const ObjectTruth& object) {
@@ -73,10 +79,18 @@ TruthWriter::TruthWriter(const fs::path& folder, const Simulation& simulation, s
       poses_(folder / "ref_poses.txt"),
       ego_(folder / "ego.jsonl"),
       motion_(folder / "motion.csv"),
-      objects_(folder / "objects.jsonl") {
+      objects_(folder / "objects.jsonl"),
+      systematic_error_(has_systematic_error(simulation.config().rig.sensors.at(sensor).lidar)) {
   formats::make_folder(folder_ / "labels");
   if (options_.point_truth) {
     formats::make_folder(folder_ / "truth");
+  }
+  if (options_.point_truth && systematic_error_) {
+    formats::make_folder(folder_ / kErrorFolder);
+  }
+  if (simulation.config().rig.sensors.at(sensor).lidar.timing.stamp_jitter_s > 0.0) {
+    stamps_.emplace(folder / "stamps.csv");
+    stamps_->write("index,stamp,begin\n");
   }
   if (options_.vehicle_poses) {
     write_calibration(folder_, T_vehicle_sensor(simulation_.config().rig.sensors.at(sensor_).mount));
@@ -85,7 +99,7 @@ TruthWriter::TruthWriter(const fs::path& folder, const Simulation& simulation, s
 }
 
 void TruthWriter::add(const SimulatedFrame& frame) {
-  const std::string name = fmt::format("{:05}.bin", frame.index + 1);
+  const std::string name = fmt::format("{:05}.bin", scans_ + 1);
   formats::write_values<std::int32_t>(folder_ / "labels" / name, labels_of(frame));
   if (options_.point_truth) {
     std::vector<double> truth;
@@ -96,13 +110,20 @@ void TruthWriter::add(const SimulatedFrame& frame) {
     }
     formats::write_values<double>(folder_ / "truth" / name, truth);
   }
+  if (options_.point_truth && systematic_error_) {
+    formats::write_values<double>(folder_ / kErrorFolder / name, frame.scan.systematic_error);
+  }
+  if (stamps_) {
+    stamps_->write(fmt::format("{},{},{}\n", scans_, format_seconds(written_stamp(frame)),
+                               format_seconds({frame.begin.ns + options_.epoch_ns})));
+  }
   if (scans_ == 0) {
     T_first_world_ = frame.sensor.T_world_sensor.inverse();
   }
   add_pose(frame);
   add_objects(frame);
   add_ego(frame);
-  add_motion(frame);
+  add_motion_until(frame.index + 1);
   ++scans_;
 }
 
@@ -133,19 +154,26 @@ void TruthWriter::add_ego(const SimulatedFrame& frame) {
                          to_json(frame.sensor.angular_velocity_sensor).dump()));
 }
 
-void TruthWriter::add_motion(const SimulatedFrame& frame) {
-  const Stamp begin = simulation_.stamp(frame.index);
-  const Stamp end = simulation_.stamp(frame.index + 1);
-  for (int i = 0; i < kMotionSamples; ++i) {
-    const Stamp stamp{begin.ns + (end.ns - begin.ns) * i / kMotionSamples};
-    const SensorState state = simulation_.sensor_state(seconds_between(Stamp{}, stamp), sensor_);
-    motion_.write(fmt::format("{},{},{},{}\n", format_seconds({stamp.ns + options_.epoch_ns}),
-                              pose_text(T_first_world_ * state.T_world_sensor, ','), vector_text(state.velocity_sensor),
-                              vector_text(state.angular_velocity_sensor)));
+/// Of the scans before this one that have no rows yet, lost ones, too.
+void TruthWriter::add_motion_until(std::size_t scan) {
+  for (; motion_scans_ < scan; ++motion_scans_) {
+    const Stamp begin = simulation_.stamp(motion_scans_);
+    const Stamp end = simulation_.stamp(motion_scans_ + 1);
+    for (int i = 0; i < kMotionSamples; ++i) {
+      const Stamp stamp{begin.ns + (end.ns - begin.ns) * i / kMotionSamples};
+      const SensorState state = simulation_.sensor_state(seconds_between(Stamp{}, stamp), sensor_);
+      motion_.write(fmt::format("{},{},{},{}\n", format_seconds({stamp.ns + options_.epoch_ns}),
+                                pose_text(T_first_world_ * state.T_world_sensor, ','),
+                                vector_text(state.velocity_sensor), vector_text(state.angular_velocity_sensor)));
+    }
   }
 }
 
 void TruthWriter::finish() {
+  add_motion_until(simulation_.size());
+  if (stamps_) {
+    stamps_->close();
+  }
   poses_.close();
   ego_.close();
   motion_.close();
@@ -158,7 +186,7 @@ Stamp TruthWriter::written_stamp(const SimulatedFrame& frame) const {
 
 std::string TruthWriter::line_start(const SimulatedFrame& frame) const {
   // The exact stamp as a number, which a double could not hold.
-  return fmt::format("{{\"index\":{},\"timestamp\":{}", frame.index, format_seconds(written_stamp(frame)));
+  return fmt::format("{{\"index\":{},\"timestamp\":{}", scans_, format_seconds(written_stamp(frame)));
 }
 
 }  // namespace dynamic_icp::simulation

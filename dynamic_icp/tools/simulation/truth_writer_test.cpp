@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/simulation/truth_writer.hpp"
 
+#include <algorithm>
 #include <cstdint>
+#include <filesystem>
 #include <sstream>
 #include <string>
+#include <vector>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include "testing/written_files.hpp"
@@ -15,10 +19,15 @@ namespace {
 
 class TruthFiles : public WrittenFiles {
  protected:
-  void write(const TruthOptions& options = {}) const {
-    TruthWriter writer(folder_, simulation_, 0, options);
-    for (std::size_t i = 0; i < simulation_.size(); ++i) {
-      writer.add(simulation_.frame(i, workers_));
+  void write(const TruthOptions& options = {}) const { write(simulation_, options); }
+
+  /// Without the scans that are lost.
+  void write(const Simulation& simulation, const TruthOptions& options) const {
+    TruthWriter writer(folder_, simulation, 0, options);
+    for (std::size_t i = 0; i < simulation.size(); ++i) {
+      if (!simulation.scan_time(i).missing) {
+        writer.add(simulation.frame(i, workers_));
+      }
     }
     writer.finish();
   }
@@ -133,6 +142,75 @@ TEST_F(TruthFiles, LabelsAndPointTruthFollowTheScan) {
     for (std::size_t k = 0; k < frame.scan.bodies.size(); ++k) {
       ASSERT_EQ(truth[2 * k], frame.scan.true_range[k]);
       ASSERT_EQ(truth[2 * k + 1], frame.scan.true_doppler[k]);
+    }
+  }
+}
+
+TEST_F(TruthFiles, LostScansAreGapsInTimeAndNotInNumbers) {
+  SimulationConfig lossy = config();
+  lossy.frames = 12;
+  lossy.rig.sensors.front().lidar.timing.missing_scan_rate = 0.4;
+  const Simulation simulation(scenes::find_scene("street"), lossy);
+  write(simulation, {});
+  std::vector<std::string> stamps;
+  for (std::size_t i = 0; i < simulation.size(); ++i) {
+    if (!simulation.scan_time(i).missing) {
+      stamps.push_back(format_seconds(simulation.stamp(i)));
+    }
+  }
+  ASSERT_TRUE(stamps.size() > 3 && stamps.size() < 11);
+  const std::vector<Row> rows = poses();
+  const auto objects = json_lines(folder_ / "objects.jsonl");
+  ASSERT_EQ(rows.size(), stamps.size());
+  ASSERT_EQ(objects.size(), stamps.size());
+  for (std::size_t i = 0; i < stamps.size(); ++i) {
+    EXPECT_EQ(rows[i].stamp, stamps[i]);
+    EXPECT_EQ(objects[i]["index"], i);
+    EXPECT_TRUE(std::filesystem::exists(folder_ / "labels" / fmt::format("{:05}.bin", i + 1)));
+  }
+  const std::string motion = content(folder_ / "motion.csv");
+  EXPECT_EQ(std::count(motion.begin(), motion.end(), '\n'), 1 + 20 * 12) << "the motion goes on";
+}
+
+TEST_F(TruthFiles, StampsThatErrComeWithTheTimeOfTheBegin) {
+  SimulationConfig erring = config();
+  erring.rig.sensors.front().lidar.timing.stamp_jitter_s = 0.002;
+  const Simulation simulation(scenes::find_scene("street"), erring);
+  write(simulation, {});
+  std::istringstream text(content(folder_ / "stamps.csv"));
+  std::string line;
+  std::getline(text, line);
+  EXPECT_EQ(line, "index,stamp,begin");
+  const std::vector<Row> rows = poses();
+  const Eigen::Isometry3d T_first_world = simulation.sensor_state(0.0).T_world_sensor.inverse();
+  for (std::size_t i = 0; i < 4; ++i) {
+    const ScanTime time = simulation.scan_time(i);
+    EXPECT_NE(time.stamp, time.begin);
+    std::getline(text, line);
+    EXPECT_EQ(line, fmt::format("{},{},{}", i, format_seconds(time.stamp), format_seconds(time.begin)));
+    EXPECT_EQ(rows[i].stamp, format_seconds(time.stamp));
+    const Eigen::Isometry3d expected = T_first_world * simulation.sensor()(0.1 * static_cast<double>(i)).T_world_body;
+    EXPECT_LT((rows[i].T.matrix() - expected.matrix()).norm(), 5e-9) << "of the begin";
+  }
+  write();
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "doppler_error"));
+}
+
+TEST_F(TruthFiles, SystematicDopplerErrorIsWrittenPerPoint) {
+  SimulationConfig erring = config();
+  FmcwLidarConfig& lidar = erring.rig.sensors.front().lidar;
+  lidar = without_noise(lidar);
+  lidar.doppler_bias_mps = 0.1;
+  lidar.doppler_error.direction_mps = 0.15;
+  lidar.doppler_error.drift_mps_per_sqrt_s = 0.1;
+  const Simulation simulation(scenes::find_scene("street"), erring);
+  write(simulation, {0, false, true});
+  for (std::size_t i = 0; i < 4; ++i) {
+    const SimulatedScan scan = simulation.frame(i, workers_).scan;
+    const auto errors = binary<double>(folder_ / "doppler_error" / fmt::format("{:05}.bin", i + 1));
+    ASSERT_EQ(errors.size(), scan.bodies.size());
+    for (std::size_t k = 0; k < errors.size(); ++k) {
+      ASSERT_NEAR(errors[k], scan.measured.doppler[k] - scan.true_doppler[k], 1e-9);
     }
   }
 }

@@ -16,4 +16,11 @@ MotionState mounted(const MotionState& body, const Eigen::Isometry3d& T_body_par
   return part;
 }
 
+MotionState moving_part(const MotionState& body, const MotionState& part) {
+  MotionState moving = mounted(body, part.T_world_body);
+  moving.velocity_world += body.T_world_body.linear() * part.velocity_world;
+  moving.angular_velocity_world += body.T_world_body.linear() * part.angular_velocity_world;
+  return moving;
+}
+
 }  // namespace dynamic_icp::world

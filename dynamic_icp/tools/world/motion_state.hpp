@@ -26,4 +26,7 @@ Eigen::Vector3d point_velocity(const MotionState& body, const Eigen::Vector3d& p
 /// The motion of something fixed to a body at `T_body_part`: its velocity has the lever arm's share.
 MotionState mounted(const MotionState& body, const Eigen::Isometry3d& T_body_part);
 
+/// The motion of something that moves on a body: `part` is its motion in the body's frame, in place of the world.
+MotionState moving_part(const MotionState& body, const MotionState& part);
+
 }  // namespace dynamic_icp::world

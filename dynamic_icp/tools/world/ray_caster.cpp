@@ -115,6 +115,7 @@ class RayCaster::SearchTree {
 
   [[nodiscard]] Eigen::Vector3d normal(std::size_t triangle) const { return triangle_normal(*mesh_, triangle); }
   [[nodiscard]] double reflectivity(std::size_t triangle) const { return mesh_->reflectivity[triangle]; }
+  [[nodiscard]] bool foliage(std::size_t triangle) const { return !mesh_->foliage.empty() && mesh_->foliage[triangle]; }
 
  private:
   void attach_triangles(RTCDevice device) {
@@ -165,8 +166,8 @@ std::optional<RayHit> RayCaster::cast(const Ray& ray, std::span<const BodyAt> bo
   std::optional<RayHit> nearest;
   Ray rest = ray;
   if (const auto hit = statics_->nearest(ray.origin_world, ray.direction_world, ray.max_range_m)) {
-    nearest =
-        RayHit{hit->range_m, statics_->normal(hit->triangle), statics_->reflectivity(hit->triangle), std::nullopt};
+    nearest = RayHit{hit->range_m, statics_->normal(hit->triangle), statics_->reflectivity(hit->triangle), std::nullopt,
+                     statics_->foliage(hit->triangle)};
     rest.max_range_m = hit->range_m;
   }
   for (std::size_t i = 0; i < bodies.size(); ++i) {
@@ -179,7 +180,7 @@ std::optional<RayHit> RayCaster::cast(const Ray& ray, std::span<const BodyAt> bo
     if (const auto hit = shape.nearest(T_body_world * ray.origin_world, T_body_world.linear() * ray.direction_world,
                                        rest.max_range_m)) {
       nearest = RayHit{hit->range_m, T_world_body.linear() * shape.normal(hit->triangle),
-                       shape.reflectivity(hit->triangle), i};
+                       shape.reflectivity(hit->triangle), i, shape.foliage(hit->triangle)};
       rest.max_range_m = hit->range_m;
     }
   }

@@ -25,6 +25,7 @@ struct RayHit {
   Eigen::Vector3d normal_world;     ///< outward unit normal of the surface
   double reflectivity = 0.0;        ///< of the surface, see TriangleMesh
   std::optional<std::size_t> body;  ///< index into World::bodies; empty on the static surface
+  bool foliage = false;             ///< whether wind moves the surface
 };
 
 /// Casts rays into a world with Embree. The static surface and each shape get a search tree once; a ray meets a moving

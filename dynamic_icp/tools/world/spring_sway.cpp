@@ -2,30 +2,23 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/world/spring_sway.hpp"
 
-#include <cmath>
 #include <numbers>
+
+#include "dynamic_icp/tools/world/sine_wave.hpp"
 
 namespace dynamic_icp::world {
 
 using std::numbers::pi;
 
 SwayFunction spring_sway(double scale, const RandomSource& random) {
-  struct Wave {
-    double amplitude;
-    double omega;
-    double phase;
-
-    [[nodiscard]] double value(double t) const { return amplitude * std::sin(omega * t + phase); }
-    [[nodiscard]] double rate(double t) const { return amplitude * omega * std::cos(omega * t + phase); }
-  };
   const auto wave = [&](std::uint64_t stream, double amplitude, double low_hz, double high_hz) {
-    return Wave{scale * amplitude, 2.0 * pi * random.uniform(2 * stream, low_hz, high_hz),
-                random.uniform(2 * stream + 1, 0.0, 2.0 * pi)};
+    return SineWave{scale * amplitude, 2.0 * pi * random.uniform(2 * stream, low_hz, high_hz),
+                    random.uniform(2 * stream + 1, 0.0, 2.0 * pi)};
   };
   constexpr double kDegree = pi / 180.0;
-  const Wave heave = wave(0, 0.012, 0.9, 1.4);
-  const Wave pitch = wave(1, 0.4 * kDegree, 0.6, 1.1);
-  const Wave roll = wave(2, 0.4 * kDegree, 0.4, 0.8);
+  const SineWave heave = wave(0, 0.012, 0.9, 1.4);
+  const SineWave pitch = wave(1, 0.4 * kDegree, 0.6, 1.1);
+  const SineWave roll = wave(2, 0.4 * kDegree, 0.4, 0.8);
   return [heave, pitch, roll](double t, const PlanarState&) {
     return Sway{heave.value(t), pitch.value(t), roll.value(t), heave.rate(t), pitch.rate(t), roll.rate(t)};
   };

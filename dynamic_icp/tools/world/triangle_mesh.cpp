@@ -13,6 +13,11 @@ TriangleMesh painted(TriangleMesh mesh, double reflectivity) {
   return mesh;
 }
 
+TriangleMesh leafy(TriangleMesh mesh) {
+  mesh.foliage.assign(mesh.triangles.size(), true);
+  return mesh;
+}
+
 void append(TriangleMesh& mesh, const TriangleMesh& part, const Eigen::Isometry3d& T_mesh_part) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Eigen::Vector3d& vertex : part.vertices) {
@@ -22,6 +27,11 @@ void append(TriangleMesh& mesh, const TriangleMesh& part, const Eigen::Isometry3
     mesh.triangles.push_back({first + a, first + b, first + c});
   }
   mesh.reflectivity.insert(mesh.reflectivity.end(), part.reflectivity.begin(), part.reflectivity.end());
+  if (!mesh.foliage.empty() || !part.foliage.empty()) {
+    mesh.foliage.resize(mesh.triangles.size() - part.triangles.size(), false);
+    mesh.foliage.insert(mesh.foliage.end(), part.foliage.begin(), part.foliage.end());
+    mesh.foliage.resize(mesh.triangles.size(), false);
+  }
 }
 
 Eigen::AlignedBox3d bounds(const TriangleMesh& mesh) {

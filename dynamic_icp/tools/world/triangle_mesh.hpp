@@ -20,6 +20,7 @@ struct TriangleMesh {
   /// One per triangle: the share of infrared light it sends back diffusely. White paper has 0.9; retroreflectors send
   /// more towards the light than any diffuse surface and may have more than 1.
   std::vector<float> reflectivity;
+  std::vector<bool> foliage;  ///< one per triangle: whether wind moves it; empty where it moves none
 };
 
 /// Reflectivities of common surfaces in the near infrared. Leaves are bright there, water is a mirror.
@@ -41,6 +42,9 @@ constexpr double kClothes = 0.4;
 
 /// The mesh with this reflectivity on all its triangles.
 TriangleMesh painted(TriangleMesh mesh, double reflectivity);
+
+/// The mesh with wind moving all its triangles.
+TriangleMesh leafy(TriangleMesh mesh);
 
 /// Adds a copy of `part`, moved by `T_mesh_part`, to `mesh`.
 void append(TriangleMesh& mesh, const TriangleMesh& part,
