@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/motion/sweep_from_doppler.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -160,25 +161,26 @@ Solution solve(const std::vector<Stretch>& stretches) {
 
 }  // namespace
 
-SweepSums sweep_sums(const RawScan& raw, const Scan& static_points, double time_s, const Workers& workers) {
+SweepSums sweep_sums(const RawScan& raw, const Scan& scan, std::span<const std::uint32_t> rows, double time_s,
+                     const Workers& workers) {
   const std::vector<double> by_azimuth = declared_times(raw.points, {.declared_duration_s = 1.0});
   const std::vector<double> as_stored =
       declared_times(raw.points, {.declared_duration_s = 1.0, .declared_as_stored = true});
   SweepSums sums;
   sums.time_s = time_s;
-  sums.products = workers.sum_blocks(
-      static_points.size(), kBlock, SweepSums::Matrix::Zero().eval(), [&](std::size_t begin, std::size_t end) {
-        SweepSums::Matrix block = SweepSums::Matrix::Zero();
-        Eigen::Matrix<double, 11, 1> columns;
-        for (std::size_t row = begin; row < end; ++row) {
-          const std::uint32_t record = static_points.records()[row];
-          const Eigen::Vector3d direction = -static_points.directions()[row];
-          columns << direction, 1.0, direction * (by_azimuth[record] - 0.5),
-              direction * (as_stored[record] - 0.5), static_points.doppler()[row];
-          block.selfadjointView<Eigen::Lower>().rankUpdate(columns);
-        }
-        return SweepSums::Matrix(block.selfadjointView<Eigen::Lower>());
-      });
+  sums.products = workers.sum_blocks(rows.size(), kBlock, SweepSums::Matrix::Zero().eval(),
+                                     [&](std::size_t begin, std::size_t end) {
+                                       SweepSums::Matrix block = SweepSums::Matrix::Zero();
+                                       Eigen::Matrix<double, 11, 1> columns;
+                                       for (const std::uint32_t row : rows.subspan(begin, end - begin)) {
+                                         const std::uint32_t record = scan.records()[row];
+                                         const Eigen::Vector3d direction = -scan.directions()[row];
+                                         columns << direction, 1.0, direction * (by_azimuth[record] - 0.5),
+                                             direction * (as_stored[record] - 0.5), scan.doppler()[row];
+                                         block.selfadjointView<Eigen::Lower>().rankUpdate(columns);
+                                       }
+                                       return SweepSums::Matrix(block.selfadjointView<Eigen::Lower>());
+                                     });
   return sums;
 }
 

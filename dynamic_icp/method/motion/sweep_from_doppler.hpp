@@ -2,8 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 #include <span>
 #include <vector>
@@ -20,8 +20,8 @@
 // place q_i of a point in an order, from -1/2 to 1/2, a sweep that takes D in this order measures
 //   s_i = -u_i . (v_k + q_i (D a_k + c)) + b
 // of the static points of scan k: a_k is the acceleration, v_k the velocity in the middle of the sweep, b the constant
-// error of the Doppler, and c takes in constant errors that look like a change of velocity. D is zero for scans taken in
-// an instant and negative for sweeps in the opposite order.
+// error of the Doppler, and c takes in constant errors that look like a change of velocity. D is zero for scans taken
+// in an instant and negative for sweeps in the opposite order.
 namespace dynamic_icp::motion {
 
 /// Orders in which the points of a scan may have been measured.
@@ -36,17 +36,19 @@ inline constexpr std::size_t kPointOrders = 2;
 struct SweepSums {
   using Matrix = Eigen::Matrix<double, 11, 11>;
 
-  double time_s = 0.0;              ///< of the stamp, after any fixed time
+  double time_s = 0.0;               ///< of the stamp, after any fixed time
   Matrix products = Matrix::Zero();  ///< symmetric
 };
 
-/// `static_points` are some of `raw`; their records say which. The places by azimuth are those of `declared_times`.
-SweepSums sweep_sums(const RawScan& raw, const Scan& static_points, double time_s, const Workers& workers);
+/// `scan` is made of `raw`, and `rows` are those of its points that are static. The places by azimuth are those of
+/// `declared_times`.
+SweepSums sweep_sums(const RawScan& raw, const Scan& scan, std::span<const std::uint32_t> rows, double time_s,
+                     const Workers& workers);
 
 /// How long sweeps take in an order.
 struct SweepDuration {
-  double duration_s = 0.0;                                    ///< D
-  double sigma_s = std::numeric_limits<double>::infinity();   ///< its standard deviation; infinite: unobservable
+  double duration_s = 0.0;                                   ///< D
+  double sigma_s = std::numeric_limits<double>::infinity();  ///< its standard deviation; infinite: unobservable
   double explained = 0.0;  ///< how much better than an instant it explains the Doppler: difference of chi squared
 };
 

@@ -26,9 +26,9 @@ struct SweepConfig {
 
 ConfigFields fields(SweepConfig& config);
 
-/// Times (s after the stamp) of points of a scan measured at an even rate. Column by column: the azimuth atan2(y, x) from
-/// one end of the scan to the other is the time; the x axis must look into the scan, so that it does not reach across
-/// the back. As stored: the number of the point is.
+/// Times (s after the stamp) of points of a scan measured at an even rate. Column by column: the azimuth atan2(y, x)
+/// from one end of the scan to the other is the time; the x axis must look into the scan, so that it does not reach
+/// across the back. As stored: the number of the point is.
 std::vector<double> declared_times(std::span<const Eigen::Vector3d> points, const SweepConfig& config);
 
 /// Where the times of the points of a scan come from.

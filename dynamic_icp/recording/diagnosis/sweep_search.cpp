@@ -83,10 +83,11 @@ bool add_stretch(const datasets::Dataset& dataset, const datasets::ScanRange& sc
     if (!raw.times.empty() || raw.doppler_kind == DopplerKind::kCompensated) {
       return false;
     }
-    Scan static_points;
-    if (look_at(raw, workers, &static_points).has_velocity()) {
+    const Scan scan = Scan::from_raw(raw, {}, workers);
+    const DopplerFit fit = fit_doppler(scan, workers);
+    if (fit.has_velocity()) {
       const double time_s = seconds_between(dataset.stamp(scans.begin), dataset.stamp(i));
-      stretches.back().push_back(motion::sweep_sums(raw, static_points, time_s, workers));
+      stretches.back().push_back(motion::sweep_sums(raw, scan, fit.static_rows, time_s, workers));
     } else if (!stretches.back().empty()) {
       stretches.emplace_back();
     }
@@ -116,8 +117,7 @@ SweepSearch judge_sweep(const motion::SweepDuration& by_azimuth, const motion::S
     search.duration_s = sweep_duration(as_stored, period_s);
     search.margin = margin_of(as_stored, period_s);
   } else if (azimuth_fits) {
-    search.hypothesis =
-        by_azimuth.duration_s > 0.0 ? SweepHypothesis::kAzimuthCcw : SweepHypothesis::kAzimuthCw;
+    search.hypothesis = by_azimuth.duration_s > 0.0 ? SweepHypothesis::kAzimuthCcw : SweepHypothesis::kAzimuthCw;
     search.duration_s = sweep_duration(by_azimuth, period_s);
     search.margin = margin_of(by_azimuth, period_s);
   } else {

@@ -30,12 +30,12 @@ std::string_view to_string(SweepHypothesis hypothesis);
 /// What the Doppler of some stretches of a recording says of its sweeps.
 struct SweepSearch {
   SweepHypothesis hypothesis = SweepHypothesis::kUnknown;
-  double duration_s = 0.0;            ///< of a sweep; 0 where none was found
-  double margin = 0.0;                ///< standard errors between what was measured and the limit to other hypotheses
-  motion::SweepDuration by_azimuth;   ///< as measured; negative where clockwise
-  motion::SweepDuration as_stored;    ///< as measured
-  std::size_t scans = 0;              ///< looked at
-  std::string sentence;               ///< for the user
+  double duration_s = 0.0;           ///< of a sweep; 0 where none was found
+  double margin = 0.0;               ///< standard errors between what was measured and the limit to other hypotheses
+  motion::SweepDuration by_azimuth;  ///< as measured; negative where clockwise
+  motion::SweepDuration as_stored;   ///< as measured
+  std::size_t scans = 0;             ///< looked at
+  std::string sentence;              ///< for the user
 
   /// Whether there is a sweep to be declared.
   [[nodiscard]] bool found_sweep() const { return duration_s > 0.0; }

@@ -16,9 +16,9 @@ namespace dynamic_icp::runs {
 
 /// What the diagnosis of a recording says.
 struct RecordingCheck {
-  double period_s = 0.0;              ///< from scan to scan, median; 0 of one scan
-  std::string doppler;                ///< kind and sign, in words
-  std::vector<std::string> warnings;  ///< what seems wrong, in sentences
+  double period_s = 0.0;                        ///< from scan to scan, median; 0 of one scan
+  std::string doppler;                          ///< kind and sign, in words
+  std::vector<std::string> warnings;            ///< what seems wrong, in sentences
   std::optional<diagnosis::SweepSearch> sweep;  ///< of points without times, where it was asked for
 };
 
@@ -38,9 +38,10 @@ struct Needs {
 /// How the user states the correction of a finding, e.g. by the options of a program.
 using FixInWords = std::function<std::string(const diagnosis::Finding&)>;
 
-/// Diagnoses the first scans before a run; sweeps are searched in all of them. Throws DataError where the Doppler has the wrong sign or is of another kind
-/// than stated, or where there is none and the method needs it: every result would be wrong. A sign or kind that the
-/// user states is believed. Messages leave corrections out where `fix_in_words` is empty.
+/// Diagnoses the first scans before a run; sweeps are searched in all of them. Throws DataError where the Doppler has
+/// the wrong sign or is of another kind than stated, or where there is none and the method needs it: every result would
+/// be wrong. A sign or kind that the user states is believed. Messages leave corrections out where `fix_in_words` is
+/// empty.
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
                                const ScansToCheck& scans, const Needs& needs, const FixInWords& fix_in_words = {});
 
