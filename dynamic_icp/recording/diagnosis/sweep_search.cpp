@@ -38,6 +38,11 @@ bool is_sweep(const motion::SweepDuration& measured, double period_s) {
   return margin_of(measured, period_s) > kCertain && std::abs(measured.duration_s) < kMaxSweep * period_s;
 }
 
+/// Longer beyond doubt than any sweep: what was taken for static is not, and nothing follows.
+bool is_absurd(const motion::SweepDuration& measured, double period_s) {
+  return std::abs(measured.duration_s) - kCertain * measured.sigma_s > kMaxSweep * period_s;
+}
+
 /// What a sweep takes by its measurement.
 double sweep_duration(const motion::SweepDuration& measured, double period_s) {
   const double duration_s = std::abs(measured.duration_s);
@@ -71,6 +76,25 @@ std::string sentence_of(const SweepSearch& search) {
       "the points have no times, and the Doppler does not show whether scans were taken in an instant ({}): they are "
       "taken as instant",
       measured);
+}
+
+void decide(SweepSearch& search, double period_s) {
+  const bool azimuth_fits = is_sweep(search.by_azimuth, period_s);
+  const bool stored_fits = is_sweep(search.as_stored, period_s) && search.as_stored.duration_s > 0.0;
+  const bool stored_is_better = kClearlyBetter * search.as_stored.explained > search.by_azimuth.explained;
+  if (azimuth_fits || stored_fits) {
+    const bool is_stored = stored_fits && (!azimuth_fits || stored_is_better);
+    const motion::SweepDuration& measured = is_stored ? search.as_stored : search.by_azimuth;
+    search.hypothesis = is_stored                   ? SweepHypothesis::kAsStored
+                        : measured.duration_s > 0.0 ? SweepHypothesis::kAzimuthCcw
+                                                    : SweepHypothesis::kAzimuthCw;
+    search.duration_s = sweep_duration(measured, period_s);
+    search.margin = margin_of(measured, period_s);
+    return;
+  }
+  search.margin =
+      std::max(0.0, -std::max(margin_of(search.by_azimuth, period_s), margin_of(search.as_stored, period_s)));
+  search.hypothesis = search.margin > kCertain ? SweepHypothesis::kInstant : SweepHypothesis::kUnknown;
 }
 
 /// The sums of consecutive scans; a stretch ends where the Doppler gives no velocity and begins anew. False where the
@@ -110,19 +134,8 @@ SweepSearch judge_sweep(const motion::SweepDuration& by_azimuth, const motion::S
   SweepSearch search;
   search.by_azimuth = by_azimuth;
   search.as_stored = as_stored;
-  const bool azimuth_fits = is_sweep(by_azimuth, period_s);
-  const bool stored_fits = is_sweep(as_stored, period_s) && as_stored.duration_s > 0.0;
-  if (stored_fits && (!azimuth_fits || kClearlyBetter * as_stored.explained > by_azimuth.explained)) {
-    search.hypothesis = SweepHypothesis::kAsStored;
-    search.duration_s = sweep_duration(as_stored, period_s);
-    search.margin = margin_of(as_stored, period_s);
-  } else if (azimuth_fits) {
-    search.hypothesis = by_azimuth.duration_s > 0.0 ? SweepHypothesis::kAzimuthCcw : SweepHypothesis::kAzimuthCw;
-    search.duration_s = sweep_duration(by_azimuth, period_s);
-    search.margin = margin_of(by_azimuth, period_s);
-  } else {
-    search.margin = std::max(0.0, -std::max(margin_of(by_azimuth, period_s), margin_of(as_stored, period_s)));
-    search.hypothesis = search.margin > kCertain ? SweepHypothesis::kInstant : SweepHypothesis::kUnknown;
+  if (!is_absurd(by_azimuth, period_s) && !is_absurd(as_stored, period_s)) {
+    decide(search, period_s);
   }
   search.sentence = sentence_of(search);
   return search;
