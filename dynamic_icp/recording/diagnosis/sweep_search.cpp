@@ -146,8 +146,8 @@ std::optional<SweepSearch> search_sweep(const datasets::Dataset& dataset, const 
   if (scans.size() < kMinScans || !(period_s > 0.0)) {
     return std::nullopt;
   }
-  const std::size_t length = std::min(kScansOfStretch, scans.size());
-  const std::size_t count = std::min(kStretches, scans.size() / length);
+  const std::size_t count = std::clamp<std::size_t>(scans.size() / kScansOfStretch, 1, kStretches);
+  const std::size_t length = count < kStretches ? scans.size() / count : kScansOfStretch;
   std::vector<std::vector<motion::SweepSums>> stretches;
   SweepSearch search;
   for (std::size_t k = 0; k < count; ++k) {
