@@ -166,22 +166,19 @@ SweepSums sweep_sums(const RawScan& raw, const Scan& scan, std::span<const std::
   const std::vector<double> by_azimuth = declared_times(raw.points, {.declared_duration_s = 1.0});
   const std::vector<double> as_stored =
       declared_times(raw.points, {.declared_duration_s = 1.0, .declared_as_stored = true});
-  SweepSums sums;
-  sums.time_s = time_s;
-  sums.products = workers.sum_blocks(rows.size(), kBlock, SweepSums::Matrix::Zero().eval(),
-                                     [&](std::size_t begin, std::size_t end) {
-                                       SweepSums::Matrix block = SweepSums::Matrix::Zero();
-                                       Eigen::Matrix<double, 11, 1> columns;
-                                       for (const std::uint32_t row : rows.subspan(begin, end - begin)) {
-                                         const std::uint32_t record = scan.records()[row];
-                                         const Eigen::Vector3d direction = -scan.directions()[row];
-                                         columns << direction, 1.0, direction * (by_azimuth[record] - 0.5),
-                                             direction * (as_stored[record] - 0.5), scan.doppler()[row];
-                                         block.selfadjointView<Eigen::Lower>().rankUpdate(columns);
-                                       }
-                                       return SweepSums::Matrix(block.selfadjointView<Eigen::Lower>());
-                                     });
-  return sums;
+  const auto products = [&](std::size_t begin, std::size_t end) {
+    SweepSums::Matrix block = SweepSums::Matrix::Zero();
+    Eigen::Matrix<double, 11, 1> columns;
+    for (const std::uint32_t row : rows.subspan(begin, end - begin)) {
+      const std::uint32_t record = scan.records()[row];
+      const Eigen::Vector3d direction = -scan.directions()[row];
+      columns << direction, 1.0, direction * (by_azimuth[record] - 0.5), direction * (as_stored[record] - 0.5),
+          scan.doppler()[row];
+      block.selfadjointView<Eigen::Lower>().rankUpdate(columns);
+    }
+    return SweepSums::Matrix(block.selfadjointView<Eigen::Lower>());
+  };
+  return {time_s, workers.sum_blocks(rows.size(), kBlock, SweepSums::Matrix::Zero().eval(), products)};
 }
 
 SweepDuration sweep_duration(std::span<const std::vector<SweepSums>> stretches, PointOrder order, double period_s) {

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <span>
@@ -29,7 +28,6 @@ enum class PointOrder {
   kAzimuth,   ///< the azimuth atan2(y, x) grows: from right to left, counter-clockwise as seen from above
   kAsStored,  ///< as the points are stored
 };
-inline constexpr std::size_t kPointOrders = 2;
 
 /// All that the static points of one scan say: sums of products of the columns -u (3), 1, -u q by azimuth (3), -u q as
 /// stored (3) and s.
@@ -52,10 +50,10 @@ struct SweepDuration {
   double explained = 0.0;  ///< how much better than an instant it explains the Doppler: difference of chi squared
 };
 
-/// D of some stretches of consecutive scans. The acceleration is the derivative at the middle one of each five scans,
-/// so stretches of fewer say nothing, and so do scans beside a gap: an interval longer than 1.6 times `period_s`. The
-/// standard deviation is the larger one of what the noise of the points explains and of what the scatter from scan to
-/// scan shows.
+/// D of some stretches of consecutive scans, one every `period_s` > 0 on average; stamps increase. The acceleration is
+/// the derivative at the middle one of each five scans, so stretches of fewer say nothing, and so do scans beside a
+/// gap: an interval longer than 1.6 times `period_s`. The standard deviation is the larger one of what the noise of the
+/// points explains and of what the scatter from scan to scan shows.
 SweepDuration sweep_duration(std::span<const std::vector<SweepSums>> stretches, PointOrder order, double period_s);
 
 }  // namespace dynamic_icp::motion

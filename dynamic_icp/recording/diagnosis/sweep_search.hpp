@@ -50,8 +50,8 @@ SweepSearch judge_sweep(const motion::SweepDuration& by_azimuth, const motion::S
                         double period_s);
 
 /// Looks at up to four stretches of 20 scans or a few more, evenly spread over `scans`, until they decide. Nothing
-/// where points have times, the Doppler is compensated, or there are too few scans. Throws what reading a scan throws.
-/// The same for any number of threads.
+/// where points have times, the Doppler is compensated, or there are too few scans or too long between them. Throws
+/// what reading a scan throws. The same for any number of threads.
 std::optional<SweepSearch> search_sweep(const datasets::Dataset& dataset, const datasets::ScanRange& scans,
                                         double period_s, const Workers& workers);
 
