@@ -79,7 +79,7 @@ std::string percent(const std::optional<double>& share) {
 
 std::string sweep_text(const runs::SweepRecord& sweep) {
   if (sweep.times() == "none") {
-    return "none: the points have no times";
+    return sweep.search ? sweep.search->sentence : "none: the points have no times";
   }
   return fmt::format("{}, {} s, times {}", sweep.deskewed() ? "deskewed" : "not deskewed", cell(sweep.duration_s(), 3),
                      sweep.times());

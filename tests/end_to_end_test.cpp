@@ -214,6 +214,26 @@ TEST_F(EndToEnd, RunSaysWhatItFoundAndDidAboutTheSweep) {
   EXPECT_NE(printed.text.find("sweep        deskewed, 0.100 s, times in the data"), std::string::npos) << printed.text;
 }
 
+TEST_F(EndToEnd, RunFindsTheSweepOfPointsWithoutTimes) {
+  const fs::path swept = folder_ / "swept";
+  ASSERT_EQ(run_program("simulate street --frames 20 --quiet --output " + swept.string()).status, 0);
+  const json timed = run_and_summarise(swept.string());
+  fs::remove_all(swept / "times");
+  const json as_instant = run_and_summarise(swept.string() + " --set sweep.search=false");
+  EXPECT_FALSE(json::parse(read_file(folder_ / "out" / "run.json"))["sweep"].contains("search"));
+  const json found = run_and_summarise(swept.string());
+  const json run = json::parse(read_file(folder_ / "out" / "run.json"));
+  EXPECT_EQ(run["sweep"]["times"], "found");
+  EXPECT_EQ(run["sweep"]["search"]["hypothesis"], "azimuth_cw");
+  EXPECT_GT(run["sweep"]["search"]["margin_sigma"].get<double>(), 4.0);
+  EXPECT_NEAR(run["sweep"]["duration_s"].get<double>(), 0.1, 1e-9);
+  EXPECT_EQ(run["configuration"]["sweep.declared_left_to_right"], true) << "what reads the run again deskews alike";
+  EXPECT_NE(run["assumptions"].dump().find("clockwise (left to right)"), std::string::npos);
+  EXPECT_LT(found["rte_rmse_m"].get<double>(), 1.2 * timed["rte_rmse_m"].get<double>());
+  EXPECT_LT(found["rre_rmse_deg"].get<double>(), 1.2 * timed["rre_rmse_deg"].get<double>());
+  EXPECT_GT(as_instant["rte_rmse_m"].get<double>(), 2.0 * timed["rte_rmse_m"].get<double>());
+}
+
 TEST_F(EndToEnd, RegisterPrintsThePairAsJson) {
   const std::string scans = (street() / "point_clouds").string();
   const Outcome outcome = run_program("register " + scans + "/00001.bin " + scans + "/00002.bin --preset paper");

@@ -15,6 +15,15 @@ bool uses_declared_times(const ScanView& raw, const SweepConfig& config) {
   return raw.times.empty() && config.declared_duration_s > 0.0;
 }
 
+std::vector<double> times_as_stored(std::size_t points, double duration_s) {
+  const double step_s = duration_s / std::max(1.0, static_cast<double>(points) - 1.0);
+  std::vector<double> times(points);
+  for (std::size_t i = 0; i < points; ++i) {
+    times[i] = static_cast<double>(i) * step_s;
+  }
+  return times;
+}
+
 }  // namespace
 
 ConfigFields fields(SweepConfig& config) {
@@ -24,10 +33,17 @@ ConfigFields fields(SweepConfig& config) {
        "where points have no times: the scan takes so long, column by column at an even rate; 0: taken at its stamp"},
       {"declared_left_to_right", &config.declared_left_to_right, 0, 0, "",
        "these columns run from left to right; off: from right to left"},
+      {"declared_as_stored", &config.declared_as_stored, 0, 0, "",
+       "the scan takes so long point by point as they are stored, not column by column"},
+      {"search", &config.search, 0, 0, "",
+       "where points have no times and none are declared: find out from the Doppler how scans were taken (run)"},
   };
 }
 
 std::vector<double> declared_times(const VectorColumns& points, const SweepConfig& config) {
+  if (config.declared_as_stored) {
+    return times_as_stored(points.size(), config.declared_duration_s);
+  }
   double low = std::numeric_limits<double>::infinity();
   double high = -low;
   std::vector<double> times;

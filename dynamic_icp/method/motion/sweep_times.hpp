@@ -15,13 +15,17 @@ struct SweepConfig {
   bool deskew = true;                   ///< off: every scan counts as taken at its stamp (ablation "no-deskew")
   double declared_duration_s = 0.0;     ///< where points have no times: the scan takes so long, column by column; 0: no
   bool declared_left_to_right = false;  ///< order of these columns; off: from right to left, azimuth growing
+  bool declared_as_stored = false;      ///< point after point as they are stored instead, not column by column
+  /// Where points have no times and none are declared: whoever has all of a recording may find out, and declare, how
+  /// its scans were taken. The method itself does not look ahead.
+  bool search = true;
 };
 
 ConfigFields fields(SweepConfig& config);
 
-/// Times (s after the stamp) of points of a scan whose columns were measured one after the other at an even rate: the
-/// azimuth atan2(y, x) from one end of the scan to the other is the time. The x axis must look into the scan, so that
-/// it does not reach across the back.
+/// Times (s after the stamp) of points of a scan measured at an even rate. Column by column: the azimuth atan2(y, x)
+/// from one end of the scan to the other is the time; the x axis must look into the scan, so that it does not reach
+/// across the back. As stored: the number of the point is.
 std::vector<double> declared_times(const VectorColumns& points, const SweepConfig& config);
 
 /// Where the times of the points of a scan come from.

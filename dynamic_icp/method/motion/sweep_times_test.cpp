@@ -22,6 +22,21 @@ std::vector<Eigen::Vector3d> fan() {
   return points;
 }
 
+TEST(DeclaredTimes, FollowTheOrderInWhichPointsAreStored) {
+  SweepConfig config;
+  config.declared_duration_s = 0.1;
+  config.declared_left_to_right = true;
+  config.declared_as_stored = true;
+  const std::vector<Eigen::Vector3d> anywhere = {{1, 2, 0}, {1, -2, 0}, {5, 1, 0}};
+  const std::vector<double> times = declared_times(anywhere, config);
+  ASSERT_EQ(times.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(times[i], 0.05 * static_cast<double>(i), 1e-15);
+  }
+  EXPECT_EQ(declared_times(std::vector<Eigen::Vector3d>{{1, 0, 0}}, config), std::vector<double>{0.0});
+  EXPECT_TRUE(declared_times({}, config).empty());
+}
+
 TEST(DeclaredTimes, GrowEvenlyWithTheAzimuth) {
   SweepConfig config;
   config.declared_duration_s = 0.1;

@@ -71,6 +71,7 @@ struct DiagnosisConfig {
   std::size_t probes = 10;            ///< stretches of the recording looked at, evenly spread
   datasets::Correction applied = {};  ///< what was done to the numbers already: a fix takes it in
   bool always_match_scans = true;     ///< off: only where there is no ground truth, or it disagrees with the Doppler
+  bool search_sweep = true;           ///< off: nothing is asked about points without times
 };
 
 /// Looks at some stretches of about 0.8 s, compares the velocity that the Doppler gives with the motion by ground truth

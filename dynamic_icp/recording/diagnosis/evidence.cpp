@@ -238,6 +238,8 @@ const Comparison* Evidence::reference() const {
   return matching.tells() ? &matching : truth.tells() ? &truth : nullptr;
 }
 
+bool Evidence::is_in_metres() const { return columns.doppler == 3 && units.points == 1.0 && units.doppler == 1.0; }
+
 double Evidence::median_of(double ScanLook::*value) const {
   std::vector<double> values;
   for (const ScanLook& look : looks) {
@@ -303,6 +305,9 @@ Evidence gather(const datasets::Dataset& dataset, const DiagnosisConfig& config,
     add_matches();
   }
   evidence.matching = compare(evidence.probes, &Probe::by_matching);
+  if (config.search_sweep && evidence.is_in_metres()) {
+    evidence.sweep = search_sweep(dataset, {evidence.begin, evidence.end}, evidence.period_s, workers);
+  }
   return evidence;
 }
 

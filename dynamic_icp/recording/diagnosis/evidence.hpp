@@ -13,6 +13,7 @@
 #include "dynamic_icp/recording/diagnosis/column_scores.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 #include "dynamic_icp/recording/diagnosis/scan_look.hpp"
+#include "dynamic_icp/recording/diagnosis/sweep_search.hpp"
 
 namespace dynamic_icp::diagnosis {
 
@@ -74,9 +75,12 @@ struct Evidence {
   std::vector<Probe> probes;
   Comparison truth;
   Comparison matching;
+  std::optional<SweepSearch> sweep;  ///< of points without times, where it was asked for
 
   /// The reference that tells, matching first: it has the axes of the points. Nothing without any.
   [[nodiscard]] const Comparison* reference() const;
+  /// Whether columns and units are those that they should be, so that scans can be used as they are.
+  [[nodiscard]] bool is_in_metres() const;
   /// Median over the looks.
   [[nodiscard]] double median_of(double ScanLook::*value) const;
   /// Median over the looks of the speed that the Doppler gives, m/s; nothing where no fit holds.

@@ -13,6 +13,20 @@ constexpr double kLongestScan_s = 0.5;
 constexpr double kMaxOverlap = 1.3;  // of the period: scans do not overlap much
 constexpr double kBefore_s = 1e-3;
 
+Finding without_times(const SweepSearch& search) {
+  Finding finding{Question::kPointTimes, Verdict::kCannotTell, search.sentence};
+  if (search.hypothesis != SweepHypothesis::kUnknown) {
+    finding.verdict = search.found_sweep() ? Verdict::kSuspicious : Verdict::kOk;
+  }
+  finding.evidence = {{"sweep_duration_s", search.duration_s},
+                      {"margin_sigma", search.margin},
+                      {"azimuth_ccw_duration_s", search.by_azimuth.duration_s},
+                      {"azimuth_ccw_sigma_s", search.by_azimuth.sigma_s},
+                      {"as_stored_duration_s", search.as_stored.duration_s},
+                      {"as_stored_sigma_s", search.as_stored.sigma_s}};
+  return finding;
+}
+
 }  // namespace
 
 Finding point_times(const Evidence& evidence) {
@@ -26,6 +40,9 @@ Finding point_times(const Evidence& evidence) {
       last = any ? std::max(last, look.last_time_s) : look.last_time_s;
       any = true;
     }
+  }
+  if (!any && evidence.sweep) {
+    return without_times(*evidence.sweep);
   }
   if (!any || (first == 0.0 && last == 0.0)) {
     finding.verdict = Verdict::kCannotTell;

@@ -28,6 +28,21 @@ TEST(PointTimes, NoneOrZerosCannotTell) {
   EXPECT_EQ(point_times(with_times(0.0, 0.0)).verdict, Verdict::kCannotTell);
 }
 
+TEST(PointTimes, WhatTheDopplerSaysOfPointsWithoutTimes) {
+  const motion::SweepDuration zero{0.0, 0.003, 0.0};
+  const auto answer = [&](const motion::SweepDuration& by_azimuth) {
+    Evidence evidence;
+    evidence.looks.resize(2);
+    evidence.sweep = judge_sweep(by_azimuth, zero, 0.1);
+    return point_times(evidence);
+  };
+  EXPECT_EQ(answer(zero).verdict, Verdict::kOk);
+  EXPECT_EQ(answer({}).verdict, Verdict::kCannotTell);
+  const Finding swept = answer({-0.1, 0.005, 400.0});
+  EXPECT_EQ(swept.verdict, Verdict::kSuspicious) << "the times are missing";
+  EXPECT_NE(swept.sentence.find("clockwise (left to right) in 0.100 s"), std::string::npos) << swept.sentence;
+}
+
 TEST(PointTimes, NoScanTakesSeconds) {
   EXPECT_EQ(point_times(with_times(0.0, 99.0)).verdict, Verdict::kWrong) << "milliseconds";
   EXPECT_EQ(point_times(with_times(-0.6, -0.5)).verdict, Verdict::kWrong);

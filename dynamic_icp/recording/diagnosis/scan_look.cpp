@@ -47,6 +47,12 @@ void look_at_columns(const Scan& scan, ScanLook& look) {
   look.fast_mps = quantile(std::move(speeds), kNearlyAll);
 }
 
+bool is_velocity(const ego_motion::EgoVelocity& ego, double static_share) {
+  const bool found = ego.status == ego_motion::EgoVelocityStatus::kConverged ||
+                     ego.status == ego_motion::EgoVelocityStatus::kIterationLimit;
+  return found && static_share >= kMinStaticShare && ego.covariance.trace() < kMaxDeviation_mps * kMaxDeviation_mps;
+}
+
 DopplerValues doppler_values(const std::vector<double>& doppler, const std::vector<double>& residuals) {
   DopplerValues values;
   values.count = doppler.size();
@@ -86,10 +92,25 @@ double median_error(const std::vector<double>& values) {
   return values.empty() ? 0.0 : kErrorPerMad * scatter_of(values) / std::sqrt(static_cast<double>(values.size()));
 }
 
-bool ScanLook::has_velocity() const {
-  const bool found = ego.status == ego_motion::EgoVelocityStatus::kConverged ||
-                     ego.status == ego_motion::EgoVelocityStatus::kIterationLimit;
-  return found && static_share >= kMinStaticShare && ego.covariance.trace() < kMaxDeviation_mps * kMaxDeviation_mps;
+bool DopplerFit::has_velocity() const { return is_velocity(ego, static_share); }
+
+bool ScanLook::has_velocity() const { return is_velocity(ego, static_share); }
+
+DopplerFit fit_doppler(const Scan& scan, const Workers& workers) {
+  DopplerFit fit;
+  fit.ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, {}, workers);
+  ego_motion::compensated_doppler(scan, fit.ego, workers, fit.residuals);
+  std::size_t near = 0;
+  const double width = std::max(kMinStill_mps, kStaticSigmas * fit.ego.inlier_rms_mps);
+  for (std::uint32_t row = 0; row < fit.residuals.size(); ++row) {
+    const double residual = std::abs(fit.residuals[row]);
+    near += residual < kFitting_mps ? 1 : 0;
+    if (residual < width) {
+      fit.static_rows.push_back(row);
+    }
+  }
+  fit.static_share = scan.empty() ? 0.0 : static_cast<double>(near) / static_cast<double>(scan.size());
+  return fit;
 }
 
 ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still) {
@@ -100,23 +121,12 @@ ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still) {
   Scan scan = Scan::from_raw(raw, {}, workers, &look.dropped);
   look_at_columns(scan, look);
   take_out_lever_arms(scan, workers);
-  look.ego = ego_motion::estimate_velocity(scan, ego_motion::EgoPrior{}, {}, workers);
-  std::vector<double> residuals;
-  ego_motion::compensated_doppler(scan, look.ego, workers, residuals);
-  look.values = doppler_values(scan.doppler(), residuals);
-  std::vector<std::uint32_t> fitting;
-  std::size_t near = 0;
-  const double width = std::max(kMinStill_mps, kStaticSigmas * look.ego.inlier_rms_mps);
-  for (std::uint32_t row = 0; row < residuals.size(); ++row) {
-    const double residual = std::abs(residuals[row]);
-    near += residual < kFitting_mps ? 1 : 0;
-    if (residual < width) {
-      fitting.push_back(row);
-    }
-  }
-  look.static_share = residuals.empty() ? 0.0 : static_cast<double>(near) / static_cast<double>(residuals.size());
+  const DopplerFit fit = fit_doppler(scan, workers);
+  look.ego = fit.ego;
+  look.static_share = fit.static_share;
+  look.values = doppler_values(scan.doppler(), fit.residuals);
   if (still != nullptr) {
-    *still = look.has_velocity() ? scan.select(fitting) : std::move(scan);
+    *still = look.has_velocity() ? scan.select(fit.static_rows) : std::move(scan);
   }
   return look;
 }

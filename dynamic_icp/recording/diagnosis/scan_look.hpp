@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -28,6 +29,19 @@ struct DopplerValues {
   double scatter_left = 0.0;  ///< the same after the velocity of the sensor was taken out
 };
 
+/// What the Doppler of a scan shows by itself.
+struct DopplerFit {
+  ego_motion::EgoVelocity ego;             ///< with its bias
+  double static_share = 0.0;               ///< of the points that fit to this velocity within 0.5 m/s
+  std::vector<double> residuals;           ///< m/s, of each point
+  std::vector<std::uint32_t> static_rows;  ///< points that fit within the noise
+
+  /// Whether the velocity is one: enough points agree and all directions are known.
+  [[nodiscard]] bool has_velocity() const;
+};
+
+DopplerFit fit_doppler(const Scan& scan, const Workers& workers);
+
 /// What one scan shows by itself.
 struct ScanLook {
   Stamp stamp;
@@ -41,10 +55,9 @@ struct ScanLook {
   DopplerValues values;
   Eigen::Vector3d look_direction = Eigen::Vector3d::Zero();  ///< mean line of sight
   Eigen::Vector3d look_spread = Eigen::Vector3d::Zero();     ///< root mean square of each axis of the lines of sight
-  ego_motion::EgoVelocity ego;                               ///< by the Doppler, with its bias
-  double static_share = 0.0;                                 ///< of the points that fit to this velocity within 0.5 m/s
+  ego_motion::EgoVelocity ego;                               ///< see DopplerFit
+  double static_share = 0.0;
 
-  /// Whether the velocity is one: enough points agree and all directions are known.
   [[nodiscard]] bool has_velocity() const;
 };
 

@@ -19,7 +19,7 @@ constexpr std::size_t kProbes = 4;
 }  // namespace
 
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
-                               const ScansToCheck& scans, bool needs_doppler, const FixInWords& fix_in_words) {
+                               const ScansToCheck& scans, const Needs& needs, const FixInWords& fix_in_words) {
   const auto fix_of = [&](const diagnosis::Finding& finding) { return fix_in_words ? fix_in_words(finding) : ""; };
   diagnosis::DiagnosisConfig config;
   config.begin = scans.begin;
@@ -27,12 +27,14 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   config.probes = kProbes;
   config.applied = settings.correction;
   config.always_match_scans = false;
-  const diagnosis::Diagnosis diagnosis = diagnosis::diagnose(dataset, config, Workers(scans.threads));
+  config.search_sweep = false;
+  const Workers workers(scans.threads);
+  const diagnosis::Diagnosis diagnosis = diagnosis::diagnose(dataset, config, workers);
   RecordingCheck check;
   check.period_s = diagnosis.period_s;
   check.doppler = fmt::format("{}; {}", diagnosis.of(diagnosis::Question::kDopplerKind).sentence,
                               diagnosis.of(diagnosis::Question::kDopplerSign).sentence);
-  if (!diagnosis.has_doppler && needs_doppler && !settings.correction.doppler_kind) {
+  if (!diagnosis.has_doppler && needs.doppler && !settings.correction.doppler_kind) {
     const auto with_kind = [&](DopplerKind kind) {
       diagnosis::Finding finding;
       finding.fix.doppler_kind = kind;
@@ -64,6 +66,9 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
       check.warnings.push_back(fmt::format("{}: {}{}", diagnosis::to_string(finding.question), finding.sentence,
                                            fix.empty() ? "" : "; fix with " + fix));
     }
+  }
+  if (needs.sweep) {
+    check.sweep = diagnosis::search_sweep(dataset, {scans.begin, scans.end}, check.period_s, workers);
   }
   return check;
 }

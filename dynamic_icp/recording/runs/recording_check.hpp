@@ -4,19 +4,22 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
+#include "dynamic_icp/recording/diagnosis/sweep_search.hpp"
 
 namespace dynamic_icp::runs {
 
 /// What the diagnosis of a recording says.
 struct RecordingCheck {
-  double period_s = 0.0;              ///< from scan to scan, median; 0 of one scan
-  std::string doppler;                ///< kind and sign, in words
-  std::vector<std::string> warnings;  ///< what seems wrong, in sentences
+  double period_s = 0.0;                        ///< from scan to scan, median; 0 of one scan
+  std::string doppler;                          ///< kind and sign, in words
+  std::vector<std::string> warnings;            ///< what seems wrong, in sentences
+  std::optional<diagnosis::SweepSearch> sweep;  ///< of points without times, where it was asked for
 };
 
 /// Which scans [begin, end) a run takes, and how many threads (0: as many as the machine has) may look at them.
@@ -26,13 +29,20 @@ struct ScansToCheck {
   int threads = 0;
 };
 
+/// What a method needs to know of a recording.
+struct Needs {
+  bool doppler = true;
+  bool sweep = false;  ///< how scans were taken whose points have no times
+};
+
 /// How the user states the correction of a finding, e.g. by the options of a program.
 using FixInWords = std::function<std::string(const diagnosis::Finding&)>;
 
-/// Diagnoses the first scans before a run. Throws DataError where the Doppler has the wrong sign or is of another kind
-/// than stated, or where there is none and the method needs it: every result would be wrong. A sign or kind that the
-/// user states is believed. Messages leave corrections out where `fix_in_words` is empty.
+/// Diagnoses the first scans before a run; sweeps are searched in all of them. Throws DataError where the Doppler has
+/// the wrong sign or is of another kind than stated, or where there is none and the method needs it: every result would
+/// be wrong. A sign or kind that the user states is believed. Messages leave corrections out where `fix_in_words` is
+/// empty.
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
-                               const ScansToCheck& scans, bool needs_doppler, const FixInWords& fix_in_words = {});
+                               const ScansToCheck& scans, const Needs& needs, const FixInWords& fix_in_words = {});
 
 }  // namespace dynamic_icp::runs

@@ -12,10 +12,25 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
+Json duration_json(const motion::SweepDuration& measured) {
+  return {{"duration_s", measured.duration_s}, {"sigma_s", measured.sigma_s}};
+}
+
+Json search_json(const diagnosis::SweepSearch& search) {
+  return {{"hypothesis", diagnosis::to_string(search.hypothesis)},
+          {"margin_sigma", search.margin},
+          {"azimuth_ccw", duration_json(search.by_azimuth)},
+          {"as_stored", duration_json(search.as_stored)},
+          {"scans", search.scans}};
+}
+
 Json sweep_json(const SweepRecord& sweep) {
   Json json = {{"times", sweep.times()}, {"duration_s", nullptr}, {"deskewed", sweep.deskewed()}};
   if (sweep.duration_s()) {
     json["duration_s"] = *sweep.duration_s();
+  }
+  if (sweep.search) {
+    json["search"] = search_json(*sweep.search);
   }
   return json;
 }

@@ -37,6 +37,19 @@ std::optional<MapWriter> make_map(const RunSettings& settings) {
   return MapWriter(settings.map_voxel_m);
 }
 
+/// What the configuration says of sweeps; nothing where the method does not look at it.
+motion::SweepConfig* sweep_config(odometry::Config& config) {
+  auto* with_map = std::get_if<odometry::MapOdometryConfig>(&config);
+  return with_map != nullptr ? &with_map->sweep : nullptr;
+}
+
+Needs needs_of(const RunSettings& settings) {
+  odometry::Config config = settings.config;
+  const motion::SweepConfig* sweep = sweep_config(config);
+  return {.doppler = odometry::needs_doppler(settings.method),
+          .sweep = sweep != nullptr && sweep->deskew && sweep->search && sweep->declared_duration_s == 0.0};
+}
+
 /// What became of the points of a run, to tell why nothing came of it.
 struct Usability {
   std::size_t frames = 0;
@@ -81,9 +94,13 @@ class Run {
         truth_(settings.ground_truth.empty() ? dataset_->ground_truth()
                                              : formats::read_tum(settings.ground_truth).trajectory),
         check_(check_recording(*dataset_, recording.settings, {scans_.begin, scans_.end, settings.threads},
-                               odometry::needs_doppler(settings.method), callbacks.fix_in_words)) {
+                               needs_of(settings), callbacks.fix_in_words)) {
     result_.period_s = check_.period_s;
     result_.doppler = check_.doppler;
+    result_.sweep.search = check_.sweep;
+    if (check_.sweep && check_.sweep->found_sweep()) {
+      diagnosis::declare(*check_.sweep, *sweep_config(settings_.config));
+    }
   }
 
   /// Whether it came to its end.
@@ -124,6 +141,9 @@ class Run {
     std::vector<std::string> assumptions = dataset_->assumptions();
     for (const std::string& assumption : odometry->assumptions()) {
       assumptions.push_back(assumption);
+    }
+    if (check_.sweep && check_.sweep->hypothesis != diagnosis::SweepHypothesis::kInstant) {
+      assumptions.push_back(check_.sweep->sentence);
     }
     for (const std::vector<std::string>* texts : {&assumptions, &check_.warnings}) {
       for (const std::string& text : *texts) {
@@ -216,7 +236,7 @@ class Run {
   }
 
   const Recording& recording_;
-  const RunSettings& settings_;
+  RunSettings settings_;  ///< with the sweep that was found
   const RunCallbacks& callbacks_;
   std::optional<MapWriter> map_;
   std::unique_ptr<datasets::Dataset> dataset_;

@@ -22,7 +22,7 @@ std::string SweepRecord::times() const {
     case motion::SweepTimes::kInData:
       return "in the data";
     case motion::SweepTimes::kDeclared:
-      return "declared";
+      return search && search->found_sweep() ? "found" : "declared";
     case motion::SweepTimes::kNone:
       break;
   }

@@ -7,6 +7,7 @@
 
 #include "dynamic_icp/method/motion/sweep_times.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
+#include "dynamic_icp/recording/diagnosis/sweep_search.hpp"
 
 namespace dynamic_icp::runs {
 
@@ -15,10 +16,11 @@ struct SweepRecord {
   std::optional<motion::SweepReport> first;
   bool same_times = true;
   bool all_deskewed = true;
+  std::optional<diagnosis::SweepSearch> search;  ///< of points without times, where the run asked for it
 
   void add(const odometry::Frame& frame, const RawScan& scan);
   [[nodiscard]] bool deskewed() const { return first && all_deskewed; }
-  /// "in the data", "declared", "none" or "mixed".
+  /// "in the data", "declared", "found" by the search, "none" or "mixed".
   [[nodiscard]] std::string times() const;
   [[nodiscard]] std::optional<double> duration_s() const { return first ? first->duration_s : std::nullopt; }
 };
