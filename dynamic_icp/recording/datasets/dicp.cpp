@@ -1,12 +1,11 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/foreign_numbers.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
@@ -16,7 +15,6 @@
 #include "dynamic_icp/recording/formats/point_records.hpp"
 #include "dynamic_icp/recording/formats/record_file.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
-#include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/formats/xyzd_bin.hpp"
 
 namespace dynamic_icp::datasets {
@@ -58,8 +56,8 @@ class DicpDataset final : public Dataset {
     if (fs::is_directory(folder / "times")) {
       times_ = folder / "times";
     }
-    if (const fs::path calibration = folder / "calibration.json"; fs::exists(calibration)) {
-      T_vehicle_sensor_ = read_calibration(calibration);
+    if (const fs::path calibration = folder / kCalibrationFile; fs::exists(calibration)) {
+      take_calibration(calibration);
     }
     const fs::path poses = folder / "ref_poses.txt";
     if (fs::exists(poses)) {
@@ -96,6 +94,16 @@ class DicpDataset final : public Dataset {
   }
 
  private:
+  void take_calibration(const fs::path& path) {
+    const Calibration calibration = read_calibration(path);
+    T_vehicle_sensor_ = calibration.T_vehicle_sensor;
+    if (!calibration.mountings.empty()) {
+      assumptions_.push_back(
+          fmt::format("{}: the mountings of its {} sensors are not used: no file says which of them measured a point",
+                      path.string(), calibration.mountings.size()));
+    }
+  }
+
   void read_poses(const fs::path& poses) {
     ground_truth_ = formats::read_tum(poses).trajectory;
     if (ground_truth_.size() != files_.size()) {
@@ -137,27 +145,6 @@ fs::path find_dicp_scans(const fs::path& input) {
   return holds_files(input, ".bin") ? input : find_folder(input, [](const fs::path& below) {
     return same_name(below, "velodyne") && holds_files(below, ".bin");
   });
-}
-
-Eigen::Isometry3d read_calibration(const fs::path& path) {
-  // The file calls it T_V_to_S, but it is applied to points of the sensor to get points of the vehicle.
-  try {
-    const nlohmann::json calibration = nlohmann::json::parse(formats::read_text_file(path)).at("T_V_to_S");
-    const nlohmann::json& t = calibration.at("translation");
-    const nlohmann::json& q = calibration.at("quaternion");
-    const Eigen::Quaterniond rotation(q.at("w").get<double>(), q.at("x").get<double>(), q.at("y").get<double>(),
-                                      q.at("z").get<double>());
-    if (std::abs(rotation.norm() - 1.0) > 1e-3) {
-      throw DataError(fmt::format("{}: quaternion has length {:.4f}, expected 1", path.string(), rotation.norm()));
-    }
-    return Eigen::Translation3d(t.at("x").get<double>(), t.at("y").get<double>(), t.at("z").get<double>()) *
-           rotation.normalized();
-  } catch (const nlohmann::json::exception& error) {
-    throw DataError(
-        fmt::format("{}: expected {{\"T_V_to_S\": {{\"translation\": {{x, y, z}}, \"quaternion\": "
-                    "{{w, x, y, z}}}}}}: {}",
-                    path.string(), error.what()));
-  }
 }
 
 std::unique_ptr<Dataset> open_dicp(const fs::path& folder, const OpenOptions& options) {

@@ -21,7 +21,8 @@ struct RecordRecording {
   StampedFiles scans;  ///< at least one
   std::function<const formats::RecordLayout&(const std::filesystem::path& file, Stamp stamp)> layout_of;
   Truth truth;
-  std::optional<Eigen::Isometry3d> T_vehicle_sensor;
+  std::optional<Eigen::Isometry3d> T_vehicle_sensor = {};
+  DopplerKind doppler_kind = DopplerKind::kRelative;
 };
 
 /// The recording as a dataset. Its scans throw DataError for numbers that were never measured (record_guess.hpp).
