@@ -243,12 +243,9 @@ class AevaScenesDataset final : public Dataset {
   /// A channel that one of the LiDARs lacks is none of the scan.
   void set_channels(const ChannelValues& channels, std::size_t index, RawScan& raw) const {
     for (std::size_t k = 0; k < kOtherColumns.size(); ++k) {
-      const std::string reason = channels[k].size() == raw.points.size()
-                                     ? formats::set_channel(raw, kOtherColumns[k].channel, channels[k])
-                                     : "";
-      if (!reason.empty()) {
-        raw.warning += fmt::format("{}{}: column '{}' is left out: it {}", raw.warning.empty() ? "" : "; ",
-                                   scan_file(index).string(), kOtherColumns[k].name, reason);
+      if (channels[k].size() == raw.points.size()) {
+        formats::warn_of_column(raw, scan_file(index), kOtherColumns[k].name,
+                                formats::set_channel(raw, kOtherColumns[k].channel, channels[k]));
       }
     }
     for (std::size_t k = 0; merges() && k < lidars_.size(); ++k) {

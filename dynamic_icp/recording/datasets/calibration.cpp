@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/datasets/calibration.hpp"
 
 #include <cmath>
+#include <system_error>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -75,7 +76,8 @@ Calibration read_calibration(const fs::path& path) {
 
 std::optional<Calibration> find_calibration(const fs::path& folder, std::vector<std::string>& assumptions) {
   const fs::path path = folder / kCalibrationFile;
-  if (!fs::exists(path)) {
+  std::error_code unreadable;
+  if (!fs::exists(path, unreadable)) {
     return std::nullopt;
   }
   if (!read_json(path, [](const json& file) { return file.contains(kVehicle) || file.contains(kSensors); })) {

@@ -238,10 +238,7 @@ class ColumnDataset final : public Dataset {
 
   void set_channels(const ColumnFile& file, const fs::path& path, RawScan& raw) const {
     for (const ChannelColumn& column : fields_.channels) {
-      if (const std::string reason = set_channel(file, column, raw); !reason.empty()) {
-        raw.warning += fmt::format("{}{}: column '{}' is left out: it {}", raw.warning.empty() ? "" : "; ",
-                                   path.string(), column.array, reason);
-      }
+      formats::warn_of_column(raw, path, column.array, set_channel(file, column, raw));
     }
     const std::vector<std::uint8_t>& sensor = raw.channels.sensor;
     const std::size_t sensors = calibration_.mountings.size();

@@ -69,4 +69,12 @@ std::string set_channel(RawScan& scan, Channel channel, std::span<const double> 
   return "";
 }
 
+void warn_of_column(RawScan& scan, const std::filesystem::path& file, std::string_view column,
+                    const std::string& reason) {
+  if (!reason.empty()) {
+    scan.warning += fmt::format("{}{}: column '{}' is left out: it {}", scan.warning.empty() ? "" : "; ", file.string(),
+                                column, reason);
+  }
+}
+
 }  // namespace dynamic_icp::formats

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <cstdint>
+#include <filesystem>
 #include <span>
 #include <string>
+#include <string_view>
 
 #include "dynamic_icp/method/base/raw_scan.hpp"
 
@@ -29,5 +31,9 @@ enum class Channel : std::uint8_t {
 /// Where the numbers do not fit the place stays as it was, and the result says why, in words that follow the name of
 /// the column; else it is empty.
 std::string set_channel(RawScan& scan, Channel channel, std::span<const double> values);
+
+/// Adds to the warnings of a scan that a column of its file is left out, and why; nothing where there is no reason.
+void warn_of_column(RawScan& scan, const std::filesystem::path& file, std::string_view column,
+                    const std::string& reason);
 
 }  // namespace dynamic_icp::formats

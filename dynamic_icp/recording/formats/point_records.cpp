@@ -106,11 +106,7 @@ class ChannelValues {
 
   void set(const std::filesystem::path& path, RawScan& scan) const {
     for (const auto& [field, values] : columns_) {
-      const std::string reason = set_channel(scan, field->channel, values);
-      if (!reason.empty()) {
-        scan.warning += fmt::format("{}{}: column '{}' is left out: it {}", scan.warning.empty() ? "" : "; ",
-                                    path.string(), field->name, reason);
-      }
+      warn_of_column(scan, path, field->name, set_channel(scan, field->channel, values));
     }
   }
 
