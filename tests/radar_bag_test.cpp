@@ -61,7 +61,7 @@ TEST_F(RadarBag, ABeginAtRestIsNoReasonToRefuseTheDoppler) {
   const Outcome ran = run(whole);
   ASSERT_EQ(ran.status, 0) << ran.text;
   const json summary = json::parse(read_file(whole.string() + "-run/summary.json"));
-  EXPECT_EQ(summary["scans"], clouds_.size()) << summary;
+  EXPECT_EQ(summary["frames"], clouds_.size()) << summary;
 
   const Outcome refused = run(pcd_folder("rest", kAtRest));
   EXPECT_EQ(refused.status, 1) << refused.text;

@@ -86,8 +86,7 @@ std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptio
                   first.filename().string()));
   if (layout == &formats::kVod28) {
     recording.scans.assumptions.emplace_back(
-        "the Doppler of View-of-Delft is its v_r, relative; points of earlier scans are left out; its frames follow "
-        "the "
+        "View-of-Delft: the Doppler is v_r, relative; points of earlier scans are left out; its frames follow the "
         "LiDAR, 10 in a second, while the radar measures 13 times: the time between scans is uncertain");
   }
   return make_record_dataset(std::move(recording));
