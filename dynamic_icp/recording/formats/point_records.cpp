@@ -84,37 +84,29 @@ double field_at(std::string_view block, std::size_t at, const RecordField& field
   return has_parts ? static_cast<double>(static_cast<std::uint64_t>(value) >> field.shift & field.mask) : 0.0;
 }
 
-/// The fields of a layout that a scan has a place for, with their values as they come in.
-class ChannelValues {
- public:
-  ChannelValues(const RecordLayout& layout, std::size_t records) {
-    for (const RecordField& field : layout.fields) {
-      if (field.channel != Channel::kNone) {
-        columns_.push_back({&field, {}});
-        columns_.back().values.reserve(records);
-      }
-    }
+void append_field(std::string_view block, const RecordLayout& layout, const RecordField& field,
+                  std::vector<double>& values) {
+  for (std::size_t at = field.offset; at < block.size(); at += layout.bytes) {
+    values.push_back(field_at(block, at, field));
   }
+}
 
-  void add(std::string_view block, std::size_t record) {
-    for (Values& column : columns_) {
-      column.values.push_back(field_at(block, record + column.field->offset, *column.field));
-    }
-  }
-
-  void set(const std::filesystem::path& path, RawScan& scan) const {
-    for (const auto& [field, values] : columns_) {
-      warn_of_column(scan, path, field->name, set_channel(scan, field->channel, values));
-    }
-  }
-
- private:
-  struct Values {
-    const RecordField* field;
-    std::vector<double> values;
-  };
-  std::vector<Values> columns_;
+/// A field that a scan has a place for.
+struct ChannelValues {
+  const RecordField* field;
+  std::vector<double> values;
 };
+
+std::vector<ChannelValues> channels_of(const RecordLayout& layout, std::size_t records) {
+  std::vector<ChannelValues> channels;
+  for (const RecordField& field : layout.fields) {
+    if (field.channel != Channel::kNone) {
+      channels.push_back({&field, {}});
+      channels.back().values.reserve(records);
+    }
+  }
+  return channels;
+}
 
 RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout) {
   RecordFile file(path, layout.bytes);
@@ -122,7 +114,7 @@ RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout)
   raw.points.resize(file.records());
   raw.doppler.resize(file.records());
   raw.times.resize(layout.time_type == RecordTime::kNone ? 0 : file.records());
-  ChannelValues channels(layout, file.records());
+  std::vector<ChannelValues> channels = channels_of(layout, file.records());
   std::size_t row = 0;
   for (std::string_view block = file.next(); !block.empty(); block = file.next()) {
     if (!raw.times.empty()) {
@@ -131,7 +123,9 @@ RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout)
     for (std::size_t at = 0; at < block.size(); at += layout.bytes, ++row) {
       raw.points[row] = {value_at<float>(block, at), value_at<float>(block, at + 4), value_at<float>(block, at + 8)};
       raw.doppler[row] = value_at<float>(block, at + layout.doppler);
-      channels.add(block, at);
+    }
+    for (ChannelValues& channel : channels) {
+      append_field(block, layout, *channel.field, channel.values);
     }
   }
   const bool counts_nanoseconds =
@@ -141,7 +135,9 @@ RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout)
     std::for_each(raw.times.begin(), raw.times.end(), [](double& t) { t *= kNanosecond; });
   }
   raw.warning = file.warning();
-  channels.set(path, raw);
+  for (const auto& [field, values] : channels) {
+    warn_of_column(raw, path, field->name, set_channel(raw, field->channel, values));
+  }
   return raw;
 }
 
@@ -150,9 +146,7 @@ std::vector<double> field_of(const std::filesystem::path& path, const RecordLayo
   std::vector<double> values;
   values.reserve(file.records());
   for (std::string_view block = file.next(); !block.empty(); block = file.next()) {
-    for (std::size_t at = field.offset; at < block.size(); at += layout.bytes) {
-      values.push_back(field_at(block, at, field));
-    }
+    append_field(block, layout, field, values);
   }
   return values;
 }
