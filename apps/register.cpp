@@ -8,8 +8,8 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
-#include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/formats/xyzd_bin.hpp"
 #include "dynamic_icp/recording/runs/frame_json.hpp"
 
@@ -52,7 +52,7 @@ int register_pair(const RegisterOptions& options) {
   odometry::SensorContext surroundings;
   surroundings.doppler_kind = source.doppler_kind;
   if (!options.calibration.empty()) {
-    surroundings.T_vehicle_sensor = datasets::read_calibration(options.calibration);
+    surroundings.T_vehicle_sensor = datasets::read_calibration(options.calibration).T_vehicle_sensor;
   }
   const std::unique_ptr<odometry::Odometry> odometry =
       odometry::make_odometry(config, surroundings, options.method.threads);

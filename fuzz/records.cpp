@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/recording/datasets/record_guess.hpp"
 
 #include "fuzz/memory_file.hpp"
@@ -10,10 +11,11 @@
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   using namespace dynamic_icp;
   using formats::RecordLayout;
-  static const RecordLayout* const layouts[] = {
-      &formats::kAeva25,   &formats::kAeva29,   &formats::kBoreas40,
-      &formats::kBoreas24, &formats::kBoreas28, &formats::kBoreas28BeamThenTime,
-      &formats::kBoreas32, &formats::kXyzdTime, &formats::kXyzd};
+  static const RecordLayout* const layouts[] = {&formats::kAeva25,   &formats::kAeva29,
+                                                &formats::kBoreas40, &formats::kBoreas24,
+                                                &formats::kBoreas28, &formats::kBoreas28BeamThenTime,
+                                                &formats::kBoreas32, &formats::kXyzdTime,
+                                                &formats::kXyzd,     &formats::kVod28};
   try {
     const fuzz::MemoryFile input(data, size);
     for (const RecordLayout* layout : layouts) {

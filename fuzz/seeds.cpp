@@ -77,7 +77,8 @@ class Seeds {
     const std::string ascii_ply =
         "ply\nformat ascii 1.0\ncomment c\nelement face 1\nproperty list uchar int c\nelement vertex 1\n"
         "property double x\nproperty float y\nproperty int z\nproperty float velocity\nproperty float time\n"
-        "end_header\n3 0 1 2\n1 2 3 -4 0.5\n";
+        "property uchar ring\nproperty uchar valid\n"
+        "end_header\n3 0 1 2\n1 2 3 -4 0.5 7 0\n";
     std::string big_ply = binary_ply;
     big_ply.replace(big_ply.find("little"), 6, "big");
     for (const std::string& content : {binary_ply, ascii_ply, big_ply}) {
@@ -113,6 +114,8 @@ class Seeds {
     write("texts", "2" + matrix + "\n0 0 0 1\n");
     write("texts", "3# calibration\nTr_lidar_to_imu: 1 0 0 0.5 0 1 0 0 0 0 1 1\n");
     write("texts", R"(4{"T_V_to_S":{"translation":{"x":1,"y":2,"z":3},"quaternion":{"w":0.6,"x":0,"y":0,"z":0.8}}})");
+    write("texts", R"(4{"sensors":[{"T_scan_sensor":{"translation":{"x":1,"y":2,"z":3},)"
+                   R"("quaternion":{"w":0.6,"x":0,"y":0,"z":0.8}}}]})");
   }
 
   fs::path folder_;

@@ -1,7 +1,10 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 
+#include <algorithm>
+
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 
 #include "fuzz/memory_file.hpp"
@@ -12,6 +15,13 @@ using namespace dynamic_icp;
 
 bool is_rigid(const Eigen::Isometry3d& T) {
   return T.matrix().allFinite() && (T.linear().transpose() * T.linear() - Eigen::Matrix3d::Identity()).norm() < 1e-6;
+}
+
+void read_mountings(const std::filesystem::path& path) {
+  const datasets::Calibration calibration = datasets::read_calibration(path);
+  fuzz::must(calibration.T_vehicle_sensor || !calibration.mountings.empty());
+  fuzz::must(!calibration.T_vehicle_sensor || is_rigid(*calibration.T_vehicle_sensor));
+  fuzz::must(std::all_of(calibration.mountings.begin(), calibration.mountings.end(), is_rigid));
 }
 
 void read_poses(const std::filesystem::path& path) {
@@ -54,7 +64,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
         fuzz::must(is_rigid(datasets::read_imu_lidar(input.path())));
         break;
       default:
-        fuzz::must(is_rigid(datasets::read_calibration(input.path())));
+        read_mountings(input.path());
     }
   } catch (const DataError&) {
   }

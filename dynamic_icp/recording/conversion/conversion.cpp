@@ -2,16 +2,17 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/conversion/conversion.hpp"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <span>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/conversion/column_types.hpp"
 #include "dynamic_icp/recording/conversion/targets.hpp"
+#include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/evaluation/association.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
@@ -40,14 +41,18 @@ class Converter {
  public:
   Converter(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target, const fs::path& folder,
             const std::function<void()>& progress)
-      : dataset_(dataset), range_(range), target_(target), folder_(folder), progress_(progress) {}
+      : dataset_(dataset), range_(range), target_(target), folder_(folder), progress_(progress) {
+    calibration_.T_vehicle_sensor = dataset.T_vehicle_sensor();
+  }
 
   std::vector<std::string> convert() {
     note_what_is_not_of_points();
     // Read twice: a column has one type in all files, the smallest that holds every number of the recording, and no
     // recording fits into memory.
     for (std::size_t i = range_.begin; i < range_.end; ++i) {
-      types_.add(dataset_.scan(i), dataset_.columns(i));
+      const RawScan scan = dataset_.scan(i);
+      types_.add(scan, dataset_.columns(i));
+      add_mountings(scan);
       advance();
     }
     for (std::size_t i = range_.begin; i < range_.end; ++i) {
@@ -58,6 +63,9 @@ class Converter {
         notes_.add(scan.warning);
       }
       advance();
+    }
+    if (calibration_.T_vehicle_sensor || !calibration_.mountings.empty()) {
+      write_text(folder_ / datasets::kCalibrationFile, datasets::calibration_text(calibration_));
     }
     if (target_ == Target::kDicp) {
       write_dicp_poses();
@@ -95,8 +103,16 @@ class Converter {
     if (range_.begin < range_.end && dataset_.boxes(range_.begin)) {
       notes_.add(fmt::format("the boxes of objects are left out: {} has no place for them", name));
     }
-    if (target_ != Target::kDicp && dataset_.T_vehicle_sensor()) {
-      notes_.add(fmt::format("the mounting of the sensor on the vehicle is left out: {} has no place for it", name));
+  }
+
+  void add_mountings(const RawScan& scan) {
+    std::vector<Eigen::Isometry3d>& known = calibration_.mountings;
+    known = known.empty() ? scan.mountings : known;
+    const auto is_same = [](const Eigen::Isometry3d& a, const Eigen::Isometry3d& b) {
+      return a.matrix() == b.matrix();
+    };
+    if (!scan.mountings.empty() && !std::ranges::equal(scan.mountings, known, is_same)) {
+      notes_.add("the mountings of the sensors differ from scan to scan: those of the first are written");
     }
   }
 
@@ -124,10 +140,6 @@ class Converter {
 
   /// Poses of the vehicle where the mounting is known: they carry the stamps as well.
   void write_dicp_poses() {
-    const std::optional<Eigen::Isometry3d> T_vehicle_sensor = dataset_.T_vehicle_sensor();
-    if (T_vehicle_sensor) {
-      write_calibration(*T_vehicle_sensor);
-    }
     const std::optional<evaluation::Association> truth = truth_of_scans();
     if (!truth) {
       bool at_the_period = true;
@@ -151,22 +163,13 @@ class Converter {
     for (std::size_t i = 0; i < poses.size(); ++i) {
       poses[i].stamp = dataset_.stamp(range_.begin + i);
     }
-    if (T_vehicle_sensor) {
-      const Eigen::Isometry3d T_sensor_vehicle = T_vehicle_sensor->inverse();
+    if (calibration_.T_vehicle_sensor) {
+      const Eigen::Isometry3d T_sensor_vehicle = calibration_.T_vehicle_sensor->inverse();
       for (formats::StampedPose& pose : poses) {
         pose.T_world_sensor = pose.T_world_sensor * T_sensor_vehicle;
       }
     }
     write_poses(poses);
-  }
-
-  void write_calibration(const Eigen::Isometry3d& T_vehicle_sensor) const {
-    const Eigen::Vector3d t = T_vehicle_sensor.translation();
-    const Eigen::Quaterniond q(T_vehicle_sensor.linear());
-    const nlohmann::ordered_json json = {{"T_V_to_S",
-                                          {{"translation", {{"x", t.x()}, {"y", t.y()}, {"z", t.z()}}},
-                                           {"quaternion", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}}}};
-    formats::write_bytes(folder_ / "calibration.json", json.dump(2) + "\n");
   }
 
   const datasets::Dataset& dataset_;
@@ -175,6 +178,7 @@ class Converter {
   const fs::path& folder_;
   const std::function<void()>& progress_;
   ColumnTypes types_;
+  datasets::Calibration calibration_;
   Notes notes_;
 };
 

@@ -24,9 +24,10 @@ Target find_target(std::string_view name);
 ///   npz   <stamp>.npz with points (N, 3), doppler, time_offset_ns or time_offset_s, los (N, 3) and the other columns
 ///   pcd   <stamp>.pcd, binary, with x, y, z, doppler and so on; los_x, los_y, los_z
 ///   ply   <stamp>.ply, the same
-/// The stamp is in nanoseconds, with zeros in front to 19 digits; the truth is in ref_poses.txt. Every column has the
-/// smallest type that holds all its numbers exactly, the same in all files: what came from float32 stays float32, bit
-/// by bit. The scans are read twice, once to learn these types; `progress` is called after each reading.
+/// The stamp is in nanoseconds, with zeros in front to 19 digits; the truth is in ref_poses.txt; where the sensor or
+/// the sensors of a rig sit in calibration.json (datasets/calibration.hpp). Every column has the smallest type that
+/// holds all its numbers exactly, the same in all files: what came from float32 stays float32, bit by bit. The scans
+/// are read twice, once to learn these types; `progress` is called after each reading.
 ///
 /// Gives what the target cannot hold, in sentences. Throws DataError where the recording cannot be read or the machine
 /// fails.

@@ -200,9 +200,13 @@ TEST_F(Conversion, WhatIsLostIsSaid) {
   EXPECT_TRUE(noted("ground truth is left out"));
   EXPECT_TRUE(noted("times of the scans are left out"));
   EXPECT_TRUE(noted("compensated is left out"));
-  converted(recording, Target::kPly);
-  EXPECT_TRUE(noted("mounting of the sensor"));
+  EXPECT_FALSE(converted(recording, Target::kPly)->T_vehicle_sensor()->matrix().hasNaN());
+  EXPECT_FALSE(noted("mounting"));
   EXPECT_FALSE(noted("float32"));
+  recording.scans[0].mountings = {Eigen::Isometry3d::Identity()};
+  recording.scans[2].mountings = {Eigen::Isometry3d(Eigen::Translation3d(1, 0, 0))};
+  converted(recording, Target::kNpz);
+  EXPECT_TRUE(noted("mountings of the sensors differ"));
 }
 
 TEST_F(Conversion, DicpGetsPosesAtTheTimesOfScans) {

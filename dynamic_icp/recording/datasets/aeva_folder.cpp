@@ -123,10 +123,10 @@ std::unique_ptr<Dataset> open_helipr(const fs::path& folder, const OpenOptions& 
   recording.scans = stamped_files(child(folder, "LiDAR/Aeva"), ".bin", options.period_s);
   recording.format = "helipr";
   recording.layout_of = layout_of;
+  recording.doppler_kind = DopplerKind::kCompensated;
   recording.scans.assumptions.emplace_back(
-      "the Doppler is taken as relative, with the ego motion in it; this is uncertain: the data set's author says "
-      "it was taken out, published work uses it as if not; the diagnosis checks it against the motion; a stated "
-      "Doppler kind decides");
+      "the Doppler is taken as compensated, as the authors of the data set say; where it is not the diagnosis finds "
+      "it, and a stated Doppler kind decides");
   recording.truth = named_truth(
       std::array{find_part(folder, "LiDAR_GT/Aeva_gt.txt"), find_part(folder, "LiDAR_GT/global_Aeva_gt.txt")},
       recording.scans.stamps, recording.scans.assumptions);

@@ -11,6 +11,7 @@
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/foreign_numbers.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
+#include "dynamic_icp/recording/formats/channel.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 
 namespace dynamic_icp::datasets {
@@ -22,7 +23,14 @@ constexpr const char* kRawFolder = "pointcloud_raw";
 constexpr const char* kCompensatedFolder = "pointcloud_compensated";
 constexpr const char* kSequenceFile = "sequence.json";
 constexpr double kNanosecond = 1e-9;
-constexpr std::array<const char*, 3> kOtherColumns = {"reflectivity", "line_index", "semantic_labels_idx"};
+/// Columns beside point, Doppler and time.
+struct OtherColumn {
+  const char* name;
+  formats::Channel channel;
+};
+constexpr std::array<OtherColumn, 3> kOtherColumns = {{{"reflectivity", formats::Channel::kIntensity},
+                                                       {"line_index", formats::Channel::kLine},
+                                                       {"semantic_labels_idx", formats::Channel::kNone}}};
 
 bool is_sequence(const fs::path& folder) {
   return fs::is_regular_file(folder / kSequenceFile) &&
@@ -93,10 +101,12 @@ class AevaScenesDataset final : public Dataset {
     raw.stamp = sequence_.frames.at(index).stamp;
     raw.doppler_kind = doppler_kind_;
     const std::vector<Cloud> clouds = clouds_of(index);
+    ChannelValues channels;
     for (const Cloud& cloud : clouds) {
-      append(cloud, raw);
+      append(cloud, raw, channels);
       refuse_foreign_numbers(raw, cloud.path);
     }
+    set_channels(channels, index, raw);
     // Some without times: those of the others would be of no use.
     raw.times.resize(raw.times.size() == raw.points.size() ? raw.times.size() : 0);
     if (clouds.empty()) {
@@ -113,9 +123,9 @@ class AevaScenesDataset final : public Dataset {
     for (const Cloud& cloud : clouds_of(index)) {
       const formats::NpzFile file(cloud.path);
       const std::size_t points = formats::column_as_doubles(file.read("xyz"), 2).size();  // checks the shape as well
-      for (const char* name : kOtherColumns) {
-        if (file.contains(name)) {
-          append_column(columns, rows, read_column(file, name, points), name);
+      for (const OtherColumn& other : kOtherColumns) {
+        if (file.contains(other.name)) {
+          append_column(columns, rows, read_column(file, other.name, points), other.name);
         }
       }
       rows += points;
@@ -145,6 +155,9 @@ class AevaScenesDataset final : public Dataset {
     std::size_t number = 0;  ///< of the LiDAR among those taken
     fs::path path;
   };
+
+  /// The numbers of kOtherColumns, of one LiDAR after the other; fewer than points where one of them has none.
+  using ChannelValues = std::array<std::vector<double>, kOtherColumns.size()>;
 
   [[nodiscard]] bool merges() const { return lidars_.size() > 1; }
 
@@ -227,7 +240,20 @@ class AevaScenesDataset final : public Dataset {
     return clouds;
   }
 
-  void append(const Cloud& cloud, RawScan& raw) const {
+  /// A channel that one of the LiDARs lacks is none of the scan.
+  void set_channels(const ChannelValues& channels, std::size_t index, RawScan& raw) const {
+    for (std::size_t k = 0; k < kOtherColumns.size(); ++k) {
+      if (channels[k].size() == raw.points.size()) {
+        formats::warn_of_column(raw, scan_file(index), kOtherColumns[k].name,
+                                formats::set_channel(raw, kOtherColumns[k].channel, channels[k]));
+      }
+    }
+    for (std::size_t k = 0; merges() && k < lidars_.size(); ++k) {
+      raw.mountings.push_back(sequence_.T_vehicle_lidar.at(lidars_[k]));
+    }
+  }
+
+  void append(const Cloud& cloud, RawScan& raw, ChannelValues& channels) const {
     const formats::NpzFile file(cloud.path);
     const formats::NpyArray xyz = file.read("xyz");
     const std::array<std::vector<double>, 3> axes = {
@@ -246,6 +272,13 @@ class AevaScenesDataset final : public Dataset {
       }
     }
     raw.doppler.insert(raw.doppler.end(), velocity.begin(), velocity.end());
+    raw.channels.sensor.resize(merges() ? raw.points.size() : 0, static_cast<std::uint8_t>(cloud.number));
+    for (std::size_t k = 0; k < kOtherColumns.size(); ++k) {
+      if (kOtherColumns[k].channel != formats::Channel::kNone && file.contains(kOtherColumns[k].name)) {
+        const std::vector<double> values = formats::column_as_doubles(read_column(file, kOtherColumns[k].name, rows));
+        channels[k].insert(channels[k].end(), values.begin(), values.end());
+      }
+    }
     if (file.contains("time_offset_ns")) {
       for (const double ns : formats::column_as_doubles(read_column(file, "time_offset_ns", rows))) {
         raw.times.push_back(kNanosecond * ns);

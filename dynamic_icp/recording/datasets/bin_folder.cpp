@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -22,8 +23,10 @@ namespace {
 namespace fs = std::filesystem;
 using formats::RecordLayout;
 
-constexpr std::array<const RecordLayout*, 8> kCandidates = {
-    &formats::kAeva29,   &formats::kAeva25,   &formats::kBoreas40, &formats::kBoreas28, &formats::kBoreas28BeamThenTime,
+// The first is all that a folder named velodyne may hold: anything else there is of KITTI, which has no Doppler.
+constexpr std::array<const RecordLayout*, 9> kCandidates = {
+    &formats::kVod28,    &formats::kAeva29,   &formats::kAeva25,
+    &formats::kBoreas40, &formats::kBoreas28, &formats::kBoreas28BeamThenTime,
     &formats::kBoreas24, &formats::kXyzdTime, &formats::kXyzd};
 
 bool is_velodyne(const fs::path& folder) { return same_name(folder, "velodyne") && holds_files(folder, ".bin"); }
@@ -42,6 +45,12 @@ fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& 
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& content) {
+  if (is_velodyne(file.parent_path())) {
+    throw DataError(fmt::format(
+        "{}: looks like KITTI, whose fourth number is the reflectance and not Doppler (format dicp reads it "
+        "as Doppler all the same)",
+        file.parent_path().string()));
+  }
   if (const std::string other = without_doppler(content); !other.empty()) {
     throw DataError(fmt::format("{}: {}", file.string(), other));
   }
@@ -61,15 +70,10 @@ fs::path find_bin_folder(const fs::path& input) {
 }
 
 std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptions& options) {
-  if (is_velodyne(named_path(folder))) {
-    throw DataError(fmt::format(
-        "{}: looks like KITTI, whose fourth number is the reflectance and not Doppler (format dicp reads it "
-        "as Doppler all the same)",
-        folder.string()));
-  }
   StampedFiles scans = stamped_files(folder, ".bin", options.period_s);
   const fs::path first = first_with_points(folder, scans.files);
-  const RecordLayout* const layout = guess_layout(first, kCandidates);
+  const std::size_t candidates = is_velodyne(named_path(folder)) ? 1 : kCandidates.size();
+  const RecordLayout* const layout = guess_layout(first, std::span(kCandidates).first(candidates));
   if (layout == nullptr) {
     refuse(first, formats::read_whole_file(first, formats::kMaxRecordFileBytes));
   }
@@ -80,6 +84,11 @@ std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptio
   recording.scans.assumptions.push_back(
       fmt::format("only *.bin files: read as records of {} bytes ({}), as {} looks like", layout->bytes, layout->name,
                   first.filename().string()));
+  if (layout == &formats::kVod28) {
+    recording.scans.assumptions.emplace_back(
+        "View-of-Delft: the Doppler is v_r, relative; points of earlier scans are left out; its frames follow the "
+        "LiDAR, 10 in a second, while the radar measures 13 times: the time between scans is uncertain");
+  }
   return make_record_dataset(std::move(recording));
 }
 

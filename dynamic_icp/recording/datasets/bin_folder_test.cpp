@@ -54,6 +54,25 @@ TEST_F(BinFolder, RecordsAreToldByTheirContent) {
   }
 }
 
+// Seen from 20 m/s, beside something that comes towards it.
+std::string vod_record(float i, float scan_offset) {
+  return floats({i, 0.1F * i, 0.5F, -10, -20, i < 20 ? -3.0F : 0.25F, scan_offset});
+}
+
+TEST_F(BinFolder, TheRadarOfViewOfDelftIsNoKitti) {
+  write("radar/training/velodyne/00549.bin", many([](float i) { return vod_record(i, 0); }));
+  write("radar/training/velodyne/00544.bin", many([](float i) { return vod_record(i, i < 100 ? 0.0F : -1.0F); }));
+  const std::unique_ptr<Dataset> dataset = open_dataset(folder_);
+  EXPECT_EQ(dataset->format(), "bin");
+  EXPECT_EQ(dataset->doppler_kind(), DopplerKind::kRelative);
+  EXPECT_EQ(dataset->stamp(0).ns, 0) << "names that count are no times";
+  EXPECT_EQ(dataset->stamp(1).ns, 500'000'000);
+  EXPECT_EQ(dataset->scan(1).doppler.at(0), -20.0);
+  EXPECT_EQ(dataset->scan(0).is_unusable.at(290 - 1), 1);
+  EXPECT_TRUE(said(*dataset, "a scan period of 0.1 s is assumed"));
+  EXPECT_TRUE(said(*dataset, "the time between scans is uncertain"));
+}
+
 TEST_F(BinFolder, KittiIsRefusedUnlessNamedDicp) {
   const auto reflectances = many([](float i) { return floats({i, 2, 3, 0.003F * i}); });
   write("000000.bin", reflectances);
@@ -75,9 +94,9 @@ TEST_F(BinFolder, RadarScansAreNamed) {
 
 TEST_F(BinFolder, WhatLooksLikeNothingIsRefusedWithWhatWasTried) {
   write("1.bin", "no points at all, but 41 bytes of some text");
-  expect_within(
-      fault(),
-      "1.bin: 43 bytes that look like no records of points with Doppler. Tried:\n  aeva29, 29 bytes: does not divide");
+  expect_within(fault(),
+                "1.bin: 43 bytes that look like no records of points with Doppler. Tried:\n  radar of View-of-Delft, "
+                "28 bytes: does not divide");
   write("1.bin", std::string(16, '\x7f'));
   expect_within(fault(), "xyzd, 16 bytes");
   write("1.bin", "");

@@ -7,6 +7,7 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/column_file.hpp"
 #include "dynamic_icp/recording/datasets/field_names.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
@@ -23,7 +24,7 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kDopplerEnding = "_dop.npy";
-constexpr std::size_t kScansSearchedForTimes = 20;
+constexpr std::size_t kScansSearched = 20;  // for points, to tell by them what columns mean
 
 std::string_view extension(ColumnFileKind kind) {
   switch (kind) {
@@ -110,6 +111,8 @@ class ColumnDataset final : public Dataset {
     fields_ = map_fields(first.names(), options.fields, files_.front().string(), first.unusable());
     assumptions_.insert(assumptions_.end(), fields_.assumptions.begin(), fields_.assumptions.end());
     find_time_unit(options.period_s);
+    check_channels();
+    take_calibration(folder);
     if (folder.filename().string().find("compensated") != std::string::npos) {
       doppler_kind_ = DopplerKind::kCompensated;
       assumptions_.push_back(
@@ -125,6 +128,9 @@ class ColumnDataset final : public Dataset {
   [[nodiscard]] const formats::Trajectory& ground_truth() const override { return truth_.poses; }
   [[nodiscard]] fs::path ground_truth_file() const override { return truth_.file; }
   [[nodiscard]] const std::vector<std::string>& assumptions() const override { return assumptions_; }
+  [[nodiscard]] std::optional<Eigen::Isometry3d> T_vehicle_sensor() const override {
+    return calibration_.T_vehicle_sensor;
+  }
 
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     const fs::path& path = files_.at(index);
@@ -137,6 +143,7 @@ class ColumnDataset final : public Dataset {
     raw.points = arrays.vectors(fields_.point);
     raw.doppler = arrays.values(fields_.doppler);
     refuse_foreign_numbers(raw, path);
+    set_channels(file, path, raw);
     if (fields_.time) {
       raw.times = times_after(raw.stamp, arrays.get(*fields_.time), time_unit_);
     }
@@ -212,12 +219,72 @@ class ColumnDataset final : public Dataset {
     assumptions_.insert(assumptions_.end(), said.begin(), said.end());
   }
 
+  /// Puts a column into the scan; why it is none of the channel where it is not, else empty.
+  static std::string set_channel(const ColumnFile& file, const ChannelColumn& column, RawScan& raw) {
+    if (std::find(file.names().begin(), file.names().end(), column.array) == file.names().end()) {
+      return "is missing";
+    }
+    const formats::NpyArray array = file.read(column.array);
+    const bool is_column = array.shape.size() == 1 || (array.shape.size() == 2 && array.shape[1] == 1);
+    return is_column
+               ? formats::set_channel(raw, column.channel, formats::column_as_doubles(array))
+               : fmt::format("has the shape ({}), expected one number for each point", fmt::join(array.shape, ", "));
+  }
+
+  void set_channels(const ColumnFile& file, const fs::path& path, RawScan& raw) const {
+    for (const ChannelColumn& column : fields_.channels) {
+      formats::warn_of_column(raw, path, column.array, set_channel(file, column, raw));
+    }
+    const std::vector<std::uint8_t>& sensor = raw.channels.sensor;
+    const std::size_t sensors = calibration_.mountings.size();
+    const auto unknown = std::find_if(sensor.begin(), sensor.end(), [&](std::size_t k) { return k >= sensors; });
+    if (sensors == 0 || (sensor.empty() && !raw.points.empty())) {
+      return;
+    }
+    if (unknown != sensor.end()) {
+      throw DataError(fmt::format("{}: point {} is of sensor {}, but {} has {} sensors, counted from 0", path.string(),
+                                  unknown - sensor.begin(), *unknown, kCalibrationFile, sensors));
+    }
+    raw.mountings = calibration_.mountings;
+  }
+
+  /// What the first scan with points contradicts is no channel of the recording.
+  void check_channels() {
+    RawScan raw;
+    for (std::size_t i = 0;
+         !fields_.channels.empty() && raw.points.empty() && i < std::min(files_.size(), kScansSearched); ++i) {
+      const ColumnFile file(kind_, files_[i]);
+      Arrays arrays(file, files_[i]);
+      raw.points = arrays.vectors(fields_.point);
+      raw.doppler = arrays.values(fields_.doppler);
+      std::erase_if(fields_.channels, [&](const ChannelColumn& column) {
+        const std::string reason = set_channel(file, column, raw);
+        if (!reason.empty()) {
+          assumptions_.push_back(
+              fmt::format("{}: column '{}' is not used: it {}", files_[i].string(), column.array, reason));
+        }
+        return !reason.empty();
+      });
+    }
+  }
+
+  void take_calibration(const fs::path& folder) {
+    calibration_ = find_calibration(folder, assumptions_).value_or(Calibration{});
+    const auto is_sensor = [](const ChannelColumn& column) { return column.channel == formats::Channel::kSensor; };
+    if (!calibration_.mountings.empty() && std::none_of(fields_.channels.begin(), fields_.channels.end(), is_sensor)) {
+      assumptions_.push_back(
+          fmt::format("{}: the mountings of its {} sensors are not used: no column says which of them measured a point",
+                      (folder / kCalibrationFile).string(), calibration_.mountings.size()));
+      calibration_.mountings.clear();
+    }
+  }
+
   /// The first scans may be empty.
   void find_time_unit(double period_s) {
     if (!fields_.time) {
       return;
     }
-    const std::size_t most = std::min(files_.size(), kScansSearchedForTimes);
+    const std::size_t most = std::min(files_.size(), kScansSearched);
     for (std::size_t i = 0; i < most; ++i) {
       const ColumnFile file(kind_, files_[i]);
       Arrays arrays(file, files_[i]);
@@ -237,6 +304,7 @@ class ColumnDataset final : public Dataset {
   std::vector<Stamp> stamps_;
   FieldMap fields_;
   TimeUnit time_unit_;
+  Calibration calibration_;
   DopplerKind doppler_kind_ = DopplerKind::kRelative;
   Truth truth_;
   std::vector<std::string> assumptions_;

@@ -26,6 +26,18 @@ void check_scale(const char* what, std::optional<double> scale) {
   }
 }
 
+/// The axes of the sensors change as those of the scan do, so that swapped axes leave a mounting a rotation.
+void reorder_axes(std::vector<Eigen::Isometry3d>& mountings, const std::array<int, 4>& columns) {
+  Eigen::Matrix3d P = Eigen::Matrix3d::Zero();
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    P(axis, columns[static_cast<std::size_t>(axis)]) = 1.0;
+  }
+  for (Eigen::Isometry3d& T_scan_sensor : mountings) {
+    T_scan_sensor.linear() = P * T_scan_sensor.linear() * P.transpose();
+    T_scan_sensor.translation() = P * T_scan_sensor.translation();
+  }
+}
+
 void reorder_columns(RawScan& scan, const std::array<int, 4>& columns) {
   for (std::size_t i = 0; i < scan.points.size(); ++i) {
     const Eigen::Vector3d p = scan.points[i];
@@ -36,7 +48,9 @@ void reorder_columns(RawScan& scan, const std::array<int, 4>& columns) {
   }
   if (columns[3] != 3) {
     scan.directions.clear();
+    return;
   }
+  reorder_axes(scan.mountings, columns);
   for (Eigen::Vector3d& direction : scan.directions) {
     direction = Eigen::Vector3d(direction[columns[0]], direction[columns[1]], direction[columns[2]]);
   }
@@ -151,6 +165,9 @@ RawScan corrected(RawScan scan, const Correction& correction) {
   if (correction.point_scale) {
     for (Eigen::Vector3d& point : scan.points) {
       point *= *correction.point_scale;
+    }
+    for (Eigen::Isometry3d& T_scan_sensor : scan.mountings) {
+      T_scan_sensor.translation() *= *correction.point_scale;
     }
   }
   const double sign = correction.doppler_sign == DopplerSign::kTowards ? -1.0 : 1.0;

@@ -36,6 +36,8 @@ void check(const Correction& correction);
 
 /// One scan corrected: points, lines of sight, Doppler, times of points and the kind; not its stamp. Lines of sight
 /// that were read are dropped where the Doppler changes places with a coordinate: they were made of the wrong columns.
+/// Mountings are in the unit and the axes of the points: positions are scaled, axes of scan and sensor change places;
+/// they stay where the Doppler changes places with a coordinate.
 RawScan corrected(RawScan scan, const Correction& correction);
 
 /// The recording with its numbers corrected on the way out. Ground truth is left as it is, but where all its stamps are

@@ -38,6 +38,8 @@ class TwoScans final : public Dataset {
     raw.doppler = {4.0, -7.0};
     raw.times = {0.0, 0.05};
     raw.directions = {{0.0, 0.6, 0.8}, {1.0, 0.0, 0.0}};
+    raw.channels.sensor = {0, 0};
+    raw.mountings = {kMounting};
     return raw;
   }
   [[nodiscard]] const formats::Trajectory& ground_truth() const override { return truth_; }
@@ -45,6 +47,8 @@ class TwoScans final : public Dataset {
   [[nodiscard]] const std::vector<std::string>& assumptions() const override { return none_; }
 
   static constexpr std::int64_t kFirst = 3'724'479'779'384'729'507;
+  static inline const Eigen::Isometry3d kMounting =
+      Eigen::Translation3d(1.0, -2.0, 0.5) * Eigen::AngleAxisd(0.7, Vector3d(1.0, 2.0, 3.0).normalized());
 
  private:
   std::array<Stamp, 2> stamps_;
@@ -115,6 +119,28 @@ TEST(Correction, ColumnsArePutInOrder) {
   EXPECT_EQ(scan.points[0], Vector3d(2.0, 3.0, 4.0));
   EXPECT_EQ(scan.doppler[0], 1.0);
   EXPECT_TRUE(scan.directions.empty());
+}
+
+// A point that one of the sensors sees: corrected in the sensor's axes and moved, or moved and corrected, is the same.
+TEST(Correction, MountingsStayWithThePoints) {
+  const Vector3d seen(4.0, 5.0, 6.0);
+  const auto permuted = [](const Vector3d& p, const std::array<int, 4>& columns) {
+    return Vector3d(p[columns[0]], p[columns[1]], p[columns[2]]);
+  };
+  for (const std::array<int, 4> columns : {std::array{0, 1, 2, 3}, {1, 0, 2, 3}, {1, 2, 0, 3}}) {
+    Correction correction;
+    correction.columns = columns;
+    correction.point_scale = 0.001;
+    const RawScan scan = with(correction)->scan(0);
+    ASSERT_EQ(scan.mountings.size(), 1U);
+    const Eigen::Isometry3d& T = scan.mountings[0];
+    EXPECT_NEAR(T.linear().determinant(), 1.0, 1e-12) << "a rotation";
+    EXPECT_TRUE((T * Vector3d(0.001 * permuted(seen, columns)))
+                    .isApprox(0.001 * permuted(TwoScans::kMounting * seen, columns), 1e-12));
+  }
+  Correction correction;
+  correction.columns = std::array{1, 2, 3, 0};
+  EXPECT_EQ(with(correction)->scan(0).mountings[0].matrix(), TwoScans::kMounting.matrix());
 }
 
 TEST(Correction, TimeIsScaledFromTheFirstScanToTheNanosecond) {

@@ -16,7 +16,8 @@
 
 namespace dynamic_icp::datasets {
 
-/// What a recording says of each point beyond RawScan: reflectivity, line, ... by the name it has there.
+/// What a recording says of each point beyond its measurement, by the name it has there: reflectivity, line, ..., also
+/// where it is a channel of RawScan as well.
 struct PointColumn {
   std::string name;
   std::vector<double> values;  ///< one per point, as stored: no unit is changed

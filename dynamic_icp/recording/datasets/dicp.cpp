@@ -1,18 +1,16 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include <cmath>
 #include <utility>
 
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
 #include "dynamic_icp/recording/datasets/record_dataset.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
-#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -58,27 +56,6 @@ fs::path find_dicp_scans(const fs::path& input) {
   });
 }
 
-Eigen::Isometry3d read_calibration(const fs::path& path) {
-  // The file calls it T_V_to_S, but it is applied to points of the sensor to get points of the vehicle.
-  try {
-    const nlohmann::json calibration = nlohmann::json::parse(formats::read_text_file(path)).at("T_V_to_S");
-    const nlohmann::json& t = calibration.at("translation");
-    const nlohmann::json& q = calibration.at("quaternion");
-    const Eigen::Quaterniond rotation(q.at("w").get<double>(), q.at("x").get<double>(), q.at("y").get<double>(),
-                                      q.at("z").get<double>());
-    if (std::abs(rotation.norm() - 1.0) > 1e-3) {
-      throw DataError(fmt::format("{}: quaternion has length {:.4f}, expected 1", path.string(), rotation.norm()));
-    }
-    return Eigen::Translation3d(t.at("x").get<double>(), t.at("y").get<double>(), t.at("z").get<double>()) *
-           rotation.normalized();
-  } catch (const nlohmann::json::exception& error) {
-    throw DataError(
-        fmt::format("{}: expected {{\"T_V_to_S\": {{\"translation\": {{x, y, z}}, \"quaternion\": "
-                    "{{w, x, y, z}}}}}}: {}",
-                    path.string(), error.what()));
-  }
-}
-
 std::unique_ptr<Dataset> open_dicp(const fs::path& folder, const OpenOptions& options) {
   RecordRecording recording;
   recording.format = "dicp";
@@ -86,8 +63,15 @@ std::unique_ptr<Dataset> open_dicp(const fs::path& folder, const OpenOptions& op
   if (fs::is_directory(folder / "times")) {
     recording.times = folder / "times";
   }
-  if (const fs::path calibration = folder / "calibration.json"; fs::exists(calibration)) {
-    recording.T_vehicle_sensor = read_calibration(calibration);
+  std::vector<std::string> assumptions;
+  if (const fs::path path = folder / kCalibrationFile; fs::exists(path)) {
+    const Calibration calibration = read_calibration(path);
+    recording.T_vehicle_sensor = calibration.T_vehicle_sensor;
+    if (!calibration.mountings.empty()) {
+      assumptions.push_back(
+          fmt::format("{}: the mountings of its {} sensors are not used: no file says which of them measured a point",
+                      path.string(), calibration.mountings.size()));
+    }
   }
   const fs::path scans = is_dicp(folder) ? folder / kScans : folder;
   if (const fs::path poses = folder / "ref_poses.txt"; fs::exists(poses)) {
@@ -99,6 +83,7 @@ std::unique_ptr<Dataset> open_dicp(const fs::path& folder, const OpenOptions& op
       sentence = "no ref_poses.txt: " + sentence;
     }
   }
+  recording.scans.assumptions.insert(recording.scans.assumptions.begin(), assumptions.begin(), assumptions.end());
   return make_record_dataset(std::move(recording));
 }
 

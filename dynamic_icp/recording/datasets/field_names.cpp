@@ -18,16 +18,37 @@ namespace {
 using Aliases = std::span<const std::string_view>;
 
 constexpr std::array<std::string_view, 4> kPoints = {"points", "xyz", "pts", "positions"};
-constexpr std::array<std::string_view, 13> kDoppler = {"doppler",    "velocity",     "radial_velocity",
+constexpr std::array<std::string_view, 15> kDoppler = {"doppler",    "velocity",     "radial_velocity",
                                                        "radial_vel", "v_radial",     "doppler_velocity",
-                                                       "dopplers",   "velocity_mps", "vel",
-                                                       "v_r",        "vr",           "rv",
-                                                       "v"};
-constexpr std::array<std::string_view, 9> kTime = {"time_offset_ns", "time_offset_s", "offset_time", "t",
-                                                   "time_stamp",     "timestamp",     "time",        "time_offset",
-                                                   "time_offsets"};
+                                                       "dopplers",   "velocity_mps", "v_doppler_mps",
+                                                       "range_rate", "vel",          "v_r",
+                                                       "vr",         "rv",           "v"};
+constexpr std::array<std::string_view, 11> kTime = {
+    "time_offset_ns", "time_offset_s",        "offset_time",    "t", "time_stamp", "timestamp", "time", "time_offset",
+    "time_offsets",   "nanosecs_since_frame", "timestamp_nsecs"};
 constexpr std::array<std::string_view, 2> kLineOfSight = {"los", "directions"};
 constexpr std::array<std::string_view, 6> kKeys = {"x", "y", "z", "doppler", "time", "los"};
+
+struct ChannelNames {
+  formats::Channel channel;
+  std::array<std::string_view, 5> names;  ///< empty: no further one
+};
+
+constexpr std::array<ChannelNames, 10> kChannels = {
+    {{formats::Channel::kSensor, {"sensor", "lidar", "sensor_id"}},
+     {formats::Channel::kLine, {"ring", "line", "line_index", "channel", "beam_id"}},
+     {formats::Channel::kFace, {"face"}},
+     {formats::Channel::kIntensity, {"intensity", "reflectivity", "rcs"}},
+     {formats::Channel::kReturnNumber, {"return", "return_index", "echo"}},
+     {formats::Channel::kValid, {"valid"}},
+     {formats::Channel::kValid, {"is_valid"}},
+     {formats::Channel::kInvalid, {"in_ambiguity_region"}},
+     {formats::Channel::kInvalid, {"drop_reason"}},
+     {formats::Channel::kInvalid, {"scan_offset"}}}};
+
+bool is_flag(formats::Channel channel) {
+  return channel == formats::Channel::kValid || channel == formats::Channel::kInvalid;
+}
 
 /// Names that go without saying.
 bool is_obvious(std::string_view name) {
@@ -57,6 +78,7 @@ class FieldFinder {
     find_doppler();
     map_.time = find_column("time", kTime);
     find_line_of_sight();
+    find_channels();
     return std::move(map_);
   }
 
@@ -170,6 +192,23 @@ class FieldFinder {
     const std::string* const z = same_as("los_z");
     if (x != nullptr && y != nullptr && z != nullptr) {
       map_.line_of_sight = {{{*x, 0, true}, {*y, 0, true}, {*z, 0, true}}};
+    }
+  }
+
+  void find_channels() {
+    for (const ChannelNames& known : kChannels) {
+      for (const std::string_view alias : known.names) {
+        const std::string* const name = alias.empty() ? nullptr : same_as(alias);
+        if (name == nullptr || map_.uses(*name)) {
+          continue;
+        }
+        map_.channels.push_back({known.channel, *name});
+        if (is_flag(known.channel)) {
+          map_.assumptions.push_back(
+              fmt::format("points that column '{}' flags as no measurement are left out", *name));
+        }
+        break;
+      }
     }
   }
 

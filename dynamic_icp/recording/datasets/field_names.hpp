@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "dynamic_icp/recording/formats/channel.hpp"
+
 namespace dynamic_icp::datasets {
 
 /// A column of a file whose arrays have names.
@@ -20,15 +22,24 @@ struct FieldColumn {
   bool operator==(const FieldColumn&) const = default;
 };
 
+/// A column that says more of a point.
+struct ChannelColumn {
+  formats::Channel channel = formats::Channel::kNone;
+  std::string array;
+
+  bool operator==(const ChannelColumn&) const = default;
+};
+
 /// Which columns say what.
 struct FieldMap {
   std::array<FieldColumn, 3> point;  ///< x, y, z
   FieldColumn doppler;
   std::optional<FieldColumn> time;
   std::optional<std::array<FieldColumn, 3>> line_of_sight;
+  std::vector<ChannelColumn> channels;   ///< each at most once, but for flags; never a column that is used above
   std::vector<std::string> assumptions;  ///< what was chosen where the name was not the obvious one, in sentences
 
-  /// Whether anything is taken from the array of that name.
+  /// Whether point, Doppler, time or line of sight are taken from the array of that name.
   [[nodiscard]] bool uses(const std::string& array) const;
 };
 
@@ -37,10 +48,16 @@ struct FieldMap {
 ///
 ///   point          x, y, z; or one array of them: points, xyz, pts, positions
 ///   doppler        doppler, velocity, radial_velocity, radial_vel, v_radial, doppler_velocity, dopplers, velocity_mps,
-///                  vel, v_r, vr, rv, v, in this order
+///                  v_doppler_mps, range_rate, vel, v_r, vr, rv, v, in this order
 ///   time           time_offset_ns, time_offset_s, offset_time, t, time_stamp, timestamp, time, time_offset,
-///                  time_offsets, in this order
+///                  time_offsets, nanosecs_since_frame, timestamp_nsecs, in this order
 ///   line of sight  los or directions, or los_x, los_y, los_z
+///   sensor         sensor, lidar, sensor_id; the first of these, and so on
+///   line           ring, line, line_index, channel, beam_id
+///   face           face
+///   intensity      intensity, reflectivity, rcs
+///   return number  return, return_index, echo
+///   no measurement valid, is_valid where 0; in_ambiguity_region, drop_reason, scan_offset where not 0
 ///
 /// `wanted` goes before that: the column of x, y, z, doppler or time, "points[3]" being the fourth of an array, and the
 /// array of los. Throws UsageError for other keys; DataError naming the columns there are where a wanted one is not

@@ -83,6 +83,39 @@ TEST(FieldNames, WrongWishesAreErrors) {
   EXPECT_NE(message({"points", "v"}, {{"doppler", "pints[0]"}}).find("'pints[0]'"), std::string::npos);
 }
 
+TEST(FieldNames, WhatElseIsSaidOfAPoint) {
+  using formats::Channel;
+  const auto channels = [](const Names& more, const Wanted& wanted = {}) {
+    Names names = {"x", "y", "z", "doppler"};
+    names.insert(names.end(), more.begin(), more.end());
+    return map(names, wanted).channels;
+  };
+  EXPECT_TRUE(channels({}).empty());
+  using Columns = std::vector<ChannelColumn>;
+  EXPECT_EQ(channels({"beam_id", "LINE_INDEX", "RCS", "reflectivity", "face", "echo", "lidar"}),
+            (Columns{{Channel::kSensor, "lidar"},
+                     {Channel::kLine, "LINE_INDEX"},
+                     {Channel::kFace, "face"},
+                     {Channel::kIntensity, "reflectivity"},
+                     {Channel::kReturnNumber, "echo"}}))
+      << "in the order of the list";
+  EXPECT_EQ(channels({"drop_reason", "is_valid", "in_ambiguity_region", "scan_offset"}),
+            (Columns{{Channel::kValid, "is_valid"},
+                     {Channel::kInvalid, "in_ambiguity_region"},
+                     {Channel::kInvalid, "drop_reason"},
+                     {Channel::kInvalid, "scan_offset"}}))
+      << "all flags";
+  EXPECT_EQ(channels({"intensity", "rcs"}, {{"doppler", "intensity"}}), (Columns{{Channel::kIntensity, "rcs"}}))
+      << "not what is something else already";
+  EXPECT_FALSE(map({"x", "y", "z", "doppler", "ring"}).uses("ring")) << "it stays a column of the recording";
+}
+
+TEST(FieldNames, OfDriversOfFmcwSensors) {
+  EXPECT_EQ(map({"x", "y", "z", "range_rate"}).doppler.array, "range_rate");
+  EXPECT_EQ(map({"x", "y", "z", "v_doppler_mps", "v_r"}).doppler.array, "v_doppler_mps");
+  EXPECT_EQ(map({"x", "y", "z", "v", "timestamp_nsecs", "nanosecs_since_frame"}).time->array, "nanosecs_since_frame");
+}
+
 TEST(FieldNames, KnowsWhatIsUsed) {
   const FieldMap fields = map({"points", "doppler", "los", "t", "line"});
   EXPECT_TRUE(fields.uses("points") && fields.uses("doppler") && fields.uses("los") && fields.uses("t"));

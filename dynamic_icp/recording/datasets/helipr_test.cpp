@@ -78,12 +78,13 @@ TEST_F(Helipr, TheStampDecidesWhereTheSizeFitsBothOrNeither) {
   expect_within(open_dataset(folder_)->scan(0).warning, "17 bytes after record 2");
 }
 
-TEST_F(Helipr, TheKindOfItsDopplerIsSaidToBeUncertain) {
+TEST_F(Helipr, ItsDopplerIsCompensatedWhichIsSaid) {
   write(kLastOld, old_records(1));
   const std::unique_ptr<Dataset> dataset = open_dataset(folder_);
-  EXPECT_EQ(dataset->doppler_kind(), DopplerKind::kRelative);
+  EXPECT_EQ(dataset->doppler_kind(), DopplerKind::kCompensated);
+  EXPECT_EQ(dataset->scan(0).doppler_kind, DopplerKind::kCompensated);
   ASSERT_EQ(dataset->assumptions().size(), 1U);
-  expect_within(dataset->assumptions()[0], "uncertain");
+  expect_within(dataset->assumptions()[0], "compensated");
   expect_within(dataset->assumptions()[0], "diagnosis");
 }
 

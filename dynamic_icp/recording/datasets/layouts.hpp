@@ -23,12 +23,10 @@ std::filesystem::path find_dicp_scans(const std::filesystem::path& input);
 ///   times/00001.bin ...         optional: float32 seconds after the stamp per point, for scans that take time
 ///   ref_poses.txt               optional: TUM rows, one per scan; gives the time stamps too
 ///   calibration.json            optional: pose of the sensor in the vehicle; ref_poses.txt then holds vehicle poses
+///                               (calibration.hpp)
 /// Scans are ordered by the number in their file name. Without ref_poses.txt the names may be time stamps; else the
 /// period of the options is assumed. A folder without point_clouds/ holds the scans itself.
 std::unique_ptr<Dataset> open_dicp(const std::filesystem::path& folder, const OpenOptions& options = {});
-
-/// T_vehicle_sensor from a calibration.json of this layout. Throws DataError naming the file and what was expected.
-Eigen::Isometry3d read_calibration(const std::filesystem::path& path);
 
 /// The folder of a recording of HeRCULES, up to three levels below `input`; empty when there is none.
 std::filesystem::path find_hercules(const std::filesystem::path& input);
@@ -51,7 +49,7 @@ std::filesystem::path find_helipr(const std::filesystem::path& input);
 ///                                (formats::kAeva25, kAeva29): by the stamp, and by the content of a file whose size
 ///                                contradicts it
 ///   LiDAR_GT/Aeva_gt.txt         optional, or global_Aeva_gt.txt: poses of the sensor, TUM columns with whole ns
-/// Whether the Doppler is relative or compensated is not settled: relative here, with a sentence that says so.
+/// The Doppler is taken as compensated, as the authors of the data set say, with a sentence that says so.
 std::unique_ptr<Dataset> open_helipr(const std::filesystem::path& folder, const OpenOptions& options = {});
 
 /// The folder of a recording of either of these two (the one that holds LiDAR/Aeva/*.bin): `input`, the only one up to
@@ -105,7 +103,8 @@ std::unique_ptr<Dataset> open_aevascenes(const std::filesystem::path& found, con
 // Recordings of files whose columns have names, one a scan: archives of NumPy arrays (*.npz), PCD or PLY. Which column
 // says what is found by its name (field_names.hpp), once for all scans, as is the unit of the times of points
 // (point_times.hpp), for which opening reads one scan. Stamps are in the names of the files (scan_stamps.hpp), ground
-// truth is looked for beside them (truth_search.hpp). What is called compensated holds compensated Doppler.
+// truth is looked for beside them (truth_search.hpp), and a calibration.json (calibration.hpp): the poses of the truth
+// are those of the scans' frame all the same. What is called compensated holds compensated Doppler.
 
 /// The file or the folder of such files that the input is, or that lies up to three levels below it; else empty. Throws
 /// DataError that lists them when there are several.
@@ -124,7 +123,8 @@ std::unique_ptr<Dataset> open_ply(const std::filesystem::path& found, const Open
 std::filesystem::path find_bin_folder(const std::filesystem::path& input);
 
 /// Its scans, in records of the layout that the content of the first looks like, which is said among the assumptions.
-/// Throws DataError when it looks like none, and for scans of KITTI, which have no Doppler.
+/// A folder named velodyne is of the radar of View-of-Delft or refused. Throws DataError when it looks like none, and
+/// for scans of KITTI, which have no Doppler.
 std::unique_ptr<Dataset> open_bin_folder(const std::filesystem::path& folder, const OpenOptions& options = {});
 
 }  // namespace dynamic_icp::datasets

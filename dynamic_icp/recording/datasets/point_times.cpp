@@ -45,7 +45,9 @@ struct UnitName {
   std::int64_t ns;
 };
 
-constexpr std::array<UnitName, 4> kUnits = {{{"_ns", "nanoseconds", 1},
+constexpr std::array<UnitName, 6> kUnits = {{{"_ns", "nanoseconds", 1},
+                                             {"_nsecs", "nanoseconds", 1},
+                                             {"nanosecs_since_frame", "nanoseconds", 1},
                                              {"_us", "microseconds", kMicrosecond},
                                              {"_ms", "milliseconds", kMillisecond},
                                              {"_s", "seconds", kSecond}}};

@@ -19,7 +19,8 @@ struct TimeUnit {
   std::string assumption;  ///< how this was found, in a sentence, where the name does not say it; else empty
 };
 
-/// Finds the unit of a column by its name ("..._ns", "..._us", "..._ms", "..._s"), else by its type and by the numbers
+/// Finds the unit of a column by its name ("..._ns", "..._nsecs", "nanosecs_since_frame", "..._us", "..._ms", "..._s"),
+/// else by its type and by the numbers
 /// of a scan: integers are nanoseconds; floating-point numbers seconds where they span less than 10, microseconds where
 /// they span most of a period of `period_s` as such, nanoseconds else. Numbers that can only be times since 1970 are
 /// taken as such, in the unit of their magnitude. `column` is of the shape (N,) or (N, 1); infinite ones and NaN are

@@ -43,6 +43,8 @@ TEST(PointTimes, FloatsAreSecondsOrNanosecondsBySpan) {
 
 TEST(PointTimes, NamesWithUnitsGoFirstAndNeedNoWords) {
   expect_near(read<float>("time_offset_ns", {0.0F, 5.0F}), {0, 5e-9}, 1e-20);
+  expect_near(read<float>("nanosecs_since_frame", {0.0F, 5.0F}), {0, 5e-9}, 1e-20);
+  expect_near(read<float>("timestamp_nsecs", {0.0F, 5.0F}), {0, 5e-9}, 1e-20);
   expect_near(read<std::int32_t>("offset_us", {7}), {7e-6}, 1e-15);
   expect_near(read<std::int32_t>("offset_ms", {7}), {7e-3}, 1e-15);
   EXPECT_TRUE(time_unit("time_offset_ns", column<float>({0.0F}), 0.1).assumption.empty());

@@ -47,6 +47,7 @@ class RecordDataset final : public Dataset {
   [[nodiscard]] std::size_t size() const override { return recording_.scans.files.size(); }
   [[nodiscard]] Stamp stamp(std::size_t index) const override { return recording_.scans.stamps.at(index); }
   [[nodiscard]] fs::path scan_file(std::size_t index) const override { return recording_.scans.files.at(index); }
+  [[nodiscard]] DopplerKind doppler_kind() const override { return recording_.doppler_kind; }
   [[nodiscard]] const formats::Trajectory& ground_truth() const override { return recording_.truth.poses; }
   [[nodiscard]] fs::path ground_truth_file() const override { return recording_.truth.file; }
   [[nodiscard]] const std::vector<std::string>& assumptions() const override { return recording_.scans.assumptions; }
@@ -61,6 +62,7 @@ class RecordDataset final : public Dataset {
     RawScan raw = formats::read_points(file, layout);
     refuse_foreign_numbers(raw, file, layout);
     raw.stamp = recording_.scans.stamps[index];
+    raw.doppler_kind = recording_.doppler_kind;
     if (!recording_.times.empty()) {
       raw.times = read_times(recording_.times / file.filename(), raw, file);
     }

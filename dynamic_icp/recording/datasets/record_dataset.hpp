@@ -22,7 +22,8 @@ struct RecordRecording {
   std::function<const formats::RecordLayout&(const std::filesystem::path& file, Stamp stamp)> layout_of;
   std::filesystem::path times = {};  ///< folder of the times of points, a file of float32 for each scan; empty: none
   Truth truth;
-  std::optional<Eigen::Isometry3d> T_vehicle_sensor;
+  std::optional<Eigen::Isometry3d> T_vehicle_sensor = {};
+  DopplerKind doppler_kind = DopplerKind::kRelative;
 };
 
 /// The recording as a dataset. Its scans throw DataError for numbers that were never measured (record_guess.hpp).

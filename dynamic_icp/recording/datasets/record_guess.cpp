@@ -81,6 +81,14 @@ bool has_beam(std::string_view record, const RecordLayout& layout) {
   return is_count(number(record, layout.time == 20 ? 24 : 20), 3.0) && std::isfinite(number(record, layout.time));
 }
 
+/// Of View-of-Delft: a radar cross section in dB, two radial velocities, and 0 or the number of an earlier scan.
+bool is_vod(std::string_view record) {
+  constexpr double kLargest = 150.0;
+  constexpr double kMaxScans = 10.0;
+  return std::abs(number(record, 12)) < kLargest && std::abs(number(record, 20)) < kLargest &&
+         is_count(-number(record, 24), kMaxScans);
+}
+
 /// Times of points in the order they were measured, of a scan that takes about 0.1 s.
 bool times_pass(const std::vector<std::string_view>& samples, std::size_t at) {
   constexpr double kShortest = 0.02;
@@ -107,6 +115,12 @@ bool fits(std::string_view content, std::size_t record_bytes) {
   return !content.empty() && content.size() % record_bytes == 0;
 }
 
+/// In records of that length others have times where View-of-Delft has its second velocity.
+bool has_radar_values(const std::vector<std::string_view>& samples) {
+  const auto is_measured = [](std::string_view record) { return number(record, 12) != 0.0; };
+  return std::any_of(samples.begin(), samples.end(), is_measured) && !times_pass(samples, 20);
+}
+
 /// The radar of HeRCULES: the range at @16 is the distance of the point.
 bool is_continental(std::string_view record) {
   const double range = std::hypot(number(record, 0), number(record, 4), number(record, 8));
@@ -129,6 +143,9 @@ bool looks_like(std::string_view content, const RecordLayout& layout) {
   }
   if (&layout == &formats::kBoreas40) {
     return has(is_boreas40);
+  }
+  if (&layout == &formats::kVod28) {
+    return has(is_vod) && has_radar_values(samples);
   }
   if (layout.bytes == formats::kBoreas28.bytes || &layout == &formats::kBoreas32) {
     return has([&](std::string_view record) { return has_beam(record, layout); });

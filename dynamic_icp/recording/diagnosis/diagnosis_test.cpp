@@ -67,7 +67,11 @@ TEST(Diagnosis, AFixTakesInWhatWasCorrectedWrong) {
 
 TEST(Diagnosis, EmptyScansAreNoReasonToFail) {
   Recording recording;
-  recording.perturb = [](RawScan& raw, const Vector3d&) { raw = {raw.stamp, {}, {}, {}, {}, raw.doppler_kind, {}}; };
+  recording.perturb = [](RawScan& raw, const Vector3d&) {
+    RawScan empty;
+    empty.stamp = raw.stamp;
+    raw = empty;
+  };
   const Diagnosis diagnosis = diagnosis_of(recording);
   EXPECT_EQ(diagnosis.of(Question::kUnusablePoints).verdict, Verdict::kWrong);
   EXPECT_EQ(diagnosis.of(Question::kDopplerSign).verdict, Verdict::kCannotTell);

@@ -9,7 +9,8 @@
 #include <string_view>
 #include <vector>
 
-#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/base/raw_scan.hpp"
+#include "dynamic_icp/recording/formats/channel.hpp"
 
 namespace dynamic_icp::formats {
 
@@ -34,6 +35,7 @@ struct RecordField {
   bool is_integer = false;  ///< also where it is stored as a float
   unsigned shift = 0;       ///< of integers made of several parts: the part is (value >> shift) & mask
   unsigned mask = 0;        ///< 0: the whole number
+  Channel channel = Channel::kNone;
 };
 
 struct RecordLayout {
@@ -55,11 +57,12 @@ extern const RecordLayout kBoreas28;              ///< the same with a beam
 extern const RecordLayout kBoreas28BeamThenTime;  ///< the same in the other order
 extern const RecordLayout kBoreas32;              ///< the same with beam and sensor
 extern const RecordLayout kXyzdTime;              ///< 20 bytes: the "Aeva" set
+extern const RecordLayout kVod28;                 ///< the radar of View-of-Delft
 
-/// Reads points, Doppler and times; the stamp is left 0, it is in the name of the file. Numbers are handed on as they
-/// are, finite or not. An empty file is an empty scan and bytes after the last whole record are left out, both with a
-/// warning in the result. Throws DataError naming the file when it cannot be read or is something else: an archive, a
-/// Git LFS pointer and the like.
+/// Reads points, Doppler, times and channels; the stamp is left 0, it is in the name of the file. Numbers are handed on
+/// as they are, finite or not. An empty file is an empty scan and bytes after the last whole record are left out, both
+/// with a warning in the result; so is a channel whose numbers do not fit it. Throws DataError naming the file when it
+/// cannot be read or is something else: an archive, a Git LFS pointer and the like.
 RawScan read_points(const std::filesystem::path& path, const RecordLayout& layout);
 
 /// Reads a further column, as stored. Errors as above.

@@ -69,6 +69,8 @@ TEST_F(PointRecords, OfAevaWithAndWithoutIntensity) {
   EXPECT_EQ(column(kAeva29, "reflectivity"), (std::vector<double>{20.5, 20.5}));
   EXPECT_EQ(column(kAeva29, "line_index"), (std::vector<double>{200, 200}));
   EXPECT_EQ(column(kAeva29, "intensity"), (std::vector<double>{-57.0, -57.0}));
+  EXPECT_EQ(scan.channels.line, (std::vector<std::uint16_t>{200, 200}));
+  EXPECT_EQ(scan.channels.intensity, (std::vector<float>{-57, -57}));
   EXPECT_EQ(scan.warning, "");
   EXPECT_EQ(scan.stamp, Stamp{});
 
@@ -78,6 +80,8 @@ TEST_F(PointRecords, OfAevaWithAndWithoutIntensity) {
   EXPECT_DOUBLE_EQ(older.times.at(2), 0.0067);
   EXPECT_EQ(column(kAeva25, "line_index"), (std::vector<double>{200, 200, 200}));
   EXPECT_EQ(kAeva25.fields.size(), 2U) << "no intensity";
+  EXPECT_EQ(older.channels.line, (std::vector<std::uint16_t>{200, 200, 200}));
+  EXPECT_EQ(older.channels.intensity, (std::vector<float>{20.5, 20.5, 20.5})) << "the reflectivity";
 }
 
 TEST_F(PointRecords, TimesMayLieBeforeTheStamp) {
@@ -113,6 +117,11 @@ TEST_F(PointRecords, OfBoreasRt) {
   EXPECT_EQ(column(kBoreas40, "signal_quality"), (std::vector<double>{12, 12}));
   EXPECT_EQ(column(kBoreas40, "reflectivity"), (std::vector<double>{13, 13}));
   EXPECT_EQ(column(kBoreas40, "line_index"), (std::vector<double>{37, 37}));
+  EXPECT_EQ(column(kBoreas40, "beam_id"), (std::vector<double>{5, 5}));
+  EXPECT_EQ(column(kBoreas40, "face"), (std::vector<double>{2, 2}));
+  EXPECT_EQ(scan.channels.line, (std::vector<std::uint16_t>{37, 37}));
+  EXPECT_EQ(scan.channels.face, (std::vector<std::uint8_t>{2, 2}));
+  EXPECT_EQ(scan.channels.intensity, (std::vector<float>{11, 11}));
   EXPECT_EQ(column(kBoreas40, "point_flags_lsb").at(0), flags);
   EXPECT_EQ(column(kBoreas40, "point_flags_msb"), (std::vector<double>{3, 3}));
   // None is above 10: seconds.
@@ -137,10 +146,28 @@ TEST_F(PointRecords, OfBoreasWithBeams) {
     expect_record(scan, 0);
     EXPECT_EQ(scan.times, std::vector<double>{0.0625});
     EXPECT_EQ(column(*layout, "beam_id"), std::vector<double>{3});
+    EXPECT_EQ(scan.channels.line, std::vector<std::uint16_t>{3});
   }
   expect_record(read(start + floats({0.0625F, 3.0F, 7.0F}), kBoreas32), 0);
   EXPECT_EQ(column(kBoreas32, "beam_id"), std::vector<double>{3});
   EXPECT_EQ(column(kBoreas32, "sensor_id"), std::vector<double>{7});
+  EXPECT_EQ(read_points(path_, kBoreas32).channels.sensor, std::vector<std::uint8_t>{7});
+  const RawScan odd = read(start + floats({0.0625F, 0.5F, 7.0F}), kBoreas32);
+  EXPECT_TRUE(odd.channels.line.empty());
+  EXPECT_EQ(odd.channels.sensor, std::vector<std::uint8_t>{7});
+  EXPECT_EQ(odd.warning, path_.string() +
+                             ": column 'beam_id' is left out: it holds 0.5 at point 0, expected whole numbers from 0 "
+                             "to 65535");
+}
+
+TEST_F(PointRecords, OfTheRadarOfViewOfDelft) {
+  const std::string start = floats({1.0F, -2.0F, 0.5F, -17.5F, -3.25F, 0.75F});
+  const RawScan scan = read(start + floats({-2.0F}) + start + floats({0.0F}), kVod28);
+  expect_record(scan, 1);
+  EXPECT_TRUE(scan.times.empty()) << "the last number is that of a scan";
+  EXPECT_EQ(scan.is_unusable, (std::vector<std::uint8_t>{1, 0})) << "an earlier scan";
+  EXPECT_EQ(scan.channels.intensity, (std::vector<float>{-17.5F, -17.5F}));
+  EXPECT_EQ(column(kVod28, "v_r_compensated"), (std::vector<double>{0.75, 0.75}));
 }
 
 TEST_F(PointRecords, AreHandedOnFiniteOrNot) {

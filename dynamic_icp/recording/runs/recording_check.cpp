@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 
-#include <algorithm>
-
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
@@ -12,8 +10,8 @@
 namespace dynamic_icp::runs {
 namespace {
 
-// Some seconds of driving are enough and keep the time that the check takes bounded, however long the recording is.
-constexpr std::size_t kScans = 60;
+// Spread over the run, as a sensor may be at rest when it begins; few, so that the check takes the same time however
+// long the run is.
 constexpr std::size_t kProbes = 4;
 
 }  // namespace
@@ -23,7 +21,7 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   const auto fix_of = [&](const diagnosis::Finding& finding) { return fix_in_words ? fix_in_words(finding) : ""; };
   diagnosis::DiagnosisConfig config;
   config.begin = scans.begin;
-  config.end = std::min(scans.end, scans.begin + kScans);
+  config.end = scans.end;
   config.probes = kProbes;
   config.applied = settings.correction;
   config.always_match_scans = false;

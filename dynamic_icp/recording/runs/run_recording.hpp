@@ -68,7 +68,7 @@ struct RunResult {
   std::vector<std::string> failures;      ///< what was asked for beside the run and could not be made, and why
 };
 
-/// Odometry over a recording: opens it, diagnoses its first scans, processes all that are selected, and writes the
+/// Odometry over a recording: opens it, diagnoses some scans of it, processes all that are selected, and writes the
 /// files of a run (run_writer.hpp) with run.json and the map into a folder that appears whole or not at all. Nothing
 /// when it was cancelled: then nothing is written, and an earlier run in the folder stays as it was.
 ///

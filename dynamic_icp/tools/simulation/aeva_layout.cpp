@@ -7,12 +7,14 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/simulation/compensated_doppler.hpp"
 #include "dynamic_icp/tools/simulation/point_layout.hpp"
 
 namespace dynamic_icp::simulation {
@@ -43,7 +45,7 @@ std::uint8_t line_index(std::uint16_t line, const AevaFiles& files) {
   return static_cast<std::uint8_t>(line);
 }
 
-std::string records_of(const SimulatedScan& scan, const AevaFiles& files) {
+std::string records_of(const SimulatedScan& scan, const std::vector<double>& doppler, const AevaFiles& files) {
   constexpr std::size_t kRecordBytes = 29;
   std::string bytes;
   bytes.reserve(scan.measured.points.size() * kRecordBytes);
@@ -52,7 +54,7 @@ std::string records_of(const SimulatedScan& scan, const AevaFiles& files) {
       formats::append_value(bytes, static_cast<float>(coordinate));
     }
     formats::append_value(bytes, kPercent * scan.reflectivity[i]);
-    formats::append_value(bytes, static_cast<float>(scan.measured.doppler[i]));
+    formats::append_value(bytes, static_cast<float>(doppler[i]));
     formats::append_value(bytes, static_cast<std::int32_t>(std::lround(kNanoseconds * scan.measured.times[i])));
     formats::append_value(bytes, line_index(scan.lines[i], files));
     if (files.has_intensity) {
@@ -70,14 +72,21 @@ fs::path file_in(const fs::path& folder, const char* name) {
 
 class AevaLayout : public PointLayout {
  public:
-  AevaLayout(const fs::path& folder, const AevaFiles& files)
-      : files_(files), points_(folder / "LiDAR" / "Aeva"), poses_(file_in(folder / files.truth_folder, "Aeva_gt.txt")) {
+  /// Compensates the Doppler where the simulation is given.
+  AevaLayout(const fs::path& folder, const AevaFiles& files, const Simulation* simulation = nullptr)
+      : files_(files),
+        simulation_(simulation),
+        points_(folder / "LiDAR" / "Aeva"),
+        poses_(file_in(folder / files.truth_folder, "Aeva_gt.txt")) {
     formats::make_folder(points_);
   }
 
-  void add(const SimulatedFrame& frame, std::size_t /*sensor*/) override {
-    const std::int64_t stamp_ns = frame.scan.measured.stamp.ns + files_.epoch_ns;
-    const std::string bytes = records_of(frame.scan, files_);
+  void add(const SimulatedFrame& frame, std::size_t sensor) override {
+    const RawScan& measured = frame.scan.measured;
+    const std::int64_t stamp_ns = measured.stamp.ns + files_.epoch_ns;
+    const std::string bytes = records_of(
+        frame.scan, simulation_ == nullptr ? measured.doppler : compensated_doppler(measured, *simulation_, sensor),
+        files_);
     formats::write_bytes(points_ / fmt::format("{}.bin", stamp_ns), std::as_bytes(std::span(bytes)));
     poses_.write(pose_line(stamp_ns, frame.sensor.T_world_sensor));
   }
@@ -99,6 +108,7 @@ class AevaLayout : public PointLayout {
   }
 
   AevaFiles files_;
+  const Simulation* simulation_;
   fs::path points_;
   formats::OutputFile poses_;
   std::optional<Eigen::Isometry3d> T_first_world_;
@@ -110,8 +120,8 @@ std::unique_ptr<PointLayout> make_hercules_layout(const fs::path& folder) {
   return std::make_unique<AevaLayout>(folder, kHercules);
 }
 
-std::unique_ptr<PointLayout> make_helipr_layout(const fs::path& folder) {
-  return std::make_unique<AevaLayout>(folder, kHelipr);
+std::unique_ptr<PointLayout> make_helipr_layout(const fs::path& folder, const Simulation& simulation) {
+  return std::make_unique<AevaLayout>(folder, kHelipr, &simulation);
 }
 
 }  // namespace dynamic_icp::simulation

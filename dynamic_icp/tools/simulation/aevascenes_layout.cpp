@@ -17,6 +17,7 @@
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/simulation/compensated_doppler.hpp"
 #include "dynamic_icp/tools/simulation/named_source.hpp"
 #include "dynamic_icp/tools/simulation/point_layout.hpp"
 
@@ -178,7 +179,7 @@ class AevaScenesLayout : public PointLayout {
                               [&](std::size_t i) { return offset_ns(scan.measured, scan.measured.times[i]); }),
         column<std::int64_t>("semantic_labels_idx", rows, [&](std::size_t i) { return class_index(scan.bodies[i]); })};
     write_archive(folder_ / kRawFolder / name, members);
-    members[1] = doppler(compensated_doppler(scan.measured, sensor));
+    members[1] = doppler(compensated_doppler(scan.measured, simulation_, sensor));
     write_archive(folder_ / kCompensatedFolder / name, members);
   }
 
@@ -194,22 +195,6 @@ class AevaScenesLayout : public PointLayout {
   static void write_archive(const fs::path& path, const std::vector<formats::NpzMember>& members) {
     const std::string bytes = formats::npz_bytes(members);
     formats::write_bytes(path, std::as_bytes(std::span(bytes)));
-  }
-
-  /// s + u . v with the velocity v of the sensor at each point's own time: 0 for what stands.
-  [[nodiscard]] std::vector<double> compensated_doppler(const RawScan& scan, std::size_t sensor) const {
-    std::vector<double> doppler(scan.doppler.size());
-    const double begin_s = seconds_between(Stamp{}, scan.stamp);
-    double offset_s = -1.0;
-    Eigen::Vector3d velocity_sensor = Eigen::Vector3d::Zero();
-    for (std::size_t i = 0; i < doppler.size(); ++i) {
-      if (i == 0 || scan.times[i] != offset_s) {  // many points have the same time, one after the other
-        offset_s = scan.times[i];
-        velocity_sensor = simulation_.sensor_state(begin_s + offset_s, sensor).velocity_sensor;
-      }
-      doppler[i] = scan.doppler[i] + scan.points[i].normalized().dot(velocity_sensor);
-    }
-    return doppler;
   }
 
   [[nodiscard]] std::int64_t class_index(std::int32_t body) const {

@@ -39,8 +39,9 @@ std::unique_ptr<PointLayout> make_dicp_layout(const std::filesystem::path& folde
 /// poses of the sensor relative to its first scan. `add` throws UsageError for sensors with more rows than fit (256).
 std::unique_ptr<PointLayout> make_hercules_layout(const std::filesystem::path& folder);
 
-/// The same in records of 25 bytes, without the intensity, and LiDAR_GT/Aeva_gt.txt. The Doppler is as measured.
-std::unique_ptr<PointLayout> make_helipr_layout(const std::filesystem::path& folder);
+/// The same in records of 25 bytes, without the intensity, and LiDAR_GT/Aeva_gt.txt. The Doppler is compensated, as in
+/// the data set. Keeps a reference to the simulation.
+std::unique_ptr<PointLayout> make_helipr_layout(const std::filesystem::path& folder, const Simulation& simulation);
 
 /// aeva/<stamp_us>.bin in records of ten float32 (Boreas-RT), with the reflectivity in percent and the line among the
 /// flags; applanix/aeva_poses.csv with the poses of the sensor in a frame whose origin is far from the scene. `add`

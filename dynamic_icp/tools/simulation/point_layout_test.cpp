@@ -106,9 +106,10 @@ TEST_F(PointLayouts, HerculesPosesAreRelativeToTheFirstScan) {
   EXPECT_EQ(count, simulation_.size());
 }
 
-// Stamps of 2023 and records without the intensity; all else as in HeRCULES.
-TEST_F(PointLayouts, HeliprRecordsAreThoseOfHerculesWithoutTheirEnd) {
-  write(make_helipr_layout(folder_));
+// Stamps of 2023, the Doppler compensated, and records without the intensity; all else as in HeRCULES.
+TEST_F(PointLayouts, HeliprRecordsAreThoseOfHerculesCompensatedWithoutTheirEnd) {
+  constexpr double kStep_s = 1e-4;
+  write(make_helipr_layout(folder_, simulation_));
   write(make_hercules_layout(folder_ / "hercules"));
   EXPECT_EQ(files_in(fs::path("LiDAR") / "Aeva"), simulation_.size());
   for (std::size_t i = 0; i < simulation_.size(); ++i) {
@@ -118,7 +119,17 @@ TEST_F(PointLayouts, HeliprRecordsAreThoseOfHerculesWithoutTheirEnd) {
     ASSERT_FALSE(bytes.empty());
     ASSERT_EQ(bytes.size() / 25 * 29, longer.size());
     for (std::size_t k = 0; 25 * k < bytes.size(); ++k) {
-      ASSERT_EQ(bytes.substr(25 * k, 25), longer.substr(29 * k, 25));
+      ASSERT_EQ(bytes.substr(25 * k, 16), longer.substr(29 * k, 16));
+      ASSERT_EQ(bytes.substr(25 * k + 20, 5), longer.substr(29 * k + 20, 5));
+      // The velocity by two poses.
+      const double time_s = 0.1 * static_cast<double>(i) + 1e-9 * number_in<std::int32_t>(bytes, 25 * k + 20);
+      const auto pose = [&](double t) { return simulation_.sensor_state(t, 0).T_world_sensor; };
+      const Eigen::Vector3d moved = pose(time_s + kStep_s).translation() - pose(time_s - kStep_s).translation();
+      const Eigen::Vector3d velocity = pose(time_s).linear().transpose() * moved / (2.0 * kStep_s);
+      const Eigen::Vector3d p(number_in<float>(bytes, 25 * k), number_in<float>(bytes, 25 * k + 4),
+                              number_in<float>(bytes, 25 * k + 8));
+      ASSERT_NEAR(number_in<float>(bytes, 25 * k + 16),
+                  number_in<float>(longer, 29 * k + 16) + p.normalized().dot(velocity), 1e-4);
     }
   }
   std::istringstream rows(content(folder_ / "LiDAR_GT" / "Aeva_gt.txt"));
@@ -241,7 +252,7 @@ TEST_F(PointLayouts, FailuresNameTheFile) {
   };
   expect_fault([&] { make_dicp_layout(folder_ / "file", false); }, "point_clouds");
   expect_fault([&] { make_hercules_layout(folder_ / "file"); }, "PR_GT");
-  expect_fault([&] { make_helipr_layout(folder_ / "file"); }, "LiDAR_GT");
+  expect_fault([&] { make_helipr_layout(folder_ / "file", simulation_); }, "LiDAR_GT");
   expect_fault([&] { make_boreas_layout(folder_ / "file"); }, "applanix");
   expect_fault([&] { make_aevascenes_layout(folder_ / "file", simulation_); }, "pointcloud_raw");
   const auto layout = make_aevascenes_layout(folder_, simulation_);

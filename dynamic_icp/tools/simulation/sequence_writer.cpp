@@ -58,14 +58,15 @@ std::int64_t epoch_ns(Layout layout) {
 }
 
 /// The points of one sensor; nothing for layouts that hold all sensors together.
-std::unique_ptr<PointLayout> make_layout(Layout layout, const fs::path& folder, bool takes_time) {
+std::unique_ptr<PointLayout> make_layout(Layout layout, const fs::path& folder, const Simulation& simulation,
+                                         bool takes_time) {
   switch (layout) {
     case Layout::kDicp:
       return make_dicp_layout(folder, takes_time);
     case Layout::kHercules:
       return make_hercules_layout(folder);
     case Layout::kHelipr:
-      return make_helipr_layout(folder);
+      return make_helipr_layout(folder, simulation);
     case Layout::kBoreas:
       return make_boreas_layout(folder);
     case Layout::kAevaScenes:
@@ -101,7 +102,7 @@ SequenceWriter::SequenceWriter(const fs::path& folder, const Simulation& simulat
     const fs::path own = folder_of(folder, rig, sensor);
     formats::make_folder(own);
     truth_.push_back(std::make_unique<TruthWriter>(own, simulation, sensor, truth));
-    if (auto points = make_layout(options.layout, own, rig.sensors[sensor].lidar.sweep_s > 0.0)) {
+    if (auto points = make_layout(options.layout, own, simulation, rig.sensors[sensor].lidar.sweep_s > 0.0)) {
       points_.push_back(std::move(points));
     }
   }
