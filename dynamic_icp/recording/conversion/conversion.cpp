@@ -65,7 +65,7 @@ class Converter {
       advance();
     }
     if (calibration_.T_vehicle_sensor || !calibration_.mountings.empty()) {
-      write_text(folder_ / datasets::kCalibrationFile, datasets::calibration_text(calibration_));
+      formats::write_bytes(folder_ / datasets::kCalibrationFile, datasets::calibration_text(calibration_));
     }
     if (target_ == Target::kDicp) {
       write_dicp_poses();
