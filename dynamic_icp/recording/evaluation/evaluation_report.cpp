@@ -128,7 +128,7 @@ std::string consistency_text(const Consistency& consistency) {
   const std::optional<double> beyond = consistency.beyond_4_sigma;
   return fmt::format("\n{:<42}{:>10}{:>14}{:>16}{:>7}\n{:<42}{:>10}{:>14}{:>16}{:>7}\n",
                      "stated covariance of the motion, NEES", "rotation", "translation", "beyond 4 sigma", "n",
-                     "over 1 frame; 3 is right, more overconfident", number_text(consistency.nees_rotation),
+                     "over 1 frame (3 is right)", number_text(consistency.nees_rotation),
                      number_text(consistency.nees_translation), beyond ? fmt::format("{:.1f} %", 100.0 * *beyond) : "-",
                      consistency.motions);
 }
