@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
@@ -16,8 +17,10 @@
 #include "dynamic_icp/recording/evaluation/evaluation.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation_report.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/runs/frame_rows.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/messages.hpp"
 #include "apps/options.hpp"
 
 namespace dynamic_icp::apps {
@@ -59,11 +62,30 @@ evaluation::EvaluationConfig config_of(const Options& options) {
   return config;
 }
 
+/// What the run states of the poses of its trajectory.tum, from the frames.jsonl beside it. Empty for other files.
+std::vector<evaluation::StatedMotion> stated_beside(const std::filesystem::path& estimate, std::size_t poses) {
+  const std::filesystem::path file = estimate.parent_path() / "frames.jsonl";
+  std::vector<evaluation::StatedMotion> stated;
+  if (estimate.filename() != "trajectory.tum" || !std::filesystem::exists(file)) {
+    return stated;
+  }
+  for (const runs::FrameRow& frame : runs::read_frames(file)) {
+    stated.push_back(runs::stated_motion(frame));
+  }
+  if (stated.size() != poses) {
+    tell("dynamic-icp: warning: {} holds {} scans, {} {} poses: no covariances are compared\n", file.string(),
+         stated.size(), estimate.string(), poses);
+    stated.clear();
+  }
+  return stated;
+}
+
 /// The evaluation of two files; errors that do not name a file yet get both.
 evaluation::Evaluation evaluate_files(const Options& options, const evaluation::EvaluationConfig& config,
                                       const formats::TumFile& estimate, const formats::TumFile& reference) {
   try {
-    return evaluation::evaluate(estimate.trajectory, reference.trajectory, config);
+    return evaluation::evaluate(estimate.trajectory, reference.trajectory, config,
+                                stated_beside(options.estimate, estimate.trajectory.size()));
   } catch (const DataError& error) {
     throw DataError(fmt::format("{} against {}: {}", options.estimate, options.reference, error.what()));
   }
@@ -109,7 +131,10 @@ void add_error_options(CLI::App& command, Options& options) {
 void add_evaluate_command(CLI::App& app, std::function<int()>& selected) {
   auto options = std::make_shared<Options>();
   CLI::App* command = app.add_subcommand("evaluate", "Compare an estimated trajectory with a reference");
-  command->add_option("ESTIMATE", options->estimate, "TUM file: timestamp tx ty tz qx qy qz qw (s, m, unit quaternion)")
+  command
+      ->add_option("ESTIMATE", options->estimate,
+                   "TUM file: timestamp tx ty tz qx qy qz qw (s, m, unit quaternion); of the trajectory.tum of a "
+                   "run the covariances of frames.jsonl beside it are compared too")
       ->required();
   command->add_option("REFERENCE", options->reference, "TUM file of the true poses of the same sensor")->required();
   add_error_options(*command, *options);

@@ -3,9 +3,10 @@
 
 usage: mean_over_seeds.py DIR...   (folders of benchmarks over the same drives; each holds results.json)
 
-First the methods of all folders side by side, then for each folder what Dynamic-ICP loses without its parts. RTE (mm)
-and RRE (degrees) of a scene are the root mean squares over its drives, which are equally long. Best bold, second
-underlined.
+First the methods of all folders side by side, then their stated covariances, then for each folder what Dynamic-ICP
+loses without its parts. RTE (mm) and RRE (degrees) of a scene are the root mean squares over its drives, which are
+equally long. Best bold, second underlined. Covariances: mean NEES of rotation and of translation, 3 is right, and the
+share of scans with status ok beyond four stated standard deviations.
 """
 import json
 import sys
@@ -15,8 +16,8 @@ NAMES = {"point-to-point": "p2p", "point-to-plane": "p2plane", "gicp": "GICP", "
          "doppler-icp": "Doppler-ICP", "none": "Full", "no-vf": "w/o VF", "no-dpp": "w/o DPP", "no-dr": "w/o DR"}
 
 
-def rms(values):
-    return (sum(v * v for v in values) / len(values)) ** 0.5
+def rms(cells, key):
+    return (sum(cell[key] ** 2 for cell in cells) / len(cells)) ** 0.5
 
 
 def millimetres(metres):
@@ -32,13 +33,35 @@ def emphasised(texts):
 
 
 def print_table(rows):
-    """rows: scene -> column -> [(rte, rre), ...]"""
+    """rows: scene -> column -> cells of results.json"""
     columns = list(dict.fromkeys(name for row in rows.values() for name in row))
     print(f"| scene | {' | '.join(columns)} |\n|---|{'---|' * len(columns)}")
     for scene, row in rows.items():
-        rte = emphasised([millimetres(rms([d[0] for d in row[name]])) for name in columns])
-        rre = emphasised([f"{rms([d[1] for d in row[name]]):.4f}" for name in columns])
+        rte = emphasised([millimetres(rms(row[name], "rte_rmse_m")) for name in columns])
+        rre = emphasised([f"{rms(row[name], 'rre_rmse_deg'):.4f}" for name in columns])
         print(f"| {scene} | " + " | ".join(f"{a} / {b}" for a, b in zip(rte, rre)) + " |")
+    print()
+
+
+def three_digits(number):
+    return f"{number:.0f}" if number >= 100 else f"{number:.3g}"
+
+
+def consistency(cells):
+    """Means over the drives; a dash where one of them states no covariance."""
+    means = []
+    for key in ("nees_rotation", "nees_translation", "beyond_4_sigma"):
+        values = [cell[key] for cell in cells]
+        means.append(None if None in values else sum(values) / len(values))
+    texts = ["-" if mean is None else three_digits(mean) for mean in means[:2]]
+    return " / ".join([*texts, "-" if means[2] is None else f"{100 * means[2]:.0f} %"])
+
+
+def print_consistency(rows):
+    columns = list(dict.fromkeys(name for row in rows.values() for name in row))
+    print(f"| scene | {' | '.join(columns)} |\n|---|{'---|' * len(columns)}")
+    for scene, row in rows.items():
+        print(f"| {scene} | " + " | ".join(consistency(row[name]) for name in columns) + " |")
     print()
 
 
@@ -47,7 +70,7 @@ def collect(rows, cells, name_of):
         if cell["rte_rmse_m"] is None:
             sys.exit(f"{cell['sequence']}, {cell['method']}: this run failed or has no truth")
         scene = cell["sequence"].rpartition("-")[0]
-        rows.setdefault(scene, {}).setdefault(name_of(cell), []).append((cell["rte_rmse_m"], cell["rre_rmse_deg"]))
+        rows.setdefault(scene, {}).setdefault(name_of(cell), []).append(cell)
 
 
 def main():
@@ -58,11 +81,12 @@ def main():
         collect(methods, [c for c in benchmark["cells"] if c["ablation"] == "none"],
                 lambda c: ours if c["method"] == "dynamic-icp" else NAMES[c["method"]])
     print_table(methods)
+    print_consistency(methods)
     for benchmark in benchmarks:
         parts = {}
         collect(parts, [c for c in benchmark["cells"] if c["method"] == "dynamic-icp"],
                 lambda c: NAMES.get(c["ablation"], c["ablation"].replace("no-", "w/o ")))
-        if len(next(iter(parts.values()))) > 1:
+        if parts and len(next(iter(parts.values()))) > 1:
             print(f"Preset {benchmark['info']['preset']}\n")
             print_table(parts)
 

@@ -133,7 +133,10 @@ ConfigFields fields(ScanToScanIcpConfig& config) {
   append_fields(all, "registration", fields(config.registration));
   append_fields(all, "icp",
                 {{"constant_velocity_start", &config.constant_velocity_start, 0, 0, "",
-                  "point-to-point, point-to-plane, gicp, doppler-icp: start from the last motion, not the identity"}});
+                  "point-to-point, point-to-plane, gicp, doppler-icp: start from the last motion, not the identity"},
+                 {"deskew", &config.deskew, 0, 0, "",
+                  "point-to-point, point-to-plane, gicp, doppler-icp: deskew by the last motion, where the "
+                  "points have times"}});
   append_stream(all, config.stream);
   return all;
 }

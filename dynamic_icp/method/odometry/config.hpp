@@ -108,6 +108,7 @@ struct ScanToScanIcpConfig {
   preprocess::NormalsConfig normals;  ///< read, and among the fields, unless point-to-point
   registration::MatchingConfig registration;
   bool constant_velocity_start = false;  ///< start from the last motion instead of the identity
+  bool deskew = false;                   ///< deskew by the last motion, where the points have times
   StreamConfig stream;
 };
 

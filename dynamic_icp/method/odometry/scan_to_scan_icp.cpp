@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
 
@@ -43,7 +44,14 @@ void express_in_sensor_frame(registration::Alignment& alignment, const Eigen::Is
 struct ScanToScanIcp::Reference {
   registration::PreparedTarget prepared;  // in the frame of the vehicle for Doppler-ICP, else of the sensor
   Eigen::Isometry3d T_world_sensor = Eigen::Isometry3d::Identity();
-  Vector6d twist = Vector6d::Zero();  // of the last alignment, log(T_target_source) / dt, sensor frame
+  std::optional<Vector6d> twist = std::nullopt;  // of the last alignment, log(T_target_source) / dt, sensor frame
+  double middle_s = 0.0;                         // what its points were deskewed to, after the stamp
+
+  /// The motion from the stamp of `last` to this one, from that between what their points were deskewed to.
+  [[nodiscard]] Eigen::Isometry3d between_stamps(const Reference& last,
+                                                 const Eigen::Isometry3d& T_target_source) const {
+    return exp_se3(-middle_s * *twist) * T_target_source * exp_se3(last.middle_s * last.twist.value_or(*twist));
+  }
 };
 
 ScanToScanIcp::ScanToScanIcp(const ScanToScanIcpConfig& config, int threads)
@@ -77,7 +85,8 @@ Frame ScanToScanIcp::process(const ScanView& raw) {
   stream_.check_order(raw.stamp);
   Frame frame;
   StageClock clock(frame.times);
-  const Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
+  Scan scan = preprocess(raw, config_.preprocess, workers_, frame);
+  const double middle_s = config_.deskew ? deskew(scan, raw, frame) : 0.0;
   clock.finish(Stage::kPreprocess);
 
   frame.status = stream_.add(raw.stamp, scan.size());
@@ -104,13 +113,33 @@ Frame ScanToScanIcp::process(const ScanView& raw) {
   }
   clock.finish(Stage::kRegistration);
 
-  now->T_world_sensor = frame.T_world_sensor;
+  now->middle_s = middle_s;
   if (last_) {
     now->twist = log_se3(frame.T_target_source) / stream_.interval_s();
+    if (config_.deskew) {
+      set_motion(frame, frame.status, last_->T_world_sensor, now->between_stamps(*last_, frame.T_target_source));
+    }
     set_velocity_from_motion(frame, stream_.interval_s());
   }
+  now->T_world_sensor = frame.T_world_sensor;
   last_ = std::move(now);
   return frame;
+}
+
+/// Deskews to the middle of the scan by the last motion; the frame tells it. Returns when the middle is, s after the
+/// stamp. About the middle an error of that motion displaces as many points forward as back; about the stamp it would
+/// come back as an error of the next motion, undamped.
+double ScanToScanIcp::deskew(Scan& scan, const RawScan& raw, Frame& frame) const {
+  frame.sweep = motion::sweep_in_data(raw);
+  frame.sweep->deskewed = frame.sweep->duration_s.value_or(0.0) > 0.0;
+  if (!frame.sweep->deskewed) {
+    return 0.0;
+  }
+  const motion::TimeSpan span = motion::time_span(scan);
+  if (last_ && last_->twist) {
+    scan = motion::deskew_to_middle(scan, exp_se3((span.first - span.last) * *last_->twist));
+  }
+  return 0.5 * (span.first + span.last);
 }
 
 void ScanToScanIcp::align_to_last(const Reference& now, Frame& frame) const {
@@ -133,10 +162,10 @@ void ScanToScanIcp::align_to_last(const Reference& now, Frame& frame) const {
 }
 
 Eigen::Isometry3d ScanToScanIcp::predicted_motion() const {
-  if (!config_.constant_velocity_start) {
+  if (!config_.constant_velocity_start || !last_->twist) {
     return Eigen::Isometry3d::Identity();
   }
-  return exp_se3(stream_.prediction_time_s() * last_->twist);
+  return exp_se3(stream_.prediction_time_s() * *last_->twist);
 }
 
 registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) const {

@@ -16,7 +16,8 @@ namespace dynamic_icp::odometry {
 /// The methods that align each scan to the one before and know no moving objects: point-to-point, point-to-plane and
 /// plane-to-plane as Open3D's registration_icp and registration_generalized_icp with normals, and Doppler-ICP as
 /// published, with the mounting of the sensor. The start is the identity or the last motion
-/// (`icp.constant_velocity_start`).
+/// (`icp.constant_velocity_start`); with `icp.deskew` the last motion also deskews, from the third scan on. The pose
+/// is that at the stamp all the same; its covariance is that of the alignment of the middles of two scans.
 class ScanToScanIcp final : public Odometry {
  public:
   /// Both throw UsageError when the configuration is out of range.
@@ -30,6 +31,7 @@ class ScanToScanIcp final : public Odometry {
  private:
   struct Reference;
 
+  double deskew(Scan& scan, const RawScan& raw, Frame& frame) const;
   void align_to_last(const Reference& now, Frame& frame) const;
   [[nodiscard]] Eigen::Isometry3d predicted_motion() const;
   [[nodiscard]] registration::Objective objective(DopplerKind kind, double dt_s) const;

@@ -129,6 +129,66 @@ TEST(ScanToScanIcp, GeometryAloneDoesNotStartAtSpeedButGoesOnWithTheLastMotion) 
   EXPECT_GT(position_after(false), 1.0);
 }
 
+TEST(ScanToScanIcp, DeskewsByTheLastMotion) {
+  const Hall hall(9000);
+  Vector6d twist;
+  twist << 0.0, 0.0, 0.05, 1.0, 0.2, 0.0;
+  const double sweep_s = 0.1;
+  // The sensor sweeps from right to left and back, so that the distortion of a scan is not that of the one before.
+  const auto swept_scan = [&](int k) {
+    RawScan raw;
+    raw.stamp = {100'000'000LL * k};
+    for (const Vector3d& point : hall.points) {
+      const double share = (point.y() + 15.0) / 30.0;
+      const double tau = sweep_s * (k % 2 == 0 ? share : 1.0 - share);
+      raw.times.push_back(tau);
+      raw.points.emplace_back(exp_se3((0.1 * k + tau) * twist).inverse() * point);
+      raw.doppler.push_back(-raw.points.back().normalized().dot(twist.tail<3>()));
+    }
+    return raw;
+  };
+  const Eigen::Isometry3d T_target_source = exp_se3(-0.1 * twist);
+  for (const char* method : kMethods) {
+    const auto rotation_error_at_the_end = [&](bool deskew) {
+      Config config = dense(method);
+      set_field(fields(config), "icp.constant_velocity_start", "true");
+      set_field(fields(config), "icp.deskew", deskew ? "true" : "false");
+      const auto odometry = make_odometry(config, {}, 2);
+      Frame frame;
+      for (int k = 0; k < 12; ++k) {
+        frame = odometry->process(swept_scan(k));
+        EXPECT_EQ(frame.sweep.has_value(), deskew) << "untouched unless asked for";
+      }
+      EXPECT_EQ(frame.status, FrameStatus::kConverged);
+      return rotation_angle(frame.T_target_source.linear().transpose() * T_target_source.linear());
+    };
+    EXPECT_LT(rotation_error_at_the_end(true), 1e-4) << method;
+    EXPECT_GT(rotation_error_at_the_end(false), 1e-3) << method;
+  }
+}
+
+TEST(ScanToScanIcp, PosesOfDeskewedScansAreThoseAtTheStamps) {
+  const Hall hall(9000);
+  const double acceleration = 1.0;  // m/s^2, along x; from the middle of a scan to that of the next 5 mm more than here
+  const auto x = [&](double t) { return 0.5 * t + 0.5 * acceleration * t * t; };
+  Config config = dense("point-to-plane");
+  set_field(fields(config), "icp.constant_velocity_start", "true");
+  set_field(fields(config), "icp.deskew", "true");
+  const auto odometry = make_odometry(config, {}, 2);
+  Frame frame;
+  for (int k = 0; k < 12; ++k) {
+    RawScan raw;
+    raw.stamp = {100'000'000LL * k};
+    for (const Vector3d& point : hall.points) {
+      raw.times.push_back(0.1 * (point.y() + 15.0) / 30.0);
+      raw.points.emplace_back(point - Vector3d(x(0.1 * k + raw.times.back()), 0.0, 0.0));
+      raw.doppler.push_back(0.0);
+    }
+    frame = odometry->process(raw);
+  }
+  EXPECT_NEAR(-frame.T_target_source.translation().x(), x(1.1) - x(1.0), 1e-3);
+}
+
 TEST(ScanToScanIcp, SameBitsForAnyNumberOfThreads) {
   const Hall hall(6000);
   for (const char* method : kMethods) {

@@ -36,7 +36,7 @@ void check_config(const EvaluationConfig& config) {
 }
 
 Evaluation evaluate(const formats::Trajectory& estimate, const formats::Trajectory& reference,
-                    const EvaluationConfig& config) {
+                    const EvaluationConfig& config, std::span<const StatedMotion> stated) {
   check_config(config);
   Evaluation result;
   result.config = config;
@@ -44,6 +44,9 @@ Evaluation evaluate(const formats::Trajectory& estimate, const formats::Trajecto
   result.relative = relative_error(result.matched, config.gap);
   result.segments = segment_error(result.matched);
   result.absolute = absolute_error(result.matched, config.alignment);
+  if (!stated.empty()) {
+    result.consistency = consistency(result.matched, stated);
+  }
   result.time_span_s = seconds_between(result.matched.estimate.front().stamp, result.matched.estimate.back().stamp);
   result.reference_path_length_m = path_length(result.matched.reference);
   result.estimate_path_length_m = path_length(result.matched.estimate);

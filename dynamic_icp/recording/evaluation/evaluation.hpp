@@ -4,9 +4,11 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 
 #include "dynamic_icp/recording/evaluation/absolute_error.hpp"
 #include "dynamic_icp/recording/evaluation/association.hpp"
+#include "dynamic_icp/recording/evaluation/consistency.hpp"
 #include "dynamic_icp/recording/evaluation/relative_error.hpp"
 #include "dynamic_icp/recording/evaluation/segment_error.hpp"
 #include "dynamic_icp/recording/formats/trajectory.hpp"
@@ -29,6 +31,7 @@ struct Evaluation {
   RelativeError relative;
   SegmentError segments;
   AbsoluteError absolute;
+  Consistency consistency;                        ///< of the stated covariances; no motions where none are stated
   double time_span_s = 0.0;                       ///< from the first to the last matched pose
   std::optional<double> reference_path_length_m;  ///< along the matched poses; empty when not finite
   std::optional<double> estimate_path_length_m;
@@ -37,8 +40,9 @@ struct Evaluation {
   std::size_t repeated_reference_poses = 0;
 };
 
-/// Compares an estimate with a reference. Throws as `associate` and `check_config`.
+/// Compares an estimate with a reference. `stated` is empty or holds what is stated for each pose of the estimate.
+/// Throws as `associate`, `consistency` and `check_config`.
 Evaluation evaluate(const formats::Trajectory& estimate, const formats::Trajectory& reference,
-                    const EvaluationConfig& config = {});
+                    const EvaluationConfig& config = {}, std::span<const StatedMotion> stated = {});
 
 }  // namespace dynamic_icp::evaluation

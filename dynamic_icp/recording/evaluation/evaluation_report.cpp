@@ -86,6 +86,18 @@ std::string segments_text(const SegmentError& segments) {
   return text + row("all segments", segments.all);
 }
 
+std::string consistency_text(const Consistency& consistency) {
+  if (consistency.motions == 0) {
+    return "";
+  }
+  const std::optional<double> beyond = consistency.beyond_4_sigma;
+  return fmt::format("\n{:<42}{:>10}{:>14}{:>16}{:>7}\n{:<42}{:>10}{:>14}{:>16}{:>7}\n",
+                     "stated covariance of the motion, NEES", "rotation", "translation", "beyond 4 sigma", "n",
+                     "over 1 frame (3 is right)", number_text(consistency.nees_rotation),
+                     number_text(consistency.nees_translation), beyond ? fmt::format("{:.1f} %", 100.0 * *beyond) : "-",
+                     consistency.motions);
+}
+
 std::string alignment_warning(const AbsoluteError& absolute) {
   switch (absolute.status) {
     case AlignmentStatus::kLine:
@@ -175,7 +187,7 @@ const char* alignment_name(Alignment alignment) { return name_of(kAlignmentNames
 
 std::string evaluation_table(const Evaluation& evaluation, const EvaluationSource& source) {
   return matching_text(evaluation, source) + errors_text(evaluation) + segments_text(evaluation.segments) +
-         warnings_text(evaluation, source);
+         consistency_text(evaluation.consistency) + warnings_text(evaluation, source);
 }
 
 std::string evaluation_json(const Evaluation& evaluation, const EvaluationSource& source) {
@@ -204,6 +216,11 @@ std::string evaluation_json(const Evaluation& evaluation, const EvaluationSource
   add_statistics(json, "ate", "m", evaluation.absolute.translation_m);
   json["alignment"] = alignment_json(evaluation.absolute);
   json["segments"] = segments_json(evaluation.segments);
+  const Consistency& consistency = evaluation.consistency;
+  json["consistency"] = {{"motions", consistency.motions},
+                         {"nees_rotation", number(consistency.nees_rotation)},
+                         {"nees_translation", number(consistency.nees_translation)},
+                         {"beyond_4_sigma", number(consistency.beyond_4_sigma)}};
   return json.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
 }
 

@@ -41,6 +41,21 @@ TEST(EvaluationReport, JsonHoldsTheNumbers) {
   EXPECT_EQ(parsed["segments"]["lengths"][2]["length_m"], 300.0);
 }
 
+TEST(EvaluationReport, ShowsTheConsistencyWhereCovariancesAreStated) {
+  const Trajectory reference = along_x({0.0, 1.0, 2.0});
+  const std::vector<StatedMotion> stated(3, {Matrix6d::Identity() * 0.01, true, false});
+  const Evaluation evaluation = evaluate(along_x({0.0, 1.2, 2.4}), reference, {}, stated);
+  const json parsed = json::parse(evaluation_json(evaluation, kSource));
+  EXPECT_EQ(parsed["consistency"]["motions"], 2);
+  EXPECT_NEAR(parsed["consistency"]["nees_translation"].get<double>(), 4.0, 1e-9);
+  EXPECT_EQ(parsed["consistency"]["nees_rotation"], 0.0);
+  EXPECT_EQ(parsed["consistency"]["beyond_4_sigma"], 0.0);
+  EXPECT_NE(evaluation_table(evaluation, kSource).find("beyond 4 sigma"), std::string::npos);
+  const Evaluation without = evaluate(reference, reference);
+  EXPECT_TRUE(json::parse(evaluation_json(without, kSource))["consistency"]["nees_rotation"].is_null());
+  EXPECT_EQ(evaluation_table(without, kSource).find("sigma"), std::string::npos);
+}
+
 TEST(EvaluationReport, NullWhereNothingCanBeTold) {
   const Trajectory one = along_x({0.0});
   for (const Evaluation& evaluation : {evaluate(one, one), evaluate(along_x({0.0, 1e200}), along_x({0.0, 1.0}))}) {

@@ -20,15 +20,6 @@ constexpr double kGapTolerance = 0.1;
 constexpr double kRounding = 1e-6;
 constexpr double kMaxGapLength = 1e9;
 
-/// T_i^-1 T_j. The positions are subtracted before anything is turned, so that world coordinates of millions of metres
-/// cost no digits.
-Eigen::Isometry3d relative_motion(const Eigen::Isometry3d& T_i, const Eigen::Isometry3d& T_j) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.linear() = T_i.linear().transpose() * T_j.linear();
-  T.translation() = T_i.linear().transpose() * (T_j.translation() - T_i.translation());
-  return T;
-}
-
 /// How far along each matched pose is, in the unit of the gap. Never decreases.
 std::vector<double> progress_of(const Association& matched, GapUnit unit) {
   if (unit == GapUnit::kMeters) {
@@ -60,6 +51,13 @@ std::optional<std::size_t> step_end(const std::vector<double>& progress, std::si
 }
 
 }  // namespace
+
+Eigen::Isometry3d relative_motion(const Eigen::Isometry3d& T_i, const Eigen::Isometry3d& T_j) {
+  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+  T.linear() = T_i.linear().transpose() * T_j.linear();
+  T.translation() = T_i.linear().transpose() * (T_j.translation() - T_i.translation());
+  return T;
+}
 
 void check_gap(const RelativeGap& gap) {
   const bool in_range = gap.length > 0.0 && gap.length <= kMaxGapLength;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <vector>
 
+#include <Eigen/Geometry>
+
 #include "dynamic_icp/recording/evaluation/association.hpp"
 #include "dynamic_icp/recording/evaluation/statistics.hpp"
 
@@ -18,6 +20,10 @@ namespace dynamic_icp::evaluation {
 //
 // the translation error (RTE) is the length of its translation, the rotation error (RRE) the angle of its rotation. It
 // does not depend on the choice of the world frame of either trajectory.
+
+/// T_i^-1 T_j. The positions are subtracted before anything is turned, so that world coordinates of millions of metres
+/// cost no digits.
+Eigen::Isometry3d relative_motion(const Eigen::Isometry3d& T_i, const Eigen::Isometry3d& T_j);
 
 struct MotionError {
   double translation_m = 0.0;

@@ -6,14 +6,16 @@
 
 namespace dynamic_icp::evaluation {
 
-RunAccuracy evaluate_run(const formats::Trajectory& estimate, const formats::Trajectory& reference) {
+RunAccuracy evaluate_run(const formats::Trajectory& estimate, const formats::Trajectory& reference,
+                         std::span<const StatedMotion> stated) {
   RunAccuracy accuracy;
   if (estimate.empty() || reference.empty()) {
     return accuracy;
   }
-  const Evaluation evaluation = evaluate(estimate, reference);
+  const Evaluation evaluation = evaluate(estimate, reference, {}, stated);
   accuracy.matched = evaluation.matched.size();
   accuracy.path_length_m = evaluation.reference_path_length_m;
+  accuracy.consistency = evaluation.consistency;
   if (const std::optional<Statistics>& rte = evaluation.relative.translation_m) {
     accuracy.rte_rmse_m = rte->rmse;
     accuracy.rte_mean_m = rte->mean;

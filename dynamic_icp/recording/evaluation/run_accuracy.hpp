@@ -4,7 +4,9 @@
 
 #include <cstddef>
 #include <optional>
+#include <span>
 
+#include "dynamic_icp/recording/evaluation/consistency.hpp"
 #include "dynamic_icp/recording/formats/trajectory.hpp"
 
 namespace dynamic_icp::evaluation {
@@ -21,11 +23,13 @@ struct RunAccuracy {
   std::optional<double> rre_median_deg;
   std::optional<double> ate_rmse_m;     ///< after the best rigid alignment
   std::optional<double> path_length_m;  ///< of the reference, over the matched poses
+  Consistency consistency;              ///< of the covariances that the run states
 };
 
-/// Frame-to-frame relative errors and the absolute error of a run, poses matched with the defaults of `associate`. An
-/// empty estimate or reference gives empty numbers. Throws DataError when both have poses but no stamp matches, and
-/// when a pose is not finite or stamps do not increase.
-RunAccuracy evaluate_run(const formats::Trajectory& estimate, const formats::Trajectory& reference);
+/// Frame-to-frame relative errors, the absolute error and the consistency of a run, poses matched with the defaults of
+/// `associate`; `stated` as in `evaluate`. An empty estimate or reference gives empty numbers. Throws DataError when
+/// both have poses but no stamp matches, and when a pose is not finite or stamps do not increase.
+RunAccuracy evaluate_run(const formats::Trajectory& estimate, const formats::Trajectory& reference,
+                         std::span<const StatedMotion> stated = {});
 
 }  // namespace dynamic_icp::evaluation

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/recording/formats/json_row.hpp"
 
 namespace dynamic_icp::runs {
@@ -30,6 +31,25 @@ std::optional<TwistRow> twist(const JsonRow& row) {
   }
   const JsonRow twist = row.object("twist");
   return TwistRow{.angular = twist.vector("angular"), .linear = twist.vector("linear")};
+}
+
+/// None where the file has null, and in runs of earlier versions.
+std::optional<Matrix6d> pose_covariance(const JsonRow& row) {
+  constexpr const char* kKey = "pose_covariance";
+  if (!row.has(kKey) || row.get(kKey).is_null()) {
+    return std::nullopt;
+  }
+  Matrix6d covariance;
+  const JsonRow::Json& rows = row.list(kKey);
+  for (std::size_t r = 0; r < 6; ++r) {
+    if (rows.size() != 6 || !rows[r].is_array() || rows[r].size() != 6) {
+      row.fail(kKey, "6 lists of 6 numbers");
+    }
+    for (std::size_t c = 0; c < 6; ++c) {
+      covariance(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = row.number(rows[r][c], kKey);
+    }
+  }
+  return covariance;
 }
 
 std::vector<Vector6d> unobservable_directions(const JsonRow& row) {
@@ -59,6 +79,7 @@ FrameRow frame_row(const JsonRow& row) {
   frame.inlier_rmse = row.number("inlier_rmse");
   frame.information_ratio = number_if_any(row, "information_ratio");
   frame.unobservable_directions = unobservable_directions(row);
+  frame.pose_covariance = pose_covariance(row);
   frame.twist = twist(row);
   frame.doppler_bias = row.has("doppler_bias") ? row.number("doppler_bias") : 0.0;
   const JsonRow::Json& stages = row.get("ms");
@@ -97,6 +118,13 @@ std::vector<FrameRow> read_frames(const std::filesystem::path& path) {
   std::vector<FrameRow> frames;
   formats::for_each_json_line(path, [&](const JsonRow& row) { frames.push_back(frame_row(row)); });
   return frames;
+}
+
+evaluation::StatedMotion stated_motion(const FrameRow& frame) {
+  using odometry::FrameStatus;
+  const bool skipped =
+      frame.reason == to_string(FrameStatus::kTooFewPoints) || frame.reason == to_string(FrameStatus::kTooSoon);
+  return {frame.pose_covariance, frame.status == "ok", skipped};
 }
 
 std::vector<ObjectsRow> read_objects(const std::filesystem::path& path) {

@@ -13,6 +13,7 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/recording/evaluation/consistency.hpp"
 
 // What frame_json.hpp writes, read again.
 namespace dynamic_icp::runs {
@@ -41,6 +42,7 @@ struct FrameRow {
   double inlier_rmse = 0.0;                                  ///< m
   double information_ratio = 0.0;                            ///< of the least known direction to the best known one
   std::vector<Vector6d> unobservable_directions;             ///< of the pose, [rotation; translation], unit length
+  std::optional<Matrix6d> pose_covariance;                   ///< of T_target_source, where one is stated
   std::optional<TwistRow> twist;                             ///< where the method states one
   double doppler_bias = 0.0;                                 ///< m/s, constant error that was found
   std::vector<std::pair<std::string, double>> milliseconds;  ///< per stage and "total"
@@ -67,6 +69,9 @@ struct ObjectRow {
 inline Eigen::Vector3d velocity_at_stamp(const FrameRow& frame) {
   return frame.twist && frame.twist->linear.allFinite() ? frame.twist->linear : frame.ego_velocity;
 }
+
+/// What the run states of the motion into this frame.
+evaluation::StatedMotion stated_motion(const FrameRow& frame);
 
 /// The objects of a scan.
 struct ObjectsRow {

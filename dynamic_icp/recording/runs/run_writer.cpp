@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/recording/evaluation/statistics.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
@@ -50,6 +51,7 @@ void RunWriter::add(std::size_t index, const odometry::Frame& frame) {
     formats::write_values<std::int32_t>(labels_file(folder_, index), frame.labels);
   }
   trajectory_.push_back({frame.stamp, frame.T_world_sensor});
+  stated_.push_back({frame.alignment.covariance, verdict(frame.status) == "ok", odometry::is_skipped(frame.status)});
   total_ms_.push_back(frame.times.total_ms);
   count_status(status_counts_, to_string(frame.status));
   if (trajectory_.size() > 1) {
@@ -76,7 +78,7 @@ RunSummary RunWriter::finish(const std::string& method, const formats::Trajector
   summary.method = method;
   summary.frames = trajectory_.size();
   if (!ground_truth.empty() && !trajectory_.empty()) {
-    summary.accuracy = evaluation::evaluate_run(trajectory_, ground_truth);
+    summary.accuracy = evaluation::evaluate_run(trajectory_, ground_truth, stated_);
   }
   summary.mean_iterations = mean(iterations_);
   if (pairs_ > 0) {

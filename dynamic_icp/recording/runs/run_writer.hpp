@@ -33,6 +33,7 @@ class RunWriter {
   formats::OutputFile frames_file_;
   formats::OutputFile objects_file_;
   formats::Trajectory trajectory_;
+  std::vector<evaluation::StatedMotion> stated_;  ///< one per pose
   std::vector<double> total_ms_;
   std::vector<double> iterations_;
   std::vector<double> dynamic_ratio_;

@@ -11,6 +11,7 @@
 
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/runs/frame_json.hpp"
+#include "dynamic_icp/recording/runs/frame_rows.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -101,12 +102,47 @@ TEST_F(RunWriterTest, WritesTheFilesOfTheContract) {
   EXPECT_EQ(stored["statuses"]["first"], 1);
 }
 
+TEST_F(RunWriterTest, ConsistencyIsThatOfTheFramesReadAgain) {
+  using odometry::FrameStatus;
+  RunWriter writer(folder_, false);
+  formats::Trajectory truth;
+  int k = 0;
+  for (const FrameStatus status : {FrameStatus::kFirst, FrameStatus::kConverged, FrameStatus::kTooFewPoints,
+                                   FrameStatus::kConverged, FrameStatus::kDegenerate}) {
+    odometry::Frame frame = frame_at(k * 100'000'000, 1.0 * k, status);
+    if (status == FrameStatus::kConverged || status == FrameStatus::kDegenerate) {
+      frame.alignment.covariance = Matrix6d::Identity() * 0.01;
+    }
+    truth.push_back({frame.stamp, Eigen::Isometry3d(Eigen::Translation3d(1.5 * k, 0.0, 0.0))});
+    writer.add(static_cast<std::size_t>(k++), frame);
+  }
+  const evaluation::Consistency written = writer.finish("dynamic-icp", truth, {}).accuracy.consistency;
+  EXPECT_EQ(written.motions, 2u) << "the frame after the skipped one states the motion from the one before that";
+  EXPECT_NEAR(*written.nees_translation, 25.0, 1e-9);
+  EXPECT_EQ(written.beyond_4_sigma, 1.0) << "0.5 m beyond 0.1 m, of the one frame that is ok";
+  std::vector<evaluation::StatedMotion> stated;
+  for (const FrameRow& row : read_frames(folder_ / "frames.jsonl")) {
+    stated.push_back(stated_motion(row));
+  }
+  const formats::Trajectory estimate = formats::read_tum(folder_ / "trajectory.tum").trajectory;
+  const evaluation::Consistency read = evaluation::evaluate_run(estimate, truth, stated).consistency;
+  EXPECT_EQ(read.motions, written.motions);
+  EXPECT_EQ(read.nees_rotation, written.nees_rotation);
+  EXPECT_EQ(read.nees_translation, written.nees_translation);
+  EXPECT_EQ(read.beyond_4_sigma, written.beyond_4_sigma);
+  const json stored = json::parse(formats::read_whole_file(folder_ / "summary.json"));
+  EXPECT_EQ(stored["nees_translation"], *written.nees_translation);
+  EXPECT_EQ(stored["nees_rotation"], 0.0);
+  EXPECT_EQ(stored["beyond_4_sigma"], 1.0);
+}
+
 TEST_F(RunWriterTest, WithoutTruthOrFramesNumbersAreNull) {
   RunWriter writer(folder_, false);
   writer.add(0, frame_at(0, 0.0, odometry::FrameStatus::kFirst));
   const json stored = json::parse(summary_json(writer.finish("dynamic-icp", {}, {})));
-  for (const char* key : {"rte_rmse_m", "rre_rmse_deg", "ate_rmse_m", "path_length_m", "mean_iterations",
-                          "convergence_rate", "refined_ratio_mean"}) {
+  for (const char* key :
+       {"rte_rmse_m", "rre_rmse_deg", "ate_rmse_m", "path_length_m", "mean_iterations", "convergence_rate",
+        "refined_ratio_mean", "nees_rotation", "nees_translation", "beyond_4_sigma"}) {
     EXPECT_TRUE(stored[key].is_null()) << key;
   }
   EXPECT_FALSE(fs::exists(folder_ / "labels"));

@@ -14,17 +14,11 @@ namespace {
 
 constexpr std::size_t kMaxSequencesAsColumns = 6;
 
-/// A sequence in a comparison: the cells of all variants.
+/// A sequence in a comparison: per measure the cells of all variants.
 struct Block {
   std::string label;
-  std::vector<TableCell> rte;
-  std::vector<TableCell> rre;
+  std::vector<std::vector<TableCell>> cells;
 };
-
-constexpr Style kErrorStyle{.decimals = 4, .best = Best::kLowest};
-
-std::optional<double> rte_of(const CellResult& cell) { return cell.rte_rmse_m; }
-std::optional<double> rre_of(const CellResult& cell) { return cell.rre_rmse_deg; }
 
 std::vector<Number> numbers_of(const BenchmarkResults& results, const std::string& sequence,
                                const std::vector<Variant>& variants, const Pick& pick) {
@@ -70,22 +64,27 @@ std::vector<Number> mean_numbers(const BenchmarkResults& results, const std::vec
   return means;
 }
 
-std::vector<Block> blocks_of(const BenchmarkResults& results, const std::vector<Variant>& variants) {
+std::vector<Block> blocks_of(const BenchmarkResults& results, const std::vector<Variant>& variants,
+                             const std::vector<Measure>& measures) {
   std::vector<Block> blocks;
   for (const auto& [label, path] : results.info.sequences) {
-    blocks.push_back({label, cells_of(numbers_of(results, label, variants, rte_of), kErrorStyle),
-                      cells_of(numbers_of(results, label, variants, rre_of), kErrorStyle)});
+    blocks.push_back({label, {}});
+    for (const Measure& measure : measures) {
+      blocks.back().cells.push_back(cells_of(numbers_of(results, label, variants, measure.pick), measure.style));
+    }
   }
   if (blocks.size() > 1) {
-    blocks.push_back({"Mean", cells_of(mean_numbers(results, variants, rte_of), kErrorStyle),
-                      cells_of(mean_numbers(results, variants, rre_of), kErrorStyle)});
+    blocks.push_back({"Mean", {}});
+    for (const Measure& measure : measures) {
+      blocks.back().cells.push_back(cells_of(mean_numbers(results, variants, measure.pick), measure.style));
+    }
   }
   return blocks;
 }
 
 /// Over which sequences the means are: some have no truth, or every run on them failed.
-std::string mean_text(const BenchmarkResults& results, const std::vector<Variant>& variants) {
-  const std::vector<std::string> sequences = sequences_with_numbers(results, variants, rte_of);
+std::string mean_text(const BenchmarkResults& results, const std::vector<Variant>& variants, const Measure& measure) {
+  const std::vector<std::string> sequences = sequences_with_numbers(results, variants, measure.pick);
   if (sequences.size() == results.info.sequences.size() || sequences.empty()) {
     return "over all sequences";
   }
@@ -93,54 +92,62 @@ std::string mean_text(const BenchmarkResults& results, const std::vector<Variant
                      results.info.sequences.size(), fmt::join(sequences, ", "));
 }
 
-void lay_out_by_variant(Table& table, const std::vector<Variant>& variants, const std::vector<Block>& blocks) {
+/// The measures as columns of a group.
+void append_heads(Table& table, const std::string& group, const std::vector<Measure>& measures) {
+  for (const Measure& measure : measures) {
+    table.header.push_back({group, measure.title});
+  }
+}
+
+void append_cells(std::vector<TableCell>& row, const Block& block, std::size_t variant) {
+  for (const std::vector<TableCell>& cells : block.cells) {
+    row.push_back(cells[variant]);
+  }
+}
+
+void lay_out_by_variant(Table& table, const std::vector<Variant>& variants, const std::vector<Measure>& measures,
+                        const std::vector<Block>& blocks) {
   table.header = {{"", "Method"}};
   for (const Block& block : blocks) {
-    table.header.push_back({block.label, "RTE [m]"});
-    table.header.push_back({block.label, "RRE [deg]"});
+    append_heads(table, block.label, measures);
   }
   for (std::size_t i = 0; i < variants.size(); ++i) {
     table.rows.push_back({{variants[i].label, Emphasis::kNone}});
     for (const Block& block : blocks) {
-      table.rows.back().push_back(block.rte[i]);
-      table.rows.back().push_back(block.rre[i]);
+      append_cells(table.rows.back(), block, i);
     }
   }
 }
 
-void lay_out_by_sequence(Table& table, const std::vector<Variant>& variants, const std::vector<Block>& blocks) {
+void lay_out_by_sequence(Table& table, const std::vector<Variant>& variants, const std::vector<Measure>& measures,
+                         const std::vector<Block>& blocks) {
   table.header = {{"", "Sequence"}};
   for (const Variant& variant : variants) {
-    table.header.push_back({variant.label, "RTE [m]"});
-    table.header.push_back({variant.label, "RRE [deg]"});
+    append_heads(table, variant.label, measures);
   }
   for (const Block& block : blocks) {
     table.rows.push_back({{block.label, Emphasis::kNone}});
     for (std::size_t i = 0; i < variants.size(); ++i) {
-      table.rows.back().push_back(block.rte[i]);
-      table.rows.back().push_back(block.rre[i]);
+      append_cells(table.rows.back(), block, i);
     }
   }
 }
 
 }  // namespace
 
-Table comparison(const BenchmarkResults& results, const std::vector<Variant>& variants, const std::string& what) {
+Table comparison(const BenchmarkResults& results, const std::vector<Variant>& variants,
+                 const std::vector<Measure>& measures, const std::string& what) {
   Table table;
-  table.caption = fmt::format(
-      "{} RTE, RRE: root mean square of the translation and rotation error of the motion from each scan to the next "
-      "against the ground truth. Mean: {}, for methods that have a number on all of them. Best bold, second "
-      "underlined, "
-      "per sequence. {}",
-      what, mean_text(results, variants), setup_text(results));
+  table.caption = fmt::format("{} Mean: {}, for methods that have a number on all of them. {}", what,
+                              mean_text(results, variants, measures.front()), setup_text(results));
   if (variants.empty()) {
     return table;
   }
-  const std::vector<Block> blocks = blocks_of(results, variants);
+  const std::vector<Block> blocks = blocks_of(results, variants, measures);
   if (results.info.sequences.size() <= kMaxSequencesAsColumns) {
-    lay_out_by_variant(table, variants, blocks);
+    lay_out_by_variant(table, variants, measures, blocks);
   } else {
-    lay_out_by_sequence(table, variants, blocks);
+    lay_out_by_sequence(table, variants, measures, blocks);
   }
   return table;
 }

@@ -40,6 +40,9 @@ struct CellResult {
   std::optional<double> rre_rmse_deg;
   std::optional<double> ate_rmse_m;
   std::optional<double> path_length_m;
+  std::optional<double> nees_rotation;  ///< of the stated covariances, see evaluation/consistency.hpp
+  std::optional<double> nees_translation;
+  std::optional<double> beyond_4_sigma;  ///< 0 to 1
   std::optional<double> mean_iterations;
   std::optional<double> convergence_rate;  ///< 0 to 1
   std::optional<double> ms_mean;
@@ -66,6 +69,9 @@ void for_each_number(Result& result, const Visit& visit) {
   visit("rre_rmse_deg", result.rre_rmse_deg);
   visit("ate_rmse_m", result.ate_rmse_m);
   visit("path_length_m", result.path_length_m);
+  visit("nees_rotation", result.nees_rotation);
+  visit("nees_translation", result.nees_translation);
+  visit("beyond_4_sigma", result.beyond_4_sigma);
   visit("mean_iterations", result.mean_iterations);
   visit("convergence_rate", result.convergence_rate);
   visit("ms_mean", result.ms_mean);

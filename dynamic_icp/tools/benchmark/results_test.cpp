@@ -20,6 +20,9 @@ CellResult full_cell() {
   cell.rre_rmse_deg = 0.2;
   cell.ate_rmse_m = 0.3;
   cell.path_length_m = 1.0 / 3.0;
+  cell.nees_rotation = 3.25;
+  cell.nees_translation = 2.75;
+  cell.beyond_4_sigma = 0.125;
   cell.mean_iterations = 5.5;
   cell.convergence_rate = 0.75;
   cell.ms_mean = 21.0;
@@ -48,6 +51,9 @@ void expect_equal(const CellResult& a, const CellResult& b) {
   EXPECT_EQ(a.rre_rmse_deg, b.rre_rmse_deg);
   EXPECT_EQ(a.ate_rmse_m, b.ate_rmse_m);
   EXPECT_EQ(a.path_length_m, b.path_length_m);
+  EXPECT_EQ(a.nees_rotation, b.nees_rotation);
+  EXPECT_EQ(a.nees_translation, b.nees_translation);
+  EXPECT_EQ(a.beyond_4_sigma, b.beyond_4_sigma);
   EXPECT_EQ(a.mean_iterations, b.mean_iterations);
   EXPECT_EQ(a.convergence_rate, b.convergence_rate);
   EXPECT_EQ(a.ms_mean, b.ms_mean);

@@ -16,6 +16,7 @@ namespace dynamic_icp::benchmark {
 namespace {
 
 constexpr const char* kAccuracy = "accuracy";
+constexpr const char* kConsistency = "consistency";
 constexpr const char* kRuntime = "runtime";
 constexpr const char* kAblation = "ablation";
 constexpr const char* kDynamics = "dynamics";
@@ -27,6 +28,19 @@ Table named(const char* name, const char* title) {
   table.title = title;
   return table;
 }
+
+/// RTE and RRE of the variants.
+Table error_comparison(const BenchmarkResults& results, const std::vector<Variant>& variants, const std::string& what) {
+  const Style style{.decimals = 4, .best = Best::kLowest};
+  return comparison(results, variants,
+                    {{"RTE [m]", style, [](const CellResult& cell) { return cell.rte_rmse_m; }},
+                     {"RRE [deg]", style, [](const CellResult& cell) { return cell.rre_rmse_deg; }}},
+                    what +
+                        " RTE, RRE: root mean square of the translation and rotation error of the motion from each "
+                        "scan to the next against the ground truth. Best bold, second underlined, per sequence.");
+}
+
+bool states_covariance(const CellResult& cell) { return cell.nees_rotation || cell.nees_translation; }
 
 /// A number per method over all its sequences.
 struct Total {
@@ -133,9 +147,32 @@ std::vector<CellResult> start_sequence_rows(Table& table, const BenchmarkResults
 }  // namespace
 
 Table accuracy_table(const BenchmarkResults& results) {
-  Table table = comparison(results, methods_run(results), "Comparison of the methods under identical preprocessing.");
+  Table table =
+      error_comparison(results, methods_run(results), "Comparison of the methods under identical preprocessing.");
   table.name = kAccuracy;
   table.title = "Accuracy";
+  return table;
+}
+
+Table consistency_table(const BenchmarkResults& results) {
+  std::vector<Variant> variants = methods_run(results);
+  if (std::none_of(results.cells.begin(), results.cells.end(), states_covariance)) {
+    variants.clear();
+  }
+  const Style nees{.decimals = 1};
+  Table table = comparison(
+      results, variants,
+      {{"NEES rot.", nees, [](const CellResult& cell) { return cell.nees_rotation; }},
+       {"NEES transl.", nees, [](const CellResult& cell) { return cell.nees_translation; }},
+       {"Beyond 4 sigma",
+        {.decimals = 1, .percent = true},
+        [](const CellResult& cell) { return cell.beyond_4_sigma; }}},
+      "Whether errors are as large as the stated covariances. NEES: mean of e^T C^-1 e of the rotation and of the "
+      "translation of the motion from each scan to the next; 3 is right, more is overconfident. Beyond 4 sigma: share "
+      "of "
+      "the scans with status ok that are beyond four stated standard deviations on any axis. -: no covariance.");
+  table.name = kConsistency;
+  table.title = "Consistency";
   return table;
 }
 
@@ -174,9 +211,10 @@ Table ablation_table(const BenchmarkResults& results) {
   if (variants.size() < 2) {
     variants.clear();  // the full method alone is no ablation study
   }
-  Table table = comparison(results, variants,
-                           "Dynamic-ICP without the velocity filter (VF), without the prediction of dynamic points "
-                           "(DPP), without the Doppler residual (DR), and in full.");
+  Table table =
+      error_comparison(results, variants,
+                       "Dynamic-ICP without the velocity filter (VF), without the prediction of dynamic points "
+                       "(DPP), without the Doppler residual (DR), and in full.");
   table.name = kAblation;
   table.title = "Ablation";
   return table;
@@ -226,11 +264,11 @@ Table objects_table(const BenchmarkResults& results) {
   return table;
 }
 
-std::vector<std::string> table_names() { return {kAccuracy, kRuntime, kAblation, kDynamics, kObjects}; }
+std::vector<std::string> table_names() { return {kAccuracy, kConsistency, kRuntime, kAblation, kDynamics, kObjects}; }
 
 std::vector<Table> all_tables(const BenchmarkResults& results) {
-  std::vector<Table> tables = {accuracy_table(results), runtime_table(results), ablation_table(results),
-                               dynamics_table(results), objects_table(results)};
+  std::vector<Table> tables = {accuracy_table(results), consistency_table(results), runtime_table(results),
+                               ablation_table(results), dynamics_table(results),    objects_table(results)};
   std::erase_if(tables, [](const Table& table) { return table.rows.empty(); });
   return tables;
 }

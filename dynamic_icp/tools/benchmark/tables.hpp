@@ -16,13 +16,16 @@ namespace dynamic_icp::benchmark {
 /// (1) RTE and RRE per sequence and method, with their mean over the sequences. Methods are the rows as in the paper;
 /// with more than six sequences these are the rows.
 Table accuracy_table(const BenchmarkResults& results);
-/// (2) Mean iterations, convergence rate, frames per second, milliseconds p50 and p95, peak memory per method.
+/// (2) Per sequence and method the mean NEES of rotation and of translation, and the share of scans with status ok
+/// beyond four stated standard deviations (evaluation/consistency.hpp). No rows where no method states a covariance.
+Table consistency_table(const BenchmarkResults& results);
+/// (3) Mean iterations, convergence rate, frames per second, milliseconds p50 and p95, peak memory per method.
 Table runtime_table(const BenchmarkResults& results);
-/// (3) RTE and RRE per sequence with parts of dynamic-icp switched off.
+/// (4) RTE and RRE per sequence with parts of dynamic-icp switched off.
 Table ablation_table(const BenchmarkResults& results);
-/// (4) Dyn./All max and mean, Clustered/Dyn., Refined/Dyn. of dynamic-icp per sequence.
+/// (5) Dyn./All max and mean, Clustered/Dyn., Refined/Dyn. of dynamic-icp per sequence.
 Table dynamics_table(const BenchmarkResults& results);
-/// (5) Object velocities of dynamic-icp against the truth per sequence, where there is truth.
+/// (6) Object velocities of dynamic-icp against the truth per sequence, where there is truth.
 Table objects_table(const BenchmarkResults& results);
 
 /// The names of all tables.

@@ -57,8 +57,8 @@ TEST(Tables, OfNothingAreNone) {
 TEST(Tables, AllNamesAreKnown) {
   const BenchmarkResults none;
   EXPECT_EQ(table_names(),
-            (std::vector<std::string>{accuracy_table(none).name, runtime_table(none).name, ablation_table(none).name,
-                                      dynamics_table(none).name, objects_table(none).name}));
+            (std::vector<std::string>{accuracy_table(none).name, consistency_table(none).name, runtime_table(none).name,
+                                      ablation_table(none).name, dynamics_table(none).name, objects_table(none).name}));
 }
 
 TEST(Tables, AccuracyHasThePapersNamesAndOrder) {
@@ -111,6 +111,19 @@ TEST(Tables, ManySequencesAreRows) {
   EXPECT_EQ(row(table, 1), "s1 | 0.1000* | 0.9000+ | 0.3000+ | 0.7000*");
   EXPECT_EQ(row(table, 3), "s3 | 0.3000* | 0.7000* | 0.3000* | 0.7000*");
   EXPECT_EQ(row(table, 7), "Mean | 0.3000* | 0.7000* | 0.3000* | 0.7000*");
+}
+
+TEST(Tables, ConsistencyIsThatOfMethodsThatStateACovariance) {
+  CellResult ours = cell("a", "dynamic-icp", 0.1);
+  ours.nees_rotation = 2.96;
+  ours.nees_translation = 1234.5;
+  ours.beyond_4_sigma = 0.034;
+  const Table table = consistency_table(with({"a", "b"}, {cell("a", "gicp", 0.1), cell("b", "gicp", 0.1), ours}));
+  ASSERT_EQ(table.rows.size(), 2u);
+  EXPECT_EQ(row(table, 0), "GICP | - | - | - | - | - | - | - | - | -");
+  EXPECT_EQ(row(table, 1), "Dynamic-ICP | 3.0 | 1234.5 | 3.4% | - | - | - | 3.0 | 1234.5 | 3.4%");
+  EXPECT_EQ(table.header[3].title, "Beyond 4 sigma");
+  EXPECT_TRUE(consistency_table(with({"a"}, {cell("a", "gicp", 0.1)})).rows.empty());
 }
 
 TEST(Tables, RuntimeIsOverAllScansOfFinishedSequences) {

@@ -1,0 +1,82 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/evaluation/consistency.hpp"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/Cholesky>
+
+#include "dynamic_icp/recording/evaluation/relative_error.hpp"
+
+namespace dynamic_icp::evaluation {
+namespace {
+
+constexpr double kSigmas = 4.0;
+
+/// e = log(T_true T_estimate^-1) of the motion into the matched pose `to` from the one before.
+Vector6d perturbation(const Association& matched, std::size_t to) {
+  const Eigen::Isometry3d T_true =
+      relative_motion(matched.reference[to].T_world_sensor, matched.reference[to - 1].T_world_sensor);
+  const Eigen::Isometry3d T_estimate_inverse =
+      relative_motion(matched.estimate[to - 1].T_world_sensor, matched.estimate[to].T_world_sensor);
+  return log_se3(T_true * T_estimate_inverse);
+}
+
+struct Mean {
+  double sum = 0.0;
+  std::size_t count = 0;
+
+  void add(double value) {
+    sum += value;
+    ++count;
+  }
+  [[nodiscard]] std::optional<double> value() const {
+    const double mean = sum / static_cast<double>(count);
+    return count > 0 && std::isfinite(mean) ? std::optional(mean) : std::nullopt;
+  }
+};
+
+/// Adds e^T C^-1 e where there is one.
+void add_nees(Mean& mean, const Eigen::Vector3d& e, const Eigen::Matrix3d& C) {
+  const Eigen::LLT<Eigen::Matrix3d> cholesky(C);
+  if (C.allFinite() && cholesky.info() == Eigen::Success) {
+    mean.add(e.dot(cholesky.solve(e)));
+  }
+}
+
+bool is_within_sigmas(const Vector6d& e, const Matrix6d& C) {
+  return (e.array().square() <= kSigmas * kSigmas * C.diagonal().array()).all();  // false also for NaN
+}
+
+}  // namespace
+
+Consistency consistency(const Association& matched, std::span<const StatedMotion> stated) {
+  if (stated.size() != matched.estimate_count) {
+    throw std::invalid_argument("consistency: expected a statement for each pose of the estimate");
+  }
+  Consistency result;
+  Mean rotation;
+  Mean translation;
+  Mean beyond;
+  for (std::size_t k = 1; k < matched.size(); ++k) {
+    const std::size_t frame = matched.estimate_indices[k];
+    const StatedMotion& motion = stated[frame];
+    if (!motion.covariance || matched.estimate_indices[k - 1] + 1 != frame || stated[frame - 1].skipped) {
+      continue;
+    }
+    ++result.motions;
+    const Vector6d e = perturbation(matched, k);
+    add_nees(rotation, e.head<3>(), motion.covariance->topLeftCorner<3, 3>());
+    add_nees(translation, e.tail<3>(), motion.covariance->bottomRightCorner<3, 3>());
+    if (motion.ok) {
+      beyond.add(is_within_sigmas(e, *motion.covariance) ? 0.0 : 1.0);
+    }
+  }
+  result.nees_rotation = rotation.value();
+  result.nees_translation = translation.value();
+  result.beyond_4_sigma = beyond.value();
+  return result;
+}
+
+}  // namespace dynamic_icp::evaluation

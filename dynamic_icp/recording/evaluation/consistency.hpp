@@ -1,0 +1,44 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+#include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/recording/evaluation/association.hpp"
+
+namespace dynamic_icp::evaluation {
+
+/// What a method states about the motion from the frame before into this one, beside the pose.
+struct StatedMotion {
+  /// Of the left perturbation [omega (rad); rho (m)] of T_target_source, in the axes of this frame; empty where the
+  /// method states none.
+  std::optional<Matrix6d> covariance;
+  bool ok = false;       ///< the method takes the pose for right: status "ok"
+  bool skipped = false;  ///< a frame without a part in the motion: what the next one states does not begin here
+};
+
+/// Whether errors are as large as the covariances say. With the true and the estimated motion T_target_source between
+/// two frames,
+///
+///   e = log(T_true T_estimate^-1),   NEES_b = e_b^T C_bb^-1 e_b,
+///
+/// where b is the rotation or the translation, three numbers each, and C_bb its block of the covariance. Right
+/// covariances give a mean NEES of 3; more is overconfident, less too careful.
+struct Consistency {
+  std::size_t motions = 0;                 ///< with a covariance and a reference at both ends
+  std::optional<double> nees_rotation;     ///< mean over the motions; empty without any
+  std::optional<double> nees_translation;  ///< the same
+  /// Share of the motions with status ok in which |e_i| > 4 sqrt(C_ii) on at least one of the six axes: 0.04 % of
+  /// normal errors. Empty where there is none.
+  std::optional<double> beyond_4_sigma;
+};
+
+/// The consistency of what is stated for each frame of the whole estimate. Only motions between frames that follow each
+/// other count. A block that is not positive definite has no NEES, but counts among those beyond four sigma. Throws
+/// std::invalid_argument when `stated` is not as long as the whole estimate.
+Consistency consistency(const Association& matched, std::span<const StatedMotion> stated);
+
+}  // namespace dynamic_icp::evaluation
