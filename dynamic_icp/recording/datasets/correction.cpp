@@ -48,6 +48,7 @@ void reorder_columns(RawScan& scan, const std::array<int, 4>& columns) {
   }
   if (columns[3] != 3) {
     scan.directions.clear();
+    scan.mountings.clear();
     return;
   }
   reorder_axes(scan.mountings, columns);

@@ -34,10 +34,10 @@ struct Correction {
 /// Throws UsageError for scales that are not positive and finite, and for columns that are no permutation of 0..3.
 void check(const Correction& correction);
 
-/// One scan corrected: points, lines of sight, Doppler, times of points and the kind; not its stamp. Lines of sight
-/// that were read are dropped where the Doppler changes places with a coordinate: they were made of the wrong columns.
-/// Mountings are in the unit and the axes of the points: positions are scaled, axes of scan and sensor change places;
-/// they stay where the Doppler changes places with a coordinate.
+/// One scan corrected: points, lines of sight, Doppler, times of points and the kind; not its stamp. Mountings are in
+/// the unit and the axes of the points: positions are scaled, axes of scan and sensor change places. Lines of sight and
+/// mountings are dropped where the Doppler changes places with a coordinate: the points were put together of the wrong
+/// columns.
 RawScan corrected(RawScan scan, const Correction& correction);
 
 /// The recording with its numbers corrected on the way out. Ground truth is left as it is, but where all its stamps are
