@@ -129,7 +129,7 @@ Frame ScanToScanIcp::process(const ScanView& raw) {
 /// Deskews to the middle of the scan by the last motion; the frame tells it. Returns when the middle is, s after the
 /// stamp. About the middle an error of that motion displaces as many points forward as back; about the stamp it would
 /// come back as an error of the next motion, undamped.
-double ScanToScanIcp::deskew(Scan& scan, const RawScan& raw, Frame& frame) const {
+double ScanToScanIcp::deskew(Scan& scan, const ScanView& raw, Frame& frame) const {
   frame.sweep = motion::sweep_in_data(raw);
   frame.sweep->deskewed = frame.sweep->duration_s.value_or(0.0) > 0.0;
   if (!frame.sweep->deskewed) {

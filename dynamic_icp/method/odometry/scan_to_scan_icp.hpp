@@ -31,7 +31,7 @@ class ScanToScanIcp final : public Odometry {
  private:
   struct Reference;
 
-  double deskew(Scan& scan, const RawScan& raw, Frame& frame) const;
+  double deskew(Scan& scan, const ScanView& raw, Frame& frame) const;
   void align_to_last(const Reference& now, Frame& frame) const;
   [[nodiscard]] Eigen::Isometry3d predicted_motion() const;
   [[nodiscard]] registration::Objective objective(DopplerKind kind, double dt_s) const;

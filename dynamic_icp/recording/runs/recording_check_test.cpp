@@ -51,15 +51,15 @@ class LateStart final : public datasets::Dataset {
 
 TEST(RecordingCheck, TheDopplerOfASensorThatMovesLaterIsNotRefused) {
   const LateStart recording;
-  const RecordingCheck check = check_recording(recording, {}, {0, LateStart::kScans, 1}, true);
+  const RecordingCheck check = check_recording(recording, {}, {0, LateStart::kScans, 1}, {true});
   EXPECT_NE(check.doppler.find("relative"), std::string::npos) << check.doppler;
   EXPECT_NEAR(check.period_s, 0.1, 1e-9);
 }
 
 TEST(RecordingCheck, ThatOfASensorThatNeverMovesIs) {
   const LateStart recording;
-  EXPECT_THROW(check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, true), DataError);
-  EXPECT_NO_THROW(check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, false));
+  EXPECT_THROW(check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, {true}), DataError);
+  EXPECT_NO_THROW(check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, {false}));
 }
 
 }  // namespace
