@@ -4,8 +4,8 @@
 usage: mean_over_seeds.py DIR...   (folders of benchmarks over the same drives; each holds results.json)
 
 First the methods of all folders side by side by RTE (mm) and RRE (degrees): root mean squares over the drives of a
-scene, which are equally long. Then by the medians of each drive, as mean over the drives: a motion that is lost, as the
-first one often is, decides the root mean square and leaves the median alone. Then the stated covariances: mean NEES of
+scene, which are equally long. Then by the medians of each drive, as mean over the drives: a few motions that are
+lost, as the first ones often are, decide the root mean square and leave the median alone. Then the stated covariances: mean NEES of
 rotation and of translation, 3 is right, and the share of scans with status ok beyond four stated standard deviations.
 Last for each folder what Dynamic-ICP loses without its parts. Best bold, second underlined.
 """
