@@ -252,6 +252,9 @@ TEST_F(EndToEnd, EvaluateComparesARunWithTheTruth) {
   const json evaluation = json::parse(outcome.text);
   EXPECT_EQ(evaluation["matched"], 12);
   EXPECT_NEAR(evaluation["path_length_m"].get<double>(), summary["path_length_m"].get<double>(), 1e-9);
+  EXPECT_EQ(evaluation["consistency"]["motions"], 11) << "of frames.jsonl beside the trajectory";
+  EXPECT_NEAR(evaluation["consistency"]["nees_translation"].get<double>(), summary["nees_translation"].get<double>(),
+              1e-6);
   const Outcome itself =
       run_program("evaluate " + (street() / "ref_poses.txt").string() + " " + (street() / "ref_poses.txt").string());
   EXPECT_EQ(itself.status, 0) << itself.text;
