@@ -40,7 +40,8 @@ const Pair& pair() {
 void correspondences(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(0)));
   for ([[maybe_unused]] auto _ : state) {
-    registration::CorrespondenceSearch search(pair().source_scan, pair().target(), registration::Gate{0.3}, true, workers);
+    registration::CorrespondenceSearch search(pair().source_scan, pair().target(), registration::Gate{0.3}, true,
+                                              workers);
     benchmark::DoNotOptimize(search.find(pair().T_true));
   }
   // A search as in kd_tree_nearest, for the two nearest points.
@@ -55,7 +56,8 @@ BENCHMARK(correspondences)->Apply(one_and_two_threads);
 void linearise(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(0)));
   const auto objective = registration::dynamic_icp_objective(odometry::PaperConfig{}.registration);
-  registration::CorrespondenceSearch search(pair().source_scan, pair().target(), registration::Gate{0.3}, true, workers);
+  registration::CorrespondenceSearch search(pair().source_scan, pair().target(), registration::Gate{0.3}, true,
+                                            workers);
   const registration::Correspondences found = search.find(pair().T_true);
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(
@@ -71,7 +73,8 @@ BENCHMARK(linearise)->Apply(one_and_two_threads);
 void solve(benchmark::State& state) {
   const Workers workers(1);
   const auto objective = registration::dynamic_icp_objective(odometry::PaperConfig{}.registration);
-  registration::CorrespondenceSearch search(pair().source_scan, pair().target(), registration::Gate{0.3}, true, workers);
+  registration::CorrespondenceSearch search(pair().source_scan, pair().target(), registration::Gate{0.3}, true,
+                                            workers);
   const registration::Linearisation linear = registration::linearise(
       {{pair().source_scan}, pair().target(), search.find(pair().T_true)}, pair().T_true, objective, 0, workers);
   for ([[maybe_unused]] auto _ : state) {

@@ -195,7 +195,8 @@ TEST(PlyPoints, TheBytesAreThoseOfTheFormat) {
 }
 
 TEST(PlyPoints, TheReaderFindsEveryPoint) {
-  const PlyFile file = parse(ply_bytes(point_table(std::vector<Eigen::Vector3d>{{1.25, -2.0, 0.5}, {1e-3, 4e4, -0.1}})));
+  const PlyFile file =
+      parse(ply_bytes(point_table(std::vector<Eigen::Vector3d>{{1.25, -2.0, 0.5}, {1e-3, 4e4, -0.1}})));
   ASSERT_EQ(file.elements.size(), 1u);
   const PlyElement& vertex = *file.find("vertex");
   const auto rounded = [](float a, float b) { return std::vector<double>{a, b}; };

@@ -38,9 +38,9 @@ struct Needs {
 /// How the user states the correction of a finding, e.g. by the options of a program.
 using FixInWords = std::function<std::string(const diagnosis::Finding&)>;
 
-/// Diagnoses scans from all over a run before it begins, and searches for sweeps where asked. Throws DataError where the
-/// Doppler has the wrong sign or is of another kind than stated, or where there is none and the method needs it: every
-/// result would be wrong. A sign or kind that the user states is believed. Messages leave corrections out where
+/// Diagnoses scans from all over a run before it begins, and searches for sweeps where asked. Throws DataError where
+/// the Doppler has the wrong sign or is of another kind than stated, or where there is none and the method needs it:
+/// every result would be wrong. A sign or kind that the user states is believed. Messages leave corrections out where
 /// `fix_in_words` is empty.
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
                                const ScansToCheck& scans, const Needs& needs, const FixInWords& fix_in_words = {});

@@ -43,8 +43,8 @@ Pixel LabelPlaces::place(const PixelBox& thing, std::string_view text, double si
   const double width = estimated_width(text, size);
   const double height = 1.2 * size;
   // Above and below it moves aside as far as it takes to stay in the area.
-  const double middle = std::clamp(thing.left + 0.5 * (thing.width - width), area_.left,
-                                   std::max(area_.left, area_.right() - width));
+  const double middle =
+      std::clamp(thing.left + 0.5 * (thing.width - width), area_.left, std::max(area_.left, area_.right() - width));
   const double level = thing.top + 0.5 * (thing.height - height);
   std::optional<PixelBox> best;
   for (const double gap : {4.0, 16.0, 32.0}) {
