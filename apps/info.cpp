@@ -1,16 +1,20 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <memory>
+#include <numbers>
 #include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
+#include <Eigen/Eigenvalues>
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
@@ -97,6 +101,7 @@ struct PointsSeen {
   bool times = false;
   std::vector<std::string> columns;
   std::vector<std::string> warnings;
+  std::vector<Eigen::Isometry3d> mountings;  ///< T_scan_sensor of the sensors of a rig
 
   /// Whether any point was usable, so that there are ranges.
   [[nodiscard]] bool any() const { return farthest_m > 0.0; }
@@ -123,6 +128,7 @@ PointsSeen look_at_points(const datasets::Dataset& dataset) {
       seen.warnings.push_back(raw.warning);
     }
     if (k == 0) {
+      seen.mountings = raw.mountings;
       for (const datasets::PointColumn& column : dataset.columns(index)) {
         seen.columns.push_back(column.name);
       }
@@ -130,6 +136,42 @@ PointsSeen look_at_points(const datasets::Dataset& dataset) {
   }
   std::sort(seen.sizes.begin(), seen.sizes.end());
   return seen;
+}
+
+double yaw_deg(const Eigen::Isometry3d& T) {
+  return std::atan2(T.linear()(1, 0), T.linear()(0, 0)) * 180.0 / std::numbers::pi;
+}
+
+/// The axes about which the lever arms of the sensors make a rotation visible in the Doppler, as columns, and root mean
+/// square of the lever arms about each (m), ascending: none about the line through two sensors.
+Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> lever_arms(const std::vector<Eigen::Isometry3d>& mountings) {
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();
+  for (const Eigen::Isometry3d& T : mountings) {
+    middle += T.translation() / static_cast<double>(mountings.size());
+  }
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const Eigen::Isometry3d& T : mountings) {
+    const Eigen::Matrix3d lever = skew(T.translation() - middle);
+    squares += lever.transpose() * lever / static_cast<double>(mountings.size());
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(squares);
+}
+
+void print_rig(const std::vector<Eigen::Isometry3d>& mountings) {
+  if (mountings.empty()) {
+    return;
+  }
+  for (std::size_t k = 0; k < mountings.size(); ++k) {
+    const Eigen::Vector3d t = mountings[k].translation();
+    fmt::print("sensor {}     at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg\n", k, t.x(), t.y(), t.z(),
+               yaw_deg(mountings[k]));
+  }
+  const auto levers = lever_arms(mountings);
+  for (Eigen::Index i = 0; i < 3; ++i) {
+    const Eigen::Vector3d axis = levers.eigenvectors().col(i);
+    fmt::print("rotation     about ({:.2f}, {:.2f}, {:.2f}) shows in the Doppler with lever arms of {:.2f} m\n",
+               axis.x(), axis.y(), axis.z(), std::sqrt(std::max(0.0, levers.eigenvalues()[i])));
+  }
 }
 
 void print_points(const PointsSeen& seen) {
@@ -239,6 +281,11 @@ void print_json(const InfoOptions& options, const datasets::Dataset& dataset, co
     json["point_times"] = seen.times;
   }
   json["columns"] = seen.columns;
+  json["sensors"] = Json::array();
+  for (const Eigen::Isometry3d& T : seen.mountings) {
+    const Eigen::Vector3d t = T.translation();
+    json["sensors"].push_back({{"position_m", {t.x(), t.y(), t.z()}}, {"yaw_deg", yaw_deg(T)}});
+  }
   json["ground_truth"] = nullptr;
   if (!dataset.ground_truth().empty()) {
     json["ground_truth"] = {{"path", dataset.ground_truth_file().string()},
@@ -266,6 +313,7 @@ int info(const InfoOptions& options) {
   fmt::print("scans        {}\n", dataset->size());
   print_time(*dataset, times);
   print_points(seen);
+  print_rig(seen.mountings);
   if (dataset->ground_truth().empty()) {
     fmt::print("ground truth none\n");
   } else {
