@@ -56,8 +56,7 @@ FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& mo
   return result;
 }
 
-Matrix7d sandwich_covariance(const DopplerRows& rows, const FitSums& sums, const Eigen::Matrix3d& open,
-                             const DopplerModel& model, const std::vector<Vector7d>& cell_gradients) {
+Matrix7d gradient_scatter(const DopplerRows& rows, const Matrix7d& H, const std::vector<Vector7d>& cell_gradients) {
   std::vector<Vector7d> by_sector(rows.sectors, Vector7d::Zero());
   for (std::size_t c = 0; c < rows.cells(); ++c) {
     by_sector[rows.sector[c]] += cell_gradients[c];
@@ -68,10 +67,13 @@ Matrix7d sandwich_covariance(const DopplerRows& rows, const FitSums& sums, const
     scatter += gradient * gradient.transpose();
     sectors += gradient.isZero(0.0) ? 0.0 : 1.0;
   }
-  // Few sectors say little about their own scatter, none at all when they fit exactly: the scatter expected from
-  // independent noise, H, counts like as many sectors as three times the unknowns.
   const double presumed = 3.0 * kUnknowns;
-  scatter = (sectors * scatter + presumed * sums.H) / (sectors + presumed);
+  return (sectors * scatter + presumed * H) / (sectors + presumed);
+}
+
+Matrix7d sandwich_covariance(const DopplerRows& rows, const FitSums& sums, const Eigen::Matrix3d& open,
+                             const DopplerModel& model, const std::vector<Vector7d>& cell_gradients) {
+  Matrix7d scatter = gradient_scatter(rows, sums.H, cell_gradients);
   scatter += model.information;
 
   const Matrix7d information = information_of(sums, model);

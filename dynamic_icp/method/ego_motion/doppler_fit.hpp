@@ -29,6 +29,11 @@ struct FitStep {
 /// exceed `unobservable_sigma_mps` is not observed: no step is made along it.
 FitStep solve_fit(const FitSums& sums, const Vector7d& x, const DopplerModel& model, double unobservable_sigma_mps);
 
+/// Covariance of the gradient of x, from its parts summed over the direction sectors: residuals within a sector may
+/// depend on each other in any way. Few sectors say little about their own scatter, none at all when they fit exactly:
+/// the scatter expected from independent noise, H, counts like as many sectors as three times the unknowns.
+Matrix7d gradient_scatter(const DopplerRows& rows, const Matrix7d& H, const std::vector<Vector7d>& cell_gradients);
+
 /// Covariance of x by the sandwich formula, from gradients summed over the direction sectors: residuals within a
 /// sector may depend on each other in any way. Zero along the directions of v that `open` projects onto. See the source
 /// for small samples.

@@ -100,24 +100,6 @@ struct RigSums {
   bool widened = false;
 };
 
-/// Few sectors say little about their own scatter: see sandwich_covariance.
-Matrix7d scatter_of(const DopplerRows& rows, const std::vector<Vector7d>& cell_gradients, const Matrix7d& H) {
-  constexpr double kPresumed = 3.0 * 7.0;
-  std::vector<Vector7d> by_sector(rows.sectors, Vector7d::Zero());
-  for (std::size_t c = 0; c < rows.cells(); ++c) {
-    by_sector[rows.sector[c]] += cell_gradients[c];
-  }
-  Matrix7d scatter = Matrix7d::Zero();
-  double sectors = 0.0;
-  for (const Vector7d& gradient : by_sector) {
-    scatter += gradient * gradient.transpose();
-    sectors += gradient.isZero(0.0) ? 0.0 : 1.0;
-  }
-  scatter = (sectors * scatter + kPresumed * H) / (sectors + kPresumed);
-  scatter.diagonal().array() += 1e-9 * (1.0 + scatter.trace());
-  return scatter;
-}
-
 RigSums sum_rig(std::vector<SensorRows>& sensors, const Eigen::VectorXd& X, double max_noise_mps,
                 const Workers& workers) {
   RigSums sums;
@@ -128,7 +110,9 @@ RigSums sum_rig(std::vector<SensorRows>& sensors, const Eigen::VectorXd& X, doub
     const FitSums part = sum_fit(sensor.rows, sensor.A * X, sensor.scale, true, workers, &cell_gradients);
     const double slope = part.weights > 0.0 ? std::clamp(part.slopes / part.weights, 0.5, 1.0) : 1.0;
     const Matrix7d H = slope * part.H;
-    const Matrix7d weight = scatter_of(sensor.rows, cell_gradients, part.H).ldlt().solve(H).transpose();
+    Matrix7d scatter = gradient_scatter(sensor.rows, part.H, cell_gradients);
+    scatter.diagonal().array() += 1e-9 * (1.0 + scatter.trace());  // an unknown that no row sees
+    const Matrix7d weight = scatter.ldlt().solve(H).transpose();
     sums.information += sensor.A.transpose() * (weight * H) * sensor.A;
     sums.gradient += sensor.A.transpose() * (weight * part.gradient);
     sums.squared += part.inlier_squared;
