@@ -130,8 +130,10 @@ void MapOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
   const ScanView timed = motion::retimed(raw, config_.sweep, memory_.times);
   const Scan& whole = memory_.whole;
   assign(timed, config_.preprocess, workers_, memory_.whole, frame);
-  if (whole.is_of_rig()) {
-    middle_ = middle_.value_or(middle_of_sensors(whole));
+  if (whole.is_of_rig() && !state_) {
+    middle_ = middle_of_sensors(whole);
+  }
+  if (middle_) {
     memory_.whole = whole.transformed(Eigen::Isometry3d(Eigen::Translation3d(-*middle_)));
   }
   workers_.both(

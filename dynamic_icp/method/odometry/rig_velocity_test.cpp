@@ -89,6 +89,20 @@ TEST(RigVelocity, TheDopplerAloneShowsTheRotationAsWellAsItSays) {
   }
 }
 
+TEST(RigVelocity, ScansWithoutMountingsInBetweenAreOfTheSameFrame) {
+  const Drive drive{street(), circle(8.0, 0.0), Sensor{}};
+  MapOdometry odometry(with_ablation(), 2);
+  std::vector<Frame> frames;
+  for (int k = 0; k < 8; ++k) {
+    RawScan raw = rig_scan(drive, kFrontPair, {}, k);
+    if (k >= 4) {
+      raw.mountings.clear();  // a driver that forgets them; straight on, lever arms do not show
+    }
+    frames.push_back(odometry.process(raw));
+  }
+  EXPECT_LT(rms_error(drive, frames, 2).move_m, 0.004);
+}
+
 TEST(RigVelocity, EachSensorMayHaveAnErrorOfItsOwn) {
   const Drive drive{street(), circle(8.0, 0.3), Sensor{}};
   const std::vector<Frame> frames = run(drive, kAround, {0.2, -0.1, 0.05, 0.15}, 16);
