@@ -50,7 +50,7 @@ void add_row(RawScan& raw, const Vector3d& point, double doppler) {
 }  // namespace
 
 ScanGenerator::ScanGenerator(std::uint64_t seed, std::span<const std::uint8_t> script)
-    : random_(seed), script_(script) {
+    : random_(seed), script_(script), rig_(seed % 3 == 2) {
   swept_ = one_in(2);
   kind_ = one_in(5) ? DopplerKind::kCompensated : DopplerKind::kRelative;
   constexpr std::int64_t kFar = std::int64_t{1} << 62;
@@ -208,8 +208,23 @@ RawScan ScanGenerator::next() {
   if (one_in(3)) {
     damage(raw);
   }
+  if (rig_) {
+    make_rig(raw);
+  }
   ++scans_;
   return raw;
+}
+
+/// Says that sensors in several places measured the points, which the Doppler contradicts.
+void ScanGenerator::make_rig(RawScan& raw) const {
+  const std::size_t sensors = 1 + static_cast<std::size_t>(scans_) / 7 % 4;
+  for (std::size_t k = 0; k < sensors; ++k) {
+    raw.mountings.push_back(
+        Eigen::Isometry3d(Eigen::Translation3d(static_cast<double>(k), 0.3, scans_ == 17 ? 1e5 : 2.0)));
+  }
+  for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    raw.channels.sensor.push_back(static_cast<std::uint8_t>(i * i % sensors));
+  }
 }
 
 std::optional<std::string> fault_of(const odometry::Frame& frame, const RawScan& raw, double dt_s) {

@@ -16,7 +16,7 @@ namespace dynamic_icp::adversarial {
 
 /// A drive in a hall with a moving box, of which some scans are replaced by degenerate shapes, some numbers by NaN,
 /// infinities, denormals and numbers near the limits of float, double and scan_limits.hpp, and some steps of the stamp
-/// by steps of nanoseconds or years.
+/// by steps of nanoseconds or years. In a third of the drives several sensors are said to have measured the points.
 class ScanGenerator {
  public:
   /// The first choices are made by the bytes of `script`, all others by the seed.
@@ -35,6 +35,7 @@ class ScanGenerator {
   void fill_shape(RawScan& raw, std::size_t size);
   void replace_column(RawScan& raw);
   void damage(RawScan& raw);
+  void make_rig(RawScan& raw) const;
 
   RandomSource random_;
   std::uint64_t drawn_ = 0;
@@ -42,6 +43,7 @@ class ScanGenerator {
   bool swept_;
   DopplerKind kind_;
   Stamp stamp_;
+  bool rig_;
   int scans_ = 0;
 };
 

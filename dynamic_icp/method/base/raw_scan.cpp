@@ -56,6 +56,11 @@ void check_columns(const ScanView& scan) {
   if (!wrong.empty()) {
     throw std::invalid_argument("scan columns differ in length: " + std::to_string(n) + " points, " + wrong);
   }
+  for (const Eigen::Isometry3d& mounting : scan.mountings) {
+    if (!mounting.matrix().allFinite()) {
+      throw std::invalid_argument("a mounting has numbers that are not finite");
+    }
+  }
   const bool has_mountings = !scan.mountings.empty();
   const auto largest = std::ranges::max_element(scan.sensor);
   if (has_mountings && (scan.sensor.empty() ? n > 0 : *largest >= scan.mountings.size())) {

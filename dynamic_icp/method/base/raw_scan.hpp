@@ -123,7 +123,8 @@ struct ScanView {
   DopplerKind doppler_kind = DopplerKind::kRelative;
 };
 
-/// Throws std::invalid_argument, naming the lengths, when columns differ in length or a sensor has no mounting.
+/// Throws std::invalid_argument, naming the lengths, when columns differ in length, a sensor has no mounting, or a
+/// mounting is not finite.
 void check_columns(const ScanView& scan);
 
 }  // namespace dynamic_icp

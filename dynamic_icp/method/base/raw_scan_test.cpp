@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/base/raw_scan.hpp"
 
 #include <array>
+#include <cmath>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -85,6 +86,9 @@ TEST(CheckColumns, EverySensorHasAMounting) {
   raw.channels.sensor.clear();
   EXPECT_EQ(complaint(raw), "a scan with mountings needs the sensor of each point");
   EXPECT_EQ(complaint(RawScan{}), "");
+  raw.channels.sensor = {0, 1};
+  raw.mountings[1].translation().z() = std::nan("");
+  EXPECT_EQ(complaint(raw), "a mounting has numbers that are not finite");
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "dynamic_icp/method/base/scan_limits.hpp"
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_fit.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
@@ -179,6 +180,13 @@ AngularInformation angular_information(const RigSums& sums, const Priors& priors
   return result;
 }
 
+/// False when rows that hardly determine the motion have carried it away from anything that moves.
+bool is_plausible(const Eigen::VectorXd& X, const Eigen::MatrixXd& covariance) {
+  return X.allFinite() && covariance.allFinite() && covariance.diagonal().minCoeff() > 0.0 &&
+         X.head<3>().norm() <= kMaxDoppler_mps && X.segment<3>(3).norm() <= kMaxAcceleration_mps2 &&
+         X.segment<3>(kOmega).norm() <= kUnknownRotation_rad_s;
+}
+
 /// omega by the Doppler alone: alpha is a guess then, of the size that vehicles have.
 AngularVelocity alone(const AngularInformation& doppler, const AngularMotion& expected) {
   Matrix6d information = doppler.information;
@@ -303,7 +311,7 @@ RigEstimate estimate_rig_motion(const Scan& scan, const RigDoppler& reduced, con
   const Eigen::MatrixXd covariance = Eigen::MatrixXd(sums.information + priors.information)
                                          .ldlt()
                                          .solve(Eigen::MatrixXd::Identity(X.size(), X.size()));
-  if (!X.allFinite() || !covariance.allFinite()) {
+  if (!is_plausible(X, covariance)) {
     return result;
   }
   result.rotation = angular_information(sums, priors, X, reduced);
