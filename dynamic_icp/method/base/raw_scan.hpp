@@ -123,8 +123,7 @@ struct ScanView {
   DopplerKind doppler_kind = DopplerKind::kRelative;
 };
 
-/// Throws std::invalid_argument, naming the lengths, when columns differ in length, a sensor has no mounting, or a
-/// mounting is not finite.
+/// Throws std::invalid_argument, naming the lengths, when columns differ in length or a sensor has no mounting.
 void check_columns(const ScanView& scan);
 
 }  // namespace dynamic_icp
