@@ -50,7 +50,8 @@ TEST_F(RealSensorTest, SixLidarsHoldTheRotationInATunnel) {
   EXPECT_LT(merged.rre_deg, alone.rre_deg);
 }
 
-// What follows does not hold yet: CTest expects these tests to fail (WILL_FAIL), and says so when one begins to pass.
+// What follows does not hold yet: CTest expects these tests to measure an error beyond the limit (CMakeLists.txt), and
+// says so when one is within it.
 // The limits are those of an estimator that learns what the sensor does wrong.
 class KnownShortfall : public RealSensorTest {};
 
