@@ -157,6 +157,23 @@ Priors priors_of(const RigPrior& rig, const AngularMotion& expected, const RigDo
   return priors;
 }
 
+/// Gauss-Newton steps from X; returns the sums at the end.
+RigSums minimise(std::vector<SensorRows>& sensors, const Priors& priors, double max_noise_mps, const Workers& workers,
+                 Eigen::VectorXd& X) {
+  RigSums sums = sum_rig(sensors, X, max_noise_mps, workers);
+  for (int step = 0; step < kMaxSteps; ++step) {
+    const Eigen::MatrixXd information = sums.information + priors.information;
+    const Eigen::VectorXd change = -information.ldlt().solve(sums.gradient + priors.information * (X - priors.mean));
+    const bool is_done = !sums.widened && change.head<3>().norm() < kStepTolerance_mps;
+    X += change;
+    sums = sum_rig(sensors, X, max_noise_mps, workers);
+    if (is_done) {
+      break;
+    }
+  }
+  return sums;
+}
+
 /// What the rows say of [omega; alpha] after all else is solved for (Schur's complement).
 AngularInformation angular_information(const RigSums& sums, const Priors& priors, const Eigen::VectorXd& X,
                                        const RigDoppler& reduced) {
@@ -293,21 +310,12 @@ RigEstimate estimate_rig_motion(const Scan& scan, const RigDoppler& reduced, con
     return result;
   }
   const Priors priors = priors_of(prior, expected, reduced, start);
+  Vector7d start_unknowns;
+  start_unknowns << start.velocity_sensor, start.acceleration_sensor, 0.0;
+  std::vector<SensorRows> sensors = sorted_rows(scan, reduced.reference_time_s, start_unknowns, config, workers);
   Eigen::VectorXd X = Eigen::VectorXd::Zero(priors.mean.size());
-  X.head<3>() = start.velocity_sensor;
-  X.segment<3>(3) = start.acceleration_sensor;
-  std::vector<SensorRows> sensors = sorted_rows(scan, reduced.reference_time_s, Vector7d(X.head<7>()), config, workers);
-  RigSums sums = sum_rig(sensors, X, config.max_noise_mps, workers);
-  for (int step = 0; step < kMaxSteps; ++step) {
-    const Eigen::MatrixXd information = sums.information + priors.information;
-    const Eigen::VectorXd change = -information.ldlt().solve(sums.gradient + priors.information * (X - priors.mean));
-    const bool is_done = !sums.widened && change.head<3>().norm() < kStepTolerance_mps;
-    X += change;
-    sums = sum_rig(sensors, X, config.max_noise_mps, workers);
-    if (is_done) {
-      break;
-    }
-  }
+  X.head<6>() = start_unknowns.head<6>();
+  const RigSums sums = minimise(sensors, priors, config.max_noise_mps, workers, X);
   const Eigen::MatrixXd covariance = Eigen::MatrixXd(sums.information + priors.information)
                                          .ldlt()
                                          .solve(Eigen::MatrixXd::Identity(X.size(), X.size()));
