@@ -54,6 +54,8 @@ Eigen::Vector3d log_so3(const Eigen::Matrix3d& R) {
   return angle_over_sine * q.vec();
 }
 
+Eigen::Matrix3d right_jacobian_so3(const Eigen::Vector3d& omega) { return left_jacobian(-omega); }
+
 Eigen::Isometry3d exp_se3(const Vector6d& xi) {
   const Eigen::Vector3d omega = xi.head<3>();
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();

@@ -26,6 +26,9 @@ Eigen::Matrix3d exp_so3(const Eigen::Vector3d& omega);
 /// The rotation vector of R, length in [0, pi]; exp_so3(log_so3(R)) = R, also near pi.
 Eigen::Vector3d log_so3(const Eigen::Matrix3d& R);
 
+/// The right Jacobian J of SO(3): exp_so3(omega + d) = exp_so3(omega) exp_so3(J d) to first order in d.
+Eigen::Matrix3d right_jacobian_so3(const Eigen::Vector3d& omega);
+
 /// The rigid motion of the constant twist xi = [omega; rho] over unit time.
 Eigen::Isometry3d exp_se3(const Vector6d& xi);
 

@@ -52,6 +52,22 @@ TEST(Se3, LogarithmInvertsTheExponential) {
   }
 }
 
+TEST(Se3, RightJacobianIsTheDerivativeOfTheExponential) {
+  // Both sides of where the power series ends, and as far as a rotation goes.
+  constexpr double kStep = 1e-5;
+  std::mt19937 random(5);
+  for (const double length : {0.0, 1e-9, 1e-3, 0.0315, 0.0318, 0.4, 1.7, 3.0}) {
+    const Eigen::Vector3d omega = length * random_vector(random, 1.0).normalized();
+    const Eigen::Matrix3d J = right_jacobian_so3(omega);
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const Eigen::Vector3d d = kStep * Eigen::Vector3d::Unit(axis);
+      const Eigen::Vector3d change = log_so3(exp_so3(omega - d).transpose() * exp_so3(omega + d)) / (2.0 * kStep);
+      EXPECT_LT((J.col(axis) - change).norm(), 1e-9) << "length " << length;
+    }
+    EXPECT_LT((J * omega - omega).norm(), 1e-14) << "along the axis nothing changes";
+  }
+}
+
 TEST(Se3, LogarithmNearHalfATurn) {
   std::mt19937 random(4);
   for (const double below_pi : {0.0, 1e-12, 1e-8, 1e-4}) {

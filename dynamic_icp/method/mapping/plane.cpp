@@ -64,6 +64,7 @@ std::optional<Plane> fit_plane(const Moments& moments, const Eigen::Vector3d& or
   plane.tangential = inverse_within_plane(scatter, plane.normal);
   plane.variance = std::max(values[0], 0.0) * moments.weight / (moments.weight - kParameters);
   plane.points = moments.weight;
+  plane.phase = moments.phase / moments.weight;
   return plane;
 }
 

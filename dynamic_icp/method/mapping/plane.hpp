@@ -16,9 +16,11 @@ struct Moments {
   double weight = 0.0;
   Eigen::Vector3d first = Eigen::Vector3d::Zero();                           ///< sum of p, m
   Eigen::Matrix<double, 6, 1> second = Eigen::Matrix<double, 6, 1>::Zero();  ///< sum of xx, xy, xz, yy, yz, zz, m^2
+  double phase = 0.0;  ///< sum of the phase of the sweep, 0 to 1, at which they were measured
 
-  void add(const Eigen::Vector3d& point) {
+  void add(const Eigen::Vector3d& point, double point_phase = 0.0) {
     weight += 1.0;
+    phase += point_phase;
     first += point;
     second[0] += point.x() * point.x();
     second[1] += point.x() * point.y();
@@ -31,6 +33,7 @@ struct Moments {
   /// Makes all points count `factor` times as much.
   void scale(double factor) {
     weight *= factor;
+    phase *= factor;
     first *= factor;
     second *= factor;
   }
@@ -52,6 +55,7 @@ struct Plane {
   Eigen::Matrix3d tangential = Eigen::Matrix3d::Zero();  ///< 1/m^2: pseudo-inverse of the scatter within the plane
   double variance = 0.0;                                 ///< m^2, of one point across the plane: noise and roughness
   double points = 0.0;                                   ///< the weight of the points it was fitted to
+  double phase = 0.0;                                    ///< of the sweep, 0 to 1: the mean of the points
 
   /// Signed distance of a point, m.
   [[nodiscard]] double distance(const Eigen::Vector3d& point) const { return normal.dot(point - mean); }

@@ -68,20 +68,21 @@ void PlaneMap::clear() {
   free_patches_.clear();
 }
 
-void PlaneMap::add(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& position, const Workers& workers) {
+void PlaneMap::add(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& position, const Workers& workers,
+                   std::span<const double> phases) {
   ++scans_;
   const double lifetime = std::min(static_cast<double>(scans_), kLifetimes * config_.memory_scans);
   oldest_ = scans_ - static_cast<std::uint32_t>(lifetime);
   fitting_.clear();
-  for (const Eigen::Vector3d& point : points) {
-    add_point(point);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    add_point(points[i], phases.empty() ? 0.0 : phases[i]);
   }
   drop_cells(position);
   fit_planes(workers);
 }
 
 /// Adds a point to the cells of all levels around it.
-void PlaneMap::add_point(const Eigen::Vector3d& point) {
+void PlaneMap::add_point(const Eigen::Vector3d& point, double phase) {
   const std::uint64_t key = finest_cell(point);
   if (key == spatial::kNoCell) {
     return;
@@ -93,7 +94,7 @@ void PlaneMap::add_point(const Eigen::Vector3d& point) {
   for (int level = levels - 1;; --level, edge_m *= 0.5) {
     touch(cell);
     const Coordinates here(finest[0] >> level, finest[1] >> level, finest[2] >> level);
-    moments_[cell].add(point - edge_m * (here.cast<double>() + Eigen::Vector3d::Constant(0.5)));
+    moments_[cell].add(point - edge_m * (here.cast<double>() + Eigen::Vector3d::Constant(0.5)), phase);
     if (level == 0) {
       return;
     }

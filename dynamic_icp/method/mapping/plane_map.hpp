@@ -12,8 +12,8 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/mapping/mapping_config.hpp"
 #include "dynamic_icp/method/mapping/plane.hpp"
-#include "dynamic_icp/method/mapping/plane_map_config.hpp"
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 #include "dynamic_icp/method/spatial/key_numbers.hpp"
 
@@ -44,8 +44,9 @@ class PlaneMap {
 
   /// Adds a scan: points in map axes (m), taken at `position`. Ages what is there, drops what is old or far from
   /// `position`, and fits the planes of all cells that changed. Points more than 2^20 cells from the origin are left
-  /// out.
-  void add(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& position, const Workers& workers);
+  /// out. `phases` of the sweep, 0 to 1, one per point or none.
+  void add(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& position, const Workers& workers,
+           std::span<const double> phases = {});
 
   /// The patch of the coarsest level around a point, or null. Valid until the next `add`.
   [[nodiscard]] const Patch* find(const Eigen::Vector3d& point) const { return find(finest_cell(point)); }
@@ -84,7 +85,7 @@ class PlaneMap {
     std::uint64_t key;  ///< in units of the edge of its level
   };
 
-  void add_point(const Eigen::Vector3d& point);
+  void add_point(const Eigen::Vector3d& point, double phase);
   void touch(std::uint32_t cell);
   void fit_planes(const Workers& workers);
   void fit_level(double edge_m, const Workers& workers);
