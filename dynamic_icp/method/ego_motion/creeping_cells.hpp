@@ -1,0 +1,20 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
+#include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
+
+namespace dynamic_icp::ego_motion {
+
+/// Which cells creep: their mean Doppler differs from that of the static scene by more than `sigmas` standard
+/// deviations, though each point might be static. How far the static scene itself is off, by an error of the sensor, is
+/// seen in the farthest cell of each direction sector, which is static far more often than not. `noise_mps` is the
+/// standard deviation of single points.
+std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps,
+                                         double sigmas);
+
+}  // namespace dynamic_icp::ego_motion
