@@ -1,0 +1,219 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/doppler_cells.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/motion/deskew.hpp"
+
+namespace dynamic_icp::window {
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+constexpr std::size_t kAzimuths = 300;   // 1.2 degrees
+constexpr std::size_t kElevations = 64;  // where the scan has no lines
+constexpr double kMaxElevation = 0.5;    // rad; beyond it elevation hardly changes anything
+
+// Tukey's kernel around the mean of a cell, in standard deviations.
+constexpr double kKernel = 4.5;
+
+// A cell tells how its points scatter with so many of them, and a bin of the noise with so many deviations.
+constexpr double kInformativeCell = 5.0;
+constexpr std::size_t kInformativeBin = 60;
+constexpr double kNoiseGain = 0.2;
+constexpr double kShrinkage = 1.15;  // the mean of a cell was taken from the same points
+constexpr double kMinVariance = 1e-6;
+
+/// Number of the direction sector around the vertical, to a thousandth of a sector; no trigonometry per point.
+std::size_t azimuth_sector(double x, double y) {
+  const double ax = std::abs(x);
+  const double ay = std::abs(y);
+  const double r = ax > ay ? ay / ax : (ay > 0.0 ? ax / ay : 0.0);
+  // atan r = (pi/4) r + r (1 - r) (0.2447 + 0.0663 r), within 0.0015 rad
+  double angle = r * (0.25 * std::numbers::pi + (1.0 - r) * (0.2447 + 0.0663 * r));
+  angle = ax > ay ? angle : 0.5 * std::numbers::pi - angle;
+  angle = x < 0.0 ? std::numbers::pi - angle : angle;
+  angle = y < 0.0 ? -angle : angle;
+  const double turn = angle / (2.0 * std::numbers::pi) + 0.5;
+  return std::min(kAzimuths - 1, static_cast<std::size_t>(std::max(0.0, turn) * static_cast<double>(kAzimuths)));
+}
+
+std::size_t elevation_step(double z) {
+  const double share = 0.5 + 0.5 * std::clamp(z / kMaxElevation, -1.0, 1.0);
+  return std::min(kElevations - 1, static_cast<std::size_t>(share * static_cast<double>(kElevations)));
+}
+
+std::vector<double> edges(std::vector<double> values, std::size_t bins) {
+  std::sort(values.begin(), values.end());
+  std::vector<double> result;
+  for (std::size_t k = 1; k < bins && !values.empty(); ++k) {
+    result.push_back(values[k * (values.size() - 1) / bins]);
+  }
+  return result;
+}
+
+std::size_t index_in(const std::vector<double>& edges, double value) {
+  return static_cast<std::size_t>(std::upper_bound(edges.begin(), edges.end(), value) - edges.begin());
+}
+
+}  // namespace
+
+std::size_t DopplerNoise::bin(double range_m, double intensity) const {
+  return index_in(range_edges_m, range_m) * kIntensities + index_in(intensity_edges, intensity);
+}
+
+std::uint16_t DopplerCells::line_of(const Eigen::Vector3d& u) {
+  return static_cast<std::uint16_t>(elevation_step(u.z()));
+}
+
+/// Rows of one cell have the same sensor, line (or elevation), azimuth and time to the length of an interval.
+void DopplerCells::sort(const Scan& scan, const std::vector<std::uint8_t>& is_moving, double interval_s,
+                        const Workers& workers) {
+  const Channels& channels = scan.channels();
+  const motion::TimeSpan span = motion::time_span(scan);
+  const auto intervals = static_cast<std::size_t>((span.last - span.first) / interval_s) + 1;
+  const std::size_t lines =
+      channels.line.empty()
+          ? kElevations
+          : static_cast<std::size_t>(*std::max_element(channels.line.begin(), channels.line.end())) + 1;
+  const std::size_t sensors = std::max<std::size_t>(1, scan.mountings().size());
+  key_.resize(scan.size());
+  range_.resize(scan.size());
+  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+    range_[i] = scan.points()[i].norm();
+    if (is_moving[i] != 0) {
+      key_[i] = kNone;
+      return;
+    }
+    const Eigen::Vector3d& u = scan.directions()[i];
+    const std::size_t line = channels.line.empty() ? elevation_step(u.z()) : channels.line[i];
+    const std::size_t sensor = channels.sensor.empty() ? 0 : channels.sensor[i];
+    const std::size_t interval =
+        scan.has_times()
+            ? std::min(intervals - 1, static_cast<std::size_t>((scan.times()[i] - span.first) / interval_s))
+            : 0;
+    key_[i] = static_cast<std::uint32_t>(((sensor * intervals + interval) * lines + line) * kAzimuths +
+                                         azimuth_sector(u.x(), u.y()));
+  });
+  number_.assign(sensors * intervals * lines * kAzimuths, kNone);
+  cell_.resize(scan.size());
+  cell_count_ = 0;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (key_[i] == kNone) {
+      cell_[i] = kNone;
+      continue;
+    }
+    std::uint32_t& number = number_[key_[i]];
+    if (number == kNone) {
+      number = static_cast<std::uint32_t>(cell_count_++);
+    }
+    cell_[i] = number;
+  }
+}
+
+/// From how points scatter within their cells: any motion and any smooth error is the same for all of a cell.
+void DopplerCells::learn_noise(const Scan& scan, const std::vector<double>& deviation) {
+  const std::vector<float>& intensity = scan.channels().intensity;
+  if (noise_.range_edges_m.empty()) {
+    noise_.range_edges_m = edges(range_, DopplerNoise::kRanges);
+    if (!intensity.empty()) {
+      noise_.intensity_edges = edges({intensity.begin(), intensity.end()}, DopplerNoise::kIntensities);
+    }
+  }
+  std::vector<std::vector<double>> samples(DopplerNoise::kRanges * DopplerNoise::kIntensities);
+  const std::size_t stride = std::max<std::size_t>(1, scan.size() / 16384);
+  for (std::size_t i = 0; i < scan.size(); i += stride) {
+    if (cell_[i] != kNone && counts_[cell_[i]] >= kInformativeCell && std::isfinite(deviation[i])) {
+      samples[noise_.bin(range_[i], intensity.empty() ? 0.0 : static_cast<double>(intensity[i]))].push_back(
+          std::abs(deviation[i]));
+    }
+  }
+  std::vector<double> all;
+  for (const std::vector<double>& bin : samples) {
+    all.insert(all.end(), bin.begin(), bin.end());
+  }
+  const auto variance_of = [](const std::vector<double>& values) {
+    const double sigma = kSigmaPerMad * median(values);
+    return std::max(kMinVariance, kShrinkage * sigma * sigma);
+  };
+  const bool is_first = noise_.variance.empty();
+  const double common = all.size() >= kInformativeBin ? variance_of(all) : (is_first ? 0.01 : -1.0);
+  noise_.variance.resize(samples.size(), common);
+  for (std::size_t bin = 0; bin < samples.size() && common > 0.0; ++bin) {
+    const double seen = samples[bin].size() >= kInformativeBin ? variance_of(samples[bin]) : common;
+    noise_.variance[bin] += (is_first ? 1.0 : kNoiseGain) * (seen - noise_.variance[bin]);
+  }
+}
+
+const std::vector<DopplerCell>& DopplerCells::average(const Scan& scan, const std::vector<double>& measured,
+                                                      const std::vector<double>& predicted, double gate_mps) {
+  const Channels& channels = scan.channels();
+  sums_.assign(cell_count_, 0.0);
+  counts_.assign(cell_count_, 0.0);
+  residual_.assign(scan.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const double e = measured[i] - predicted[i];
+    if (cell_[i] != kNone && std::abs(e) < gate_mps) {
+      residual_[i] = e;
+      sums_[cell_[i]] += e;
+      counts_[cell_[i]] += 1.0;
+    }
+  }
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (std::isfinite(residual_[i])) {
+      residual_[i] -= sums_[cell_[i]] / counts_[cell_[i]];
+    }
+  }
+  learn_noise(scan, residual_);
+  cells_.assign(cell_count_, {});
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (!std::isfinite(residual_[i])) {
+      continue;
+    }
+    const double intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
+    const double variance = noise_.variance[noise_.bin(range_[i], intensity)];
+    const double inside = 1.0 - residual_[i] * residual_[i] / (kKernel * kKernel * variance);
+    if (inside <= 0.0) {
+      continue;
+    }
+    const double robust = inside * inside;
+    const double w = robust / variance;
+    DopplerCell& cell = cells_[cell_[i]];
+    const Eigen::Vector3d& u = scan.directions()[i];
+    cell.u += w * u;
+    cell.s += w * measured[i];
+    cell.time_s += w * (scan.has_times() ? scan.times()[i] : 0.0);
+    cell.range_m += w * range_[i];
+    cell.intensity += w * intensity;
+    cell.weight += w;
+    cell.points += robust;
+    if (!channels.line.empty()) {
+      cell.line = channels.line[i];
+    } else {
+      cell.line = line_of(u);
+    }
+    cell.face = channels.face.empty() ? std::uint8_t{0} : channels.face[i];
+    cell.sensor = channels.sensor.empty() ? std::uint8_t{0} : channels.sensor[i];
+  }
+  std::erase_if(cells_, [](const DopplerCell& cell) { return cell.points < 0.5; });
+  for (DopplerCell& cell : cells_) {
+    const double scale = 1.0 / cell.weight;
+    cell.u *= scale;
+    cell.s *= scale;
+    cell.time_s *= scale;
+    cell.range_m *= scale;
+    cell.intensity *= scale;
+    if (scan.is_of_rig()) {
+      cell.lxu = scan.mountings()[cell.sensor].translation().cross(cell.u);
+    }
+  }
+  return cells_;
+}
+
+}  // namespace dynamic_icp::window

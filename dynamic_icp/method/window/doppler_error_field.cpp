@@ -1,0 +1,199 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/doppler_error_field.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/LU>
+
+namespace dynamic_icp::window {
+namespace {
+
+constexpr std::size_t kAzimuths = 48;
+constexpr std::size_t kCrossAzimuths = 12;
+constexpr std::size_t kCrossElevations = 4;
+constexpr std::size_t kRigAzimuths = 16;  // of each of several sensors
+constexpr std::size_t kMaxLines = 128;
+constexpr double kCorrelation_rad = 0.35;  // of the error in azimuth
+constexpr double kMargin_rad = 0.02;
+
+constexpr double kRangeScale_m = 100.0;
+constexpr double kRangeMean = 0.3;
+constexpr double kNear_m = 10.0;
+
+// The velocity-like part of an error is about so much larger than the scale of the part that can be seen.
+constexpr double kVelocityScale = 1.5;
+constexpr double kStartTau = 0.05;
+constexpr double kStartVelocityTau = 0.1;
+constexpr double kMinTau = 2e-4;
+constexpr double kMaxTau = 0.3;
+constexpr double kPriorTau = 0.004;  // counts like one column that was seen
+
+/// exp(-|i - j| / length)
+Eigen::MatrixXd exponential_kernel(std::size_t size, double length) {
+  const auto n = static_cast<Eigen::Index>(size);
+  Eigen::MatrixXd K(n, n);
+  for (Eigen::Index i = 0; i < n; ++i) {
+    for (Eigen::Index j = 0; j < n; ++j) {
+      K(i, j) = std::exp(-static_cast<double>(std::abs(i - j)) / length);
+    }
+  }
+  return K;
+}
+
+Eigen::MatrixXd identity(std::size_t size) {
+  const auto n = static_cast<Eigen::Index>(size);
+  return Eigen::MatrixXd::Identity(n, n);
+}
+
+Eigen::MatrixXd kronecker(const Eigen::MatrixXd& a, const Eigen::MatrixXd& b) {
+  Eigen::MatrixXd K(a.rows() * b.rows(), a.cols() * b.cols());
+  for (Eigen::Index i = 0; i < a.rows(); ++i) {
+    for (Eigen::Index j = 0; j < a.cols(); ++j) {
+      K.block(i * b.rows(), j * b.cols(), b.rows(), b.cols()) = a(i, j) * b;
+    }
+  }
+  return K;
+}
+
+double azimuth_of(const DopplerCell& cell) { return std::atan2(cell.u.y(), cell.u.x()); }
+double elevation_of(const DopplerCell& cell) { return std::asin(std::clamp(cell.u.z() / cell.u.norm(), -1.0, 1.0)); }
+
+/// A place between nodes 0 .. count - 1: the node before and the share of the next.
+std::pair<std::size_t, double> between_nodes(double share, std::size_t count) {
+  const double x = std::clamp(share, 0.0, 1.0) * static_cast<double>(count - 1);
+  const auto i = std::min(count - 2, static_cast<std::size_t>(x));
+  return {i, x - static_cast<double>(i)};
+}
+
+}  // namespace
+
+std::size_t DopplerErrorField::add_group(std::string_view name, Eigen::MatrixXd K, double tau, bool is_learned) {
+  Group group{name, size_, std::move(K), {}, tau, is_learned};
+  group.inverse = group.K.inverse();
+  size_ += group.size();
+  groups_.push_back(std::move(group));
+  return groups_.back().begin;
+}
+
+DopplerErrorField::DopplerErrorField(const std::vector<DopplerCell>& cells, std::size_t faces) : faces_(faces) {
+  std::size_t sensors = 1;
+  double intensity_squares = 0.0;
+  for (const DopplerCell& cell : cells) {
+    sensors = std::max<std::size_t>(sensors, cell.sensor + 1U);
+    lines_ = std::max<std::size_t>(lines_, cell.line + 1U);
+    intensity_mean_ += cell.intensity / static_cast<double>(cells.size());
+    intensity_squares += cell.intensity * cell.intensity / static_cast<double>(cells.size());
+  }
+  const double spread = std::sqrt(std::max(0.0, intensity_squares - intensity_mean_ * intensity_mean_));
+  intensity_scale_ = spread > 0.0 ? 1.0 / spread : 0.0;
+  lines_ = sensors > 1 || lines_ > kMaxLines ? 0 : lines_;
+  azimuths_ = sensors > 1 ? kRigAzimuths : kAzimuths;
+  sensors_.resize(sensors);
+  for (std::size_t s = 0; s < sensors; ++s) {
+    double azimuth_low = 4.0, azimuth_high = -4.0, elevation_low = 2.0, elevation_high = -2.0;
+    for (const DopplerCell& cell : cells) {
+      if (cell.sensor == s) {
+        azimuth_low = std::min(azimuth_low, azimuth_of(cell));
+        azimuth_high = std::max(azimuth_high, azimuth_of(cell));
+        elevation_low = std::min(elevation_low, elevation_of(cell));
+        elevation_high = std::max(elevation_high, elevation_of(cell));
+      }
+    }
+    SensorColumns& c = sensors_[s];
+    c.azimuth_first = azimuth_low - kMargin_rad;
+    c.azimuth_span = std::max(0.1, azimuth_high - azimuth_low + 2.0 * kMargin_rad);
+    c.elevation_first = elevation_low - kMargin_rad;
+    c.elevation_span = std::max(0.05, elevation_high - elevation_low + 2.0 * kMargin_rad);
+    const auto count = static_cast<double>(azimuths_);
+    c.azimuth =
+        add_group("azimuth", exponential_kernel(azimuths_, kCorrelation_rad * count / c.azimuth_span), kStartTau, true);
+    if (sensors == 1) {
+      c.cross = add_group("cross",
+                          kronecker(exponential_kernel(kCrossAzimuths, 3.0), exponential_kernel(kCrossElevations, 2.0)),
+                          kStartTau, true);
+      c.line = lines_ > 0 ? add_group("line", identity(lines_), kStartTau, true) : 0;
+      c.face = faces_ > 1 ? add_group("face", identity(faces_), kStartTau, true)
+                          : add_group("velocity", identity(1), kStartVelocityTau, false);
+    }
+    c.range = add_group("range and intensity", identity(3), kStartTau, true);
+    c.velocity = add_group("velocity", identity(3), kStartVelocityTau, false);
+  }
+}
+
+FieldColumns DopplerErrorField::columns(const DopplerCell& cell) const {
+  FieldColumns result;
+  const SensorColumns& c = sensors_[std::min<std::size_t>(cell.sensor, sensors_.size() - 1)];
+  const double azimuth = (azimuth_of(cell) - c.azimuth_first) / c.azimuth_span;
+  const double bin = std::clamp(azimuth, 0.0, 1.0) * static_cast<double>(azimuths_);
+  result.add(c.azimuth + std::min(azimuths_ - 1, static_cast<std::size_t>(bin)), 1.0);
+  if (sensors_.size() == 1) {
+    const auto [i, a] = between_nodes(azimuth, kCrossAzimuths);
+    const auto [j, e] = between_nodes((elevation_of(cell) - c.elevation_first) / c.elevation_span, kCrossElevations);
+    const std::size_t at = c.cross + i * kCrossElevations + j;
+    result.add(at, (1.0 - a) * (1.0 - e));
+    result.add(at + 1, (1.0 - a) * e);
+    result.add(at + kCrossElevations, a * (1.0 - e));
+    result.add(at + kCrossElevations + 1, a * e);
+    if (lines_ > 0) {
+      result.add(c.line + std::min<std::size_t>(cell.line, lines_ - 1), 1.0);
+    }
+    result.add(c.face + std::min<std::size_t>(cell.face, faces_ - 1), 1.0);
+  }
+  result.add(c.range, cell.range_m / kRangeScale_m - kRangeMean);
+  result.add(c.range + 1, std::exp(-cell.range_m / kNear_m));
+  result.add(c.range + 2, std::clamp(intensity_scale_ * (cell.intensity - intensity_mean_), -3.0, 3.0));
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    result.add(c.velocity + static_cast<std::size_t>(axis), -cell.u[axis]);
+  }
+  return result;
+}
+
+double DopplerErrorField::at(const DopplerCell& cell, const Eigen::VectorXd& theta) const {
+  const FieldColumns c = columns(cell);
+  double b = 0.0;
+  for (std::size_t k = 0; k < c.size; ++k) {
+    b += c.value[k] * theta[c.index[k]];
+  }
+  return b;
+}
+
+void DopplerErrorField::add_prior(const Eigen::VectorXd& theta, Eigen::Ref<Eigen::MatrixXd> H,
+                                  Eigen::Ref<Eigen::VectorXd> g) const {
+  for (const Group& group : groups_) {
+    const auto begin = static_cast<Eigen::Index>(group.begin);
+    const Eigen::Index n = group.K.rows();
+    const double scale = 1.0 / (group.tau * group.tau);
+    H.block(begin, begin, n, n) += scale * group.inverse;
+    g.segment(begin, n) += scale * (group.inverse * theta.segment(begin, n));
+  }
+}
+
+void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance) {
+  double largest = 0.0;
+  for (Group& group : groups_) {
+    if (!group.is_learned) {
+      continue;
+    }
+    const auto begin = static_cast<Eigen::Index>(group.begin);
+    const Eigen::Index n = group.K.rows();
+    const auto part = theta.segment(begin, n);
+    const double squares = part.dot(group.inverse * part);
+    const double unknown =
+        group.inverse.cwiseProduct(covariance.block(begin, begin, n, n)).sum() / (group.tau * group.tau);
+    const double known = std::clamp(static_cast<double>(n) - unknown, 0.0, static_cast<double>(n));
+    group.tau = std::clamp(std::sqrt((squares + kPriorTau * kPriorTau) / (known + 1.0)), kMinTau, kMaxTau);
+    if (group.name == "azimuth" || group.name == "cross") {
+      largest = std::max(largest, group.tau);
+    }
+  }
+  for (Group& group : groups_) {
+    if (group.name == "velocity") {
+      group.tau = kVelocityScale * largest;
+    }
+  }
+}
+
+}  // namespace dynamic_icp::window

@@ -1,0 +1,86 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <string_view>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/window/doppler_cells.hpp"
+
+namespace dynamic_icp::window {
+
+/// The columns of one measurement that are not zero: b = sum value[k] theta[index[k]].
+struct FieldColumns {
+  static constexpr std::size_t kMost = 16;
+  std::array<std::uint32_t, kMost> index{};
+  std::array<double, kMost> value{};
+  std::size_t size = 0;
+
+  void add(std::size_t column, double weight) {
+    index[size] = static_cast<std::uint32_t>(column);
+    value[size++] = weight;
+  }
+};
+
+/// What a sensor's Doppler errs by, b = Phi(direction, line, face, range, intensity) theta (m/s):
+///
+///   azimuth     piecewise constant over the field of view, exponential kernel: steps as well as smooth shapes
+///   cross       bilinear in azimuth and elevation
+///   line, face  a constant each, where the scan has them
+///   range       linear, and near the sensor; intensity: linear
+///   velocity    columns -u: the part of the error that looks like a motion of the sensor
+///
+/// A priori theta_g ~ N(0, tau_g^2 K_g) in each group g. The scale tau_g is learned from what the data show of the
+/// group; that of the velocity-like part follows those of the directions, because what can be seen of an error tells
+/// how large the part is that cannot.
+class DopplerErrorField {
+ public:
+  /// For the sensors, directions and lines that these cells show, and so many faces.
+  DopplerErrorField(const std::vector<DopplerCell>& cells, std::size_t faces);
+
+  [[nodiscard]] std::size_t size() const { return size_; }
+  [[nodiscard]] FieldColumns columns(const DopplerCell& cell) const;
+  [[nodiscard]] double at(const DopplerCell& cell, const Eigen::VectorXd& theta) const;
+
+  /// Adds the information of the prior to the first rows and columns of H, and its gradient at theta.
+  void add_prior(const Eigen::VectorXd& theta, Eigen::Ref<Eigen::MatrixXd> H, Eigen::Ref<Eigen::VectorXd> g) const;
+
+  /// Learns the scales from an estimate and its covariance, by MacKay's fixed point
+  /// tau^2 = theta^T K^-1 theta / (n - tr(K^-1 P) / tau^2).
+  void learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance);
+
+  struct Group {
+    std::string_view name;
+    std::size_t begin = 0;
+    Eigen::MatrixXd K;        ///< correlation
+    Eigen::MatrixXd inverse;  ///< of it
+    double tau = 0.05;        ///< m/s
+    bool is_learned = true;
+    [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(K.rows()); }
+  };
+  [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
+
+ private:
+  struct SensorColumns {
+    std::size_t azimuth = 0, cross = 0, line = 0, face = 0, range = 0, velocity = 0;
+    double azimuth_first = 0.0, azimuth_span = 1.0, elevation_first = 0.0, elevation_span = 1.0;
+  };
+
+  std::size_t add_group(std::string_view name, Eigen::MatrixXd K, double tau, bool is_learned);
+
+  std::vector<SensorColumns> sensors_;
+  std::vector<Group> groups_;
+  std::size_t size_ = 0;
+  std::size_t azimuths_ = 0;
+  std::size_t lines_ = 0;  ///< 0: none
+  std::size_t faces_ = 1;
+  double intensity_mean_ = 0.0;
+  double intensity_scale_ = 0.0;
+};
+
+}  // namespace dynamic_icp::window

@@ -1,0 +1,184 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/doppler_terms.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "dynamic_icp/method/base/quantile.hpp"
+
+namespace dynamic_icp::window {
+namespace {
+
+constexpr std::size_t kNodes = 3;
+
+// Tukey's kernel for cells, in standard deviations.
+constexpr double kKernel = 4.5;
+constexpr double kQuarterToSigma = 3.138;  // a quarter of normal errors are smaller than sigma / 3.138
+
+// Nodes at the ends of an interval belong to it, not to its neighbours, however their times are rounded.
+constexpr std::array<double, kNodes> kNodeAt = {1e-9, 0.5, 1.0 - 1e-9};
+
+/// Lagrange's polynomials of the nodes at x in [0, 1].
+std::array<double, kNodes> node_weights(double x) {
+  return {2.0 * (x - 0.5) * (x - 1.0), -4.0 * x * (x - 1.0), 2.0 * x * (x - 0.5)};
+}
+
+/// Rows of the cell in what a node holds: velocity, and angular velocity where sensors have lever arms.
+Vector6d motion_row(const DopplerCell& cell) {
+  Vector6d row;
+  row << -cell.u, -cell.lxu;
+  return row;
+}
+
+}  // namespace
+
+DopplerTerms::DopplerTerms(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+                           const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double stamp_s,
+                           double cell_variance, bool has_lever_arms)
+    : stamp_s_(stamp_s), per_node_(has_lever_arms ? 6 : 3) {
+  const auto unknowns = static_cast<Eigen::Index>(field.size());
+  N_theta_ = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  b_theta_ = Eigen::VectorXd::Zero(unknowns);
+  N_theta_scan_ = Eigen::VectorXd::Zero(unknowns);
+  intervals_.resize(trajectory.coefficients().size() - 3);
+  weigh(cells, field, trajectory, theta, cell_variance);
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (robust_[k] > 0.0) {
+      add_cell(cells[k], robust_[k] / (1.0 / cells[k].weight + cell_variance), field, trajectory);
+    }
+  }
+  std::erase_if(intervals_, [](const Interval& interval) { return interval.b.size() == 0; });
+}
+
+/// Weights by how far cells are from what is expected of them, against how far most of them are.
+void DopplerTerms::weigh(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+                         const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double cell_variance) {
+  if (cells.empty()) {
+    return;
+  }
+  std::vector<double> scaled(cells.size());
+  std::vector<double> size(cells.size());
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    scaled[k] = residual(cells[k], field, trajectory, theta) / std::sqrt(1.0 / cells[k].weight + cell_variance);
+    size[k] = std::abs(scaled[k]);
+  }
+  const double reach = kKernel * std::max(1.0, kQuarterToSigma * quantile(size, 0.25));
+  robust_.resize(cells.size());
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const double inside = std::max(0.0, 1.0 - scaled[k] * scaled[k] / (reach * reach));
+    robust_[k] = inside * inside;
+  }
+}
+
+/// Adds a cell with the weight w to the sums of its knot interval.
+void DopplerTerms::add_cell(const DopplerCell& cell, double w, const DopplerErrorField& field,
+                            const SplineTrajectory& trajectory) {
+  const Eigen::Index unknowns = N_theta_.rows();
+  const Eigen::Index node_unknowns = static_cast<Eigen::Index>(kNodes) * per_node_;
+  const double h = trajectory.knot_spacing();
+  const double t = stamp_s_ + cell.time_s;
+  const std::size_t number = trajectory.interval(t);
+  Interval& interval = intervals_[number];
+  const double begin = trajectory.interval_begin(number);
+  if (interval.b.size() == 0) {
+    interval.middle_s = begin + 0.5 * h;
+    interval.N = Eigen::MatrixXd::Zero(node_unknowns, node_unknowns);
+    interval.N_theta = Eigen::MatrixXd::Zero(node_unknowns, unknowns);
+    interval.b = Eigen::VectorXd::Zero(node_unknowns);
+    interval.N_scan = Eigen::VectorXd::Zero(node_unknowns);
+  }
+  const std::array<double, kNodes> L = node_weights((t - begin) / h);
+  const Vector6d row = motion_row(cell);
+  Eigen::Matrix<double, 18, 1> a = Eigen::Matrix<double, 18, 1>::Zero();
+  for (std::size_t n = 0; n < kNodes; ++n) {
+    a.segment(static_cast<Eigen::Index>(n) * per_node_, per_node_) = L[n] * row.head(per_node_);
+  }
+  const auto nodes = a.head(node_unknowns);
+  interval.N.noalias() += (w * nodes) * nodes.transpose();
+  interval.b += (w * cell.s) * nodes;
+  interval.N_scan += w * nodes;
+  N_scan_ += w;
+  b_scan_ += w * cell.s;
+  const FieldColumns columns = field.columns(cell);
+  for (std::size_t i = 0; i < columns.size; ++i) {
+    const double wi = w * columns.value[i];
+    const Eigen::Index at = columns.index[i];
+    interval.N_theta.col(at) += wi * nodes;
+    b_theta_[at] += wi * cell.s;
+    N_theta_scan_[at] += wi;
+    for (std::size_t j = 0; j < columns.size; ++j) {
+      N_theta_(columns.index[j], at) += wi * columns.value[j];
+    }
+  }
+}
+
+void DopplerTerms::add(const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, const Layout& layout,
+                       double scan_variance, Eigen::MatrixXd& H, Eigen::VectorXd& g) const {
+  const Eigen::Index fields = layout.field;
+  H.topLeftCorner(fields, fields) += N_theta_;
+  g.head(fields) += N_theta_ * theta - b_theta_;
+  Eigen::MatrixXd T(static_cast<Eigen::Index>(kNodes) * per_node_, 24);
+  Eigen::VectorXd y(T.rows());
+  Eigen::VectorXd U = Eigen::VectorXd::Zero(layout.size());
+  U.head(fields) = N_theta_scan_;
+  double gradient = N_theta_scan_.dot(theta) - b_scan_;
+  for (const Interval& interval : intervals_) {
+    T.setZero();
+    const double h = trajectory.knot_spacing();
+    Eigen::Index first = 0;
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      const TrajectoryPoint at = trajectory.at(interval.middle_s + (kNodeAt[n] - 0.5) * h);
+      first = layout.coefficient(at.first);
+      const Eigen::Index row = static_cast<Eigen::Index>(n) * per_node_;
+      const Eigen::Matrix3d by_rotation = skew(at.velocity) * at.J;
+      const Eigen::Matrix3d R_transposed = at.R.transpose();
+      y.segment<3>(row) = at.velocity;
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Eigen::Index column = 6 * static_cast<Eigen::Index>(k);
+        T.block<3, 3>(row, column) = at.weight[k] * by_rotation;
+        T.block<3, 3>(row, column + 3) = at.slope[k] * R_transposed;
+        if (per_node_ == 6) {
+          T.block<3, 3>(row + 3, column) = at.slope[k] * at.J + 0.5 * at.weight[k] * skew(at.omega);
+        }
+      }
+      if (per_node_ == 6) {
+        y.segment<3>(row + 3) = at.omega;
+      }
+    }
+    const Eigen::VectorXd residual = interval.N * y + interval.N_theta * theta - interval.b;
+    H.block(first, first, 24, 24) += T.transpose() * interval.N * T;
+    const Eigen::MatrixXd cross = interval.N_theta.transpose() * T;
+    H.block(0, first, fields, 24) += cross;
+    H.block(first, 0, 24, fields) += cross.transpose();
+    g.segment(first, 24) += T.transpose() * residual;
+    g.head(fields) += interval.N_theta.transpose() * y;
+    U.segment(first, 24) += T.transpose() * interval.N_scan;
+    gradient += interval.N_scan.dot(y);
+  }
+  const double variance = 1.0 / (N_scan_ + 1.0 / scan_variance);
+  H.noalias() -= (variance * U) * U.transpose();
+  g -= (variance * gradient) * U;
+  scan_error_ = {-variance * gradient, variance, variance * U};
+}
+
+double DopplerTerms::residual(const DopplerCell& cell, const DopplerErrorField& field,
+                              const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const {
+  const TrajectoryPoint at = trajectory.at(stamp_s_ + cell.time_s);
+  return cell.s + cell.u.dot(at.velocity) + cell.lxu.dot(at.omega) - field.at(cell, theta);
+}
+
+double DopplerTerms::unexplained_variance(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+                                          const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const {
+  double sum = 0.0;
+  double weights = 0.0;
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const double e = residual(cells[k], field, trajectory, theta);
+    sum += robust_[k] * (e * e - 1.0 / cells[k].weight);
+    weights += robust_[k];
+  }
+  return weights > 0.0 ? std::max(0.0, sum / weights) : 0.0;
+}
+
+}  // namespace dynamic_icp::window

@@ -1,0 +1,90 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/window/doppler_error_field.hpp"
+#include "dynamic_icp/method/window/spline_trajectory.hpp"
+
+namespace dynamic_icp::window {
+
+/// How the unknowns stand in the vectors and matrices of the window: [theta; map error; stamp errors; coefficients].
+struct Layout {
+  static constexpr Eigen::Index kMapError = 12;  ///< [rotation; position] at the start and the end of the sweep
+
+  static constexpr Eigen::Index kStamps = 2;  ///< s, error of the stamp of the scan before and of the one at hand
+  static constexpr Eigen::Index kBefore = kMapError + kStamps;  ///< what stands between theta and the coefficients
+
+  Eigen::Index field = 0;         ///< size of theta
+  Eigen::Index coefficients = 0;  ///< number of coefficients, six unknowns each
+
+  [[nodiscard]] Eigen::Index map_error() const { return field; }
+  [[nodiscard]] Eigen::Index last_stamp() const { return field + kMapError; }
+  [[nodiscard]] Eigen::Index stamp() const { return field + kMapError + 1; }
+  [[nodiscard]] Eigen::Index coefficient(std::size_t k) const {
+    return field + kBefore + 6 * static_cast<Eigen::Index>(k);
+  }
+  [[nodiscard]] Eigen::Index size() const { return field + kBefore + 6 * coefficients; }
+};
+
+/// The Doppler of one scan as normal equations in the motion at three nodes of each knot interval and in theta:
+///   s = -u . v(t) - (l x u) . omega(t) + Phi theta + e,
+/// v and omega quadratic in t between the nodes. The points are read once: relinearising the trajectory costs nothing
+/// but the chain rule from the nodes to its coefficients.
+class DopplerTerms {
+ public:
+  /// `cell_variance` (m/s)^2 is what the points of a cell have in common. Cells have times after `stamp_s`. Those far
+  /// from what trajectory and theta say, against how far most are, move by themselves and have no weight.
+  DopplerTerms(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+               const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double stamp_s, double cell_variance,
+               bool has_lever_arms);
+
+  /// Adds the terms, linearised at a trajectory and theta. All Doppler values of the scan have one more error in
+  /// common, N(0, `scan_variance`) (m/s)^2, which is eliminated.
+  void add(const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, const Layout& layout, double scan_variance,
+           Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
+
+  /// That error at the state of the last `add`, m/s, and its variance given the rest, (m/s)^2.
+  struct ScanError {
+    double value = 0.0;
+    double variance = 0.0;
+    Eigen::VectorXd by_unknowns;  ///< d value / d unknowns of the window, negative
+  };
+  [[nodiscard]] const ScanError& scan_error() const { return scan_error_; }
+
+  /// Variance that cells show beyond the noise of their points, (m/s)^2, robust; at the given state.
+  [[nodiscard]] double unexplained_variance(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const;
+
+ private:
+  /// What one knot interval sees.
+  struct Interval {
+    double middle_s = 0.0;
+    Eigen::MatrixXd N;        ///< nodes x nodes
+    Eigen::MatrixXd N_theta;  ///< nodes x theta
+    Eigen::VectorXd b;
+    Eigen::VectorXd N_scan;  ///< nodes x error of the scan
+  };
+
+  void weigh(const std::vector<DopplerCell>& cells, const DopplerErrorField& field, const SplineTrajectory& trajectory,
+             const Eigen::VectorXd& theta, double cell_variance);
+  void add_cell(const DopplerCell& cell, double w, const DopplerErrorField& field, const SplineTrajectory& trajectory);
+  [[nodiscard]] double residual(const DopplerCell& cell, const DopplerErrorField& field,
+                                const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const;
+
+  double stamp_s_ = 0.0;
+  std::vector<double> robust_;  ///< weight of each cell by the kernel
+  Eigen::Index per_node_ = 3;
+  std::vector<Interval> intervals_;
+  Eigen::MatrixXd N_theta_;
+  Eigen::VectorXd b_theta_;
+  Eigen::VectorXd N_theta_scan_;  ///< theta x error of the scan
+  double N_scan_ = 0.0;
+  double b_scan_ = 0.0;
+  mutable ScanError scan_error_;
+};
+
+}  // namespace dynamic_icp::window

@@ -1,0 +1,57 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/learned_variance.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dynamic_icp::window {
+namespace {
+
+// What is left of the evidence after one more scan.
+constexpr double kMemory = 0.87;
+
+// One scan changes a variance by no more than this. Where much more was seen than expected, the fixed point is
+// overshot: it goes only a part of the way.
+constexpr double kMaxChange = 8.0;
+constexpr double kMuchMore = 2.0;
+constexpr double kOvershoot = 1.8;
+
+}  // namespace
+
+LearnedVariance::LearnedVariance(const Prior& prior)
+    : variance_(prior.sigma * prior.sigma),
+      min_variance_(prior.min_sigma * prior.min_sigma),
+      max_variance_(prior.max_sigma * prior.max_sigma),
+      squares_(prior.counts * variance_),
+      counts_(prior.counts) {}
+
+double LearnedVariance::propose(double estimate, double posterior_variance) {
+  // With the share k that the data know of x, the measurement alone was x / k with the variance q (1 - k) / k.
+  const double known = std::clamp(1.0 - posterior_variance / variance_, 0.0, 1.0);
+  next_squares_ = kMemory * squares_ + estimate * estimate - variance_ * known * (1.0 - known);
+  next_counts_ = kMemory * counts_ + known * known;
+  return renew(next_squares_, next_counts_);
+}
+
+void LearnedVariance::keep() {
+  squares_ = next_squares_;
+  counts_ = next_counts_;
+}
+
+void LearnedVariance::update(double squares, double known) {
+  next_squares_ = kMemory * squares_ + squares;
+  next_counts_ = kMemory * counts_ + known;
+  renew(next_squares_, next_counts_);
+  keep();
+}
+
+double LearnedVariance::renew(double squares, double counts) {
+  const double before = variance_;
+  const double ratio = std::clamp(squares / counts / variance_, 1.0 / kMaxChange, kMaxChange);
+  const double moved = variance_ * (ratio > kMuchMore ? std::pow(ratio, kOvershoot) : ratio);
+  variance_ = std::clamp(moved, min_variance_, max_variance_);
+  return variance_ / before - 1.0;
+}
+
+}  // namespace dynamic_icp::window

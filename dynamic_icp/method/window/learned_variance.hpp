@@ -1,0 +1,46 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace dynamic_icp::window {
+
+/// The variance q of unknowns x ~ N(0, q), learned from their estimates, scan after scan. Old evidence fades.
+class LearnedVariance {
+ public:
+  /// What is allowed, and what counts before anything was seen: so many unknowns of standard deviation `sigma`.
+  struct Prior {
+    double sigma = 1.0;
+    double counts = 1.0;
+    double min_sigma = 0.0;
+    double max_sigma = 1.0;
+  };
+
+  LearnedVariance() = default;
+  explicit LearnedVariance(const Prior& prior);
+
+  [[nodiscard]] double value() const { return variance_; }
+
+  /// From one unknown of a scan, its estimate and posterior variance, by Fisher's scoring: exact where the unknown is
+  /// measured on its own. May be called again with a better estimate before `keep`. By which share q grew.
+  double propose(double estimate, double posterior_variance);
+
+  /// The evidence of the last `propose` becomes part of the past.
+  void keep();
+
+  /// From several unknowns of a scan that depend on each other, by MacKay's fixed point
+  /// q = sum x^2 / sum (1 - posterior variance / q): `squares` over `known`.
+  void update(double squares, double known);
+
+ private:
+  double renew(double squares, double counts);
+
+  double variance_ = 1.0;
+  double min_variance_ = 0.0;
+  double max_variance_ = 1.0;
+  double squares_ = 0.0;  ///< sum over the past, faded
+  double counts_ = 0.0;
+  double next_squares_ = 0.0;
+  double next_counts_ = 0.0;
+};
+
+}  // namespace dynamic_icp::window

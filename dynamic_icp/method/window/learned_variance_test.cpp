@@ -1,0 +1,78 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/learned_variance.hpp"
+
+#include <random>
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::window {
+namespace {
+
+constexpr double kMeasured = 0.5;  // standard deviation of the measurement of each unknown
+
+/// The mean of what is learned of unknowns of standard deviation `sigma` that are measured one by one.
+double learned(double sigma, double start_sigma) {
+  LearnedVariance variance({.sigma = start_sigma, .counts = 2.0, .min_sigma = 1e-3, .max_sigma = 1e3});
+  std::mt19937 random(7);
+  std::normal_distribution<double> normal;
+  double sum = 0.0;
+  constexpr int kScans = 4000;
+  constexpr int kSettled = 1000;
+  for (int k = 0; k < kScans; ++k) {
+    const double measured = sigma * normal(random) + kMeasured * normal(random);
+    const double q = variance.value();
+    const double gain = q / (q + kMeasured * kMeasured);
+    variance.propose(gain * measured, (1.0 - gain) * q);
+    variance.keep();
+    sum += k >= kSettled ? variance.value() : 0.0;
+  }
+  return sum / (kScans - kSettled);
+}
+
+TEST(LearnedVariance, FollowsWhatIsMeasured) {
+  // The memory of eight scans makes it scatter, and overshooting adds some.
+  for (const double start : {0.05, 50.0}) {
+    EXPECT_GT(learned(2.0, start), 0.6 * 4.0);
+    EXPECT_LT(learned(2.0, start), 1.7 * 4.0);
+  }
+}
+
+TEST(LearnedVariance, IsSmallWhereNothingVaries) { EXPECT_LT(learned(0.0, 5.0), 0.2 * kMeasured * kMeasured); }
+
+TEST(LearnedVariance, ABetterEstimateReplacesTheOneBefore) {
+  LearnedVariance once({.sigma = 1.0, .counts = 2.0, .min_sigma = 0.0, .max_sigma = 10.0});
+  LearnedVariance again = once;
+  once.propose(0.9, 0.0);
+  once.keep();
+  EXPECT_GT(again.propose(3.0, 0.0), 0.0);
+  again.propose(0.9, 0.0);
+  again.keep();
+  // The evidence is the same; the value may differ by how it was approached.
+  once.update(0.0, 0.0);
+  again.update(0.0, 0.0);
+  EXPECT_NEAR(once.value(), again.value(), 1e-12);
+}
+
+TEST(LearnedVariance, MacKaysFixedPointStaysWhereItIs) {
+  LearnedVariance variance({.sigma = 2.0, .counts = 1.0, .min_sigma = 0.0, .max_sigma = 10.0});
+  for (int k = 0; k < 50; ++k) {
+    variance.update(4.0 * 3.0, 3.0);  // three known unknowns with squares of 4 each
+  }
+  EXPECT_NEAR(variance.value(), 4.0, 1e-9);
+}
+
+TEST(LearnedVariance, StaysWithinItsBounds) {
+  LearnedVariance variance({.sigma = 1.0, .counts = 1.0, .min_sigma = 0.5, .max_sigma = 2.0});
+  for (int k = 0; k < 20; ++k) {
+    variance.update(1e6, 1.0);
+  }
+  EXPECT_DOUBLE_EQ(variance.value(), 4.0);
+  for (int k = 0; k < 200; ++k) {
+    variance.update(0.0, 1.0);
+  }
+  EXPECT_DOUBLE_EQ(variance.value(), 0.25);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::window

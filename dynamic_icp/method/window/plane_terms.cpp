@@ -1,0 +1,312 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/plane_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+
+#include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/mapping/patch_scatter.hpp"
+#include "dynamic_icp/method/motion/deskew.hpp"
+
+namespace dynamic_icp::window {
+namespace {
+
+constexpr std::uint32_t kInformativePoints = 5;  // a patch tells of itself with so many points on it
+constexpr std::size_t kInformativePatches = 50;  // and all patches together when there are so many
+constexpr double kLeastHeld = 1e-6;
+
+}  // namespace
+
+PlaneTerms::PlaneTerms(const Scan& points, const mapping::PlaneMap& map, double stamp_s, double slice_s,
+                       const Workers& workers)
+    : scan_(points), map_(map), workers_(workers), stamp_s_(stamp_s) {
+  const motion::TimeSpan span = motion::time_span(points);
+  const auto count = static_cast<std::size_t>((span.last - span.first) / slice_s) + 1;
+  const auto slice_of = [&](std::size_t i) {
+    return points.has_times()
+               ? std::min(count - 1, static_cast<std::size_t>((points.times()[i] - span.first) / slice_s))
+               : 0;
+  };
+  slices_.resize(count);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    ++slices_[slice_of(i)].end;
+  }
+  std::size_t at = 0;
+  for (std::size_t s = 0; s < count; ++s) {
+    slices_[s].begin = at;
+    at += slices_[s].end;
+    slices_[s].end = slices_[s].begin;
+    slices_[s].time_s = stamp_s + span.first + (static_cast<double>(s) + 0.5) * slice_s;
+    if (count == 1) {
+      slices_[s].time_s = stamp_s + 0.5 * (span.first + span.last);
+    }
+  }
+  order_.resize(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    order_[slices_[slice_of(i)].end++] = static_cast<std::uint32_t>(i);
+  }
+  rows_.resize(points.size());
+  found_in_.assign(points.size(), spatial::kNoCell);
+}
+
+void PlaneTerms::set_stamp(double stamp_s) {
+  for (Slice& slice : slices_) {
+    slice.time_s += stamp_s - stamp_s_;
+  }
+  stamp_s_ = stamp_s;
+}
+
+/// Where the points of a slice are: the pose in its middle, and from there a straight step.
+void PlaneTerms::place(const SplineTrajectory& trajectory, Slice& slice) {
+  slice.at = trajectory.at(slice.time_s);
+  const Eigen::Isometry3d& T_map_reference = trajectory.reference();
+  const Eigen::Matrix3d R_reference_map = T_map_reference.linear().transpose();
+  slice.on_planes = 0;
+  for (std::size_t k = slice.begin; k < slice.end; ++k) {
+    const std::size_t i = order_[k];
+    Row& row = rows_[k];
+    const Eigen::Vector3d& x = scan_.points()[i];
+    const double step = scan_.has_times() ? stamp_s_ + scan_.times()[i] - slice.time_s : 0.0;
+    const Eigen::Vector3d moved = x + step * (slice.at.omega.cross(x) + slice.at.velocity);
+    const Eigen::Vector3d in_reference = slice.at.R * moved + slice.at.p;
+    const Eigen::Vector3d in_map = T_map_reference * in_reference;
+    const std::uint64_t cell = map_.finest_cell(in_map);
+    if (cell != found_in_[k]) {
+      found_in_[k] = cell;
+      row.patch = map_.find(cell);
+    }
+    if (row.patch == nullptr) {
+      continue;
+    }
+    ++slice.on_planes;
+    const mapping::Plane& plane = row.patch->plane;
+    const Eigen::Vector3d n = R_reference_map * plane.normal;
+    row.m << in_reference.cross(n), n;
+    row.e = plane.distance(in_map);
+    row.own = plane.variance;
+    row.common = plane.height_variance(in_map);
+    row.phase = plane.phase;
+  }
+}
+
+void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error,
+                           const PlaneNoise& noise, bool adapt) {
+  R_map_reference_ = trajectory.reference().linear();
+  workers_.for_each(slices_.size(), 1, [&](std::size_t s) { place(trajectory, slices_[s]); });
+  members_.assign(map_.patch_limit(), 0);
+  for (const Row& row : rows_) {
+    if (row.patch != nullptr) {
+      ++members_[row.patch->id];
+    }
+  }
+  const Vector6d start = map_error.head<6>();
+  const Vector6d change = map_error.tail<6>() - start;
+  const double min_variance = noise.min_sigma_m * noise.min_sigma_m;
+  const double model_variance = noise.model_sigma_m * noise.model_sigma_m;
+  std::vector<double> scaled;
+  for (Row& row : rows_) {
+    if (row.patch == nullptr) {
+      continue;
+    }
+    row.e -= row.m.dot(start + row.phase * change);
+    row.own = std::max(row.own, min_variance);
+    row.common = noise.repeated * (row.common + model_variance);
+    if (adapt) {
+      scaled.push_back(std::abs(row.e) / std::sqrt(row.own + row.common / noise.repeated));
+    }
+  }
+  const double kernel = noise.kernel * (adapt && !scaled.empty() ? std::max(1.0, kSigmaPerMad * median(scaled)) : 1.0);
+  workers_.for_each(slices_.size(), 1, [&](std::size_t s) {
+    Slice& slice = slices_[s];
+    for (std::size_t k = slice.begin; k < slice.end; ++k) {
+      Row& row = rows_[k];
+      if (row.patch == nullptr) {
+        row.w = 0.0;
+        continue;
+      }
+      const double reach2 = kernel * kernel * (row.own + row.common / noise.repeated);
+      const double inside = std::max(0.0, 1.0 - row.e * row.e / reach2);
+      row.w = inside * inside / (row.own + members_[row.patch->id] * row.common);
+    }
+    sum(slice);
+  });
+  hold_directions(noise.max_noise_share);
+}
+
+void PlaneTerms::sum(Slice& slice) const {
+  slice.S.fill(Matrix6d::Zero());
+  slice.E.fill(Vector6d::Zero());
+  slice.noise.setZero();
+  slice.matched = 0.0;
+  slice.squares = 0.0;
+  for (std::size_t k = slice.begin; k < slice.end; ++k) {
+    const Row& row = rows_[k];
+    if (row.w <= 0.0) {
+      continue;
+    }
+    const Vector6d wm = row.w * row.m;
+    const Matrix6d wmm = wm * row.m.transpose();
+    slice.S[0] += wmm;
+    slice.S[1] += row.phase * wmm;
+    slice.S[2] += row.phase * row.phase * wmm;
+    slice.E[0] += row.e * wm;
+    slice.E[1] += (row.phase * row.e) * wm;
+    const mapping::Plane& plane = row.patch->plane;
+    slice.noise += (row.w * plane.variance / plane.points) * plane.tangential;
+    const double robust = row.w * (row.own + members_[row.patch->id] * row.common);
+    slice.matched += robust;
+    slice.squares += robust * row.e * row.e;
+  }
+}
+
+/// Normals err, and along a direction that no surface faces the sum of w n n^T is their noise alone. The map, which
+/// moves with us, confirms any speed along it. There the map gets an offset of its own in each scan.
+void PlaneTerms::hold_directions(double max_noise_share) {
+  Eigen::Matrix3d nn = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
+  for (const Slice& slice : slices_) {
+    nn += slice.S[0].bottomRightCorner<3, 3>();
+    noise += slice.noise;
+  }
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(nn);
+  axes_ = parts.eigenvectors();
+  const Eigen::Matrix3d in_axes = axes_.transpose() * nn * axes_;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = R_map_reference_ * axes_.col(k);
+    const double by_noise = axis.dot(noise * axis);
+    const double share = by_noise / std::max(1e-9, in_axes(k, k));
+    held_[k] = std::clamp(1.0 - share / max_noise_share, kLeastHeld, 1.0 - 1e-9);
+  }
+  offset_information_ = in_axes;
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    offset_information_(k, k) += in_axes(k, k) * held_[k] / (1.0 - held_[k]) + 1e-9;
+  }
+}
+
+/// The terms of one slice, and in U those with the offsets of the map.
+void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g,
+                           Eigen::MatrixXd& U) const {
+  const Eigen::Index d = layout.map_error();
+  // m -> the change of the residual with [phi; p].
+  Matrix6d M = Matrix6d::Identity();
+  const Eigen::Matrix3d JR = slice.at.J.transpose() * slice.at.R.transpose();
+  M.topLeftCorner<3, 3>() = JR;
+  M.topRightCorner<3, 3>() = -JR * skew(slice.at.p);
+  const Matrix6d S0 = M * slice.S[0] * M.transpose();
+  const Matrix6d at_start = M * (slice.S[0] - slice.S[1]);
+  const Matrix6d at_end = M * slice.S[1];
+  const Vector6d E0 = M * slice.E[0];
+  // A later stamp moves the points of the slice as the sensor moves: m . [omega; velocity of the origin].
+  Vector6d along;
+  along.head<3>() = slice.at.R * slice.at.omega;
+  along.tail<3>() = slice.at.R * slice.at.velocity - Eigen::Vector3d(along.head<3>()).cross(slice.at.p);
+  const Vector6d S_along = slice.S[0] * along;
+  const Vector6d M_along = M * S_along;
+  const Vector6d along_end = slice.S[1] * along;
+  const Eigen::Index stamp = layout.stamp();
+  H(stamp, stamp) += along.dot(S_along);
+  g[stamp] += along.dot(slice.E[0]);
+  H.block<6, 1>(d, stamp) -= S_along - along_end;
+  H.block<6, 1>(d + 6, stamp) -= along_end;
+  H.block<1, 6>(stamp, d) -= (S_along - along_end).transpose();
+  H.block<1, 6>(stamp, d + 6) -= along_end.transpose();
+  U.row(stamp) += (S_along.tail<3>().transpose() * axes_);
+  const Eigen::Matrix<double, 6, 3> offset = M * slice.S[0].rightCols<3>() * axes_;
+  for (std::size_t i = 0; i < 4; ++i) {
+    const Eigen::Index row = layout.coefficient(slice.at.first + i);
+    const double wi = slice.at.weight[i];
+    for (std::size_t j = 0; j < 4; ++j) {
+      H.block<6, 6>(row, layout.coefficient(slice.at.first + j)) += (wi * slice.at.weight[j]) * S0;
+    }
+    H.block<6, 6>(row, d) -= wi * at_start;
+    H.block<6, 6>(row, d + 6) -= wi * at_end;
+    H.block<6, 6>(d, row) -= wi * at_start.transpose();
+    H.block<6, 6>(d + 6, row) -= wi * at_end.transpose();
+    g.segment<6>(row) += wi * E0;
+    H.block<6, 1>(row, stamp) += wi * M_along;
+    H.block<1, 6>(stamp, row) += wi * M_along.transpose();
+    U.block<6, 3>(row, 0) += wi * offset;
+  }
+  const Matrix6d middle = slice.S[1] - slice.S[2];
+  H.block<6, 6>(d, d) += slice.S[0] - 2.0 * slice.S[1] + slice.S[2];
+  H.block<6, 6>(d, d + 6) += middle;
+  H.block<6, 6>(d + 6, d) += middle;
+  H.block<6, 6>(d + 6, d + 6) += slice.S[2];
+  g.segment<6>(d) -= slice.E[0] - slice.E[1];
+  g.segment<6>(d + 6) -= slice.E[1];
+  U.block<6, 3>(d, 0) -= (slice.S[0] - slice.S[1]).rightCols<3>() * axes_;
+  U.block<6, 3>(d + 6, 0) -= slice.S[1].rightCols<3>() * axes_;
+}
+
+void PlaneTerms::add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const {
+  Eigen::MatrixXd U = Eigen::MatrixXd::Zero(layout.size(), 3);  // terms x offset along the axes
+  Eigen::Vector3d by_offset = Eigen::Vector3d::Zero();
+  for (const Slice& slice : slices_) {
+    if (slice.matched <= 0.0) {
+      continue;
+    }
+    add_slice(slice, layout, H, g, U);
+    by_offset += axes_.transpose() * slice.E[0].tail<3>();
+  }
+  const Eigen::LLT<Eigen::Matrix3d> offsets(offset_information_);
+  const Eigen::Matrix<double, 3, Eigen::Dynamic> SU = offsets.solve(U.transpose());
+  const Eigen::Index first = layout.map_error();
+  const Eigen::Index n = layout.size() - first;
+  H.bottomRightCorner(n, n).noalias() -= U.bottomRows(n) * SU.rightCols(n);
+  g.tail(n) -= SU.rightCols(n).transpose() * by_offset;
+}
+
+PlaneQuality PlaneTerms::quality() const {
+  PlaneQuality result;
+  result.held = held_;
+  Matrix6d S = Matrix6d::Zero();
+  Vector6d E = Vector6d::Zero();
+  double squares = 0.0;
+  for (const Slice& slice : slices_) {
+    result.on_planes += slice.on_planes;
+    result.matched += slice.matched;
+    squares += slice.squares;
+    S += slice.S[0];
+    E += slice.E[0];
+  }
+  result.rms_m = result.matched > 0.0 ? std::sqrt(squares / result.matched) : 0.0;
+  const Vector6d rigid = (S + 1e-6 * Matrix6d::Identity()).ldlt().solve(E);
+  struct Mean {
+    double e = 0.0;
+    double explained = 0.0;
+    std::uint32_t points = 0;
+  };
+  std::vector<Mean> patches(members_.size());
+  for (const Row& row : rows_) {
+    if (row.patch != nullptr && row.w > 0.0) {
+      Mean& mean = patches[row.patch->id];
+      mean.e += row.e - row.m.dot(rigid);
+      mean.explained += row.own / row.patch->plane.points;
+      ++mean.points;
+    }
+  }
+  std::vector<mapping::PatchMean> means;
+  for (const Row& row : rows_) {
+    if (row.patch == nullptr || row.w <= 0.0) {
+      continue;
+    }
+    Mean& mean = patches[row.patch->id];
+    if (mean.points < kInformativePoints) {
+      continue;
+    }
+    const double m = mean.points;
+    const double e = mean.e / m;
+    means.push_back({e * e, row.own / m + mean.explained / m});
+    mean.points = 0;  // once
+  }
+  if (means.size() >= kInformativePatches) {
+    result.model_sigma_m = mapping::unexplained_sigma(means);
+  }
+  return result;
+}
+
+}  // namespace dynamic_icp::window

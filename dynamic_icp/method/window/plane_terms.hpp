@@ -1,0 +1,108 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/mapping/plane_map.hpp"
+#include "dynamic_icp/method/window/doppler_terms.hpp"
+#include "dynamic_icp/method/window/spline_trajectory.hpp"
+
+namespace dynamic_icp::window {
+
+/// How points on planes are believed.
+struct PlaneNoise {
+  double min_sigma_m = 0.005;     ///< smallest standard deviation of a point from its plane
+  double model_sigma_m = 0.003;   ///< of a patch from a plane: common to all points on it
+  double repeated = 2.5;          ///< the same error of a patch comes again in so many scans
+  double kernel = 4.0;            ///< Tukey: points beyond so many standard deviations have no weight
+  double max_noise_share = 0.04;  ///< of the information along a direction that is the noise of normals: none is left
+};
+
+/// How well the points of a scan fit the planes.
+struct PlaneQuality {
+  std::size_t on_planes = 0;                       ///< points with a patch
+  double matched = 0.0;                            ///< sum of the kernel's weights
+  double rms_m = 0.0;                              ///< of those
+  Eigen::Vector3d held = Eigen::Vector3d::Ones();  ///< share of the information that is not noise of normals, by axis
+  std::optional<double> model_sigma_m;
+};
+
+/// The point-to-plane terms of one scan in continuous time:
+///   e = n . (p(t) + R(t) x - m) - n . (d_p + d_phi x X) ,
+/// each point at its own time t, with d the error of the map, a rigid displacement that changes linearly over the
+/// phase of the sweep at which the patch was measured. Sums of w m m^T, m = [X x n; n], over slices of time stand for
+/// the points in all steps of the solution. An error of the stamp moves all points along the motion of the sensor.
+class PlaneTerms {
+ public:
+  /// `points` static and thinned; scan and map must outlive it.
+  PlaneTerms(const Scan& points, const mapping::PlaneMap& map, double stamp_s, double slice_s, const Workers& workers);
+
+  /// When the scan was taken, as it is known by now.
+  void set_stamp(double stamp_s);
+
+  /// Moves the points by the trajectory, looks up their patches and sums their terms. `adapt` widens the kernel to
+  /// the scatter of the residuals.
+  void associate(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
+                 bool adapt);
+
+  /// Adds the terms at the trajectory of the last `associate`.
+  void add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
+
+  /// Fit at the last `associate`, and how far patches are from planes after the best rigid motion of the whole scan:
+  /// a false pose is not taken for roughness.
+  [[nodiscard]] PlaneQuality quality() const;
+
+ private:
+  struct Row {
+    Vector6d m = Vector6d::Zero();  ///< [X x n; n], reference frame
+    double e = 0.0;                 ///< m
+    double own = 0.0;               ///< m^2
+    double common = 0.0;            ///< m^2
+    double phase = 0.0;             ///< of the patch
+    double w = 0.0;
+    const mapping::Patch* patch = nullptr;
+  };
+  struct Slice {
+    std::size_t begin = 0;
+    std::size_t end = 0;
+    double time_s = 0.0;  ///< its middle
+    TrajectoryPoint at;
+    std::array<Matrix6d, 3> S;                        ///< sum of w phase^k m m^T
+    std::array<Vector6d, 2> E;                        ///< sum of w e phase^k m
+    Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();  ///< sum of w Sigma_n
+    double matched = 0.0;
+    double squares = 0.0;
+    std::size_t on_planes = 0;
+  };
+
+  void place(const SplineTrajectory& trajectory, Slice& slice);
+  void sum(Slice& slice) const;
+  void add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g,
+                 Eigen::MatrixXd& U) const;
+  void hold_directions(double max_noise_share);
+
+  const Scan& scan_;
+  const mapping::PlaneMap& map_;
+  const Workers& workers_;
+  double stamp_s_;
+  std::vector<std::uint32_t> order_;  ///< rows of the scan by slice
+  std::vector<Slice> slices_;
+  std::vector<Row> rows_;                ///< in that order
+  std::vector<std::uint64_t> found_in_;  ///< finest cell of each row
+  std::vector<std::uint32_t> members_;   ///< points per patch
+  Eigen::Matrix3d R_map_reference_ = Eigen::Matrix3d::Identity();
+  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  ///< directions of translation, reference frame
+  Eigen::Matrix3d offset_information_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector3d held_ = Eigen::Vector3d::Ones();
+};
+
+}  // namespace dynamic_icp::window

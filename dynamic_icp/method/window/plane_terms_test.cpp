@@ -1,0 +1,388 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/plane_terms.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <random>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/Eigenvalues>
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/quantile.hpp"
+
+#include "testing/swept_room.hpp"
+
+namespace dynamic_icp::window {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+using mapping::Patch;
+using mapping::PlaneMap;
+
+const Workers kOneThread(1);
+
+constexpr double kH = 0.0125;
+constexpr double kSlice_s = kH / 8.0;
+constexpr std::size_t kSlices = 64;
+constexpr double kStamp_s = 5.003;
+
+SplineTrajectory true_trajectory() {
+  Vector6d reference;
+  reference << 0.1, -0.2, 0.5, 1.0, -0.5, 0.3;
+  SplineTrajectory trajectory(kH);
+  trajectory.begin(kStamp_s, kStamp_s + kSlices * kSlice_s, exp_se3(reference), Vector3d::Zero(), Vector3d::Zero());
+  for (std::size_t k = 0; k < trajectory.coefficients().size(); ++k) {
+    const double t = kH * (static_cast<double>(k) - 1.0);
+    trajectory.coefficients()[k] << 0.01 * std::sin(8.0 * t), 0.1 * t, 0.3 * t, 8.0 * t - 5.0 * t * t,
+        0.05 * std::sin(7.0 * t), 0.02 * t;
+  }
+  return trajectory;
+}
+
+/// Off by about a centimetre and a milliradian.
+SplineTrajectory wrong_trajectory() {
+  SplineTrajectory trajectory = true_trajectory();
+  for (std::size_t k = 0; k < trajectory.coefficients().size(); ++k) {
+    Vector6d off;
+    off << 1e-3, -5e-4, 8e-4, 0.01, -0.006, 0.004;
+    trajectory.coefficients()[k] += (0.5 + 0.1 * static_cast<double>(k)) * off;
+  }
+  return trajectory;
+}
+
+/// What a sensor on the trajectory sees of a room: each point in the middle of a slice, or at any time.
+Scan scan_of(const Room& room, const SplineTrajectory& trajectory, std::size_t count, bool in_slices = true) {
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> uniform(0.0, 1.0);
+  RawScan raw;
+  raw.points.emplace_back(0.3, 0.2, 0.1);  // begins the sweep, on no plane
+  raw.times.push_back(0.0);
+  raw.doppler.push_back(0.0);
+  const std::vector<Vector3d> seen = room.points(2, count);
+  for (std::size_t k = 0; k < seen.size(); ++k) {
+    const double slices = in_slices ? static_cast<double>(k * 37 % kSlices) + 0.5 : kSlices * uniform(random);
+    raw.times.push_back(slices * kSlice_s);
+    raw.points.push_back(trajectory.pose(kStamp_s + raw.times.back()).inverse() * seen[k]);
+    raw.doppler.push_back(0.0);
+  }
+  return Scan::from_raw(raw);
+}
+
+/// The terms written out point by point; weights and patches stay as they are at the first state.
+struct Definition {
+  const Scan& scan;
+  SplineTrajectory trajectory;
+  VectorXd map_error;
+  double stamp_s = kStamp_s;
+  std::vector<const Patch*> patches;
+  VectorXd weights;
+  VectorXd robust;
+
+  Definition(const Scan& points, const PlaneMap& map, const SplineTrajectory& at, const VectorXd& error,
+             const PlaneNoise& noise, bool adapt)
+      : scan(points), trajectory(at), map_error(error) {
+    std::map<const Patch*, double> members;
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      patches.push_back(map.find(in_map(i)));
+      ++members[patches.back()];
+    }
+    const VectorXd e = residuals();
+    const auto size = static_cast<Index>(scan.size());
+    VectorXd own = VectorXd::Ones(size);
+    VectorXd common = VectorXd::Zero(size);
+    std::vector<double> scaled;
+    for (Index i = 0; i < size; ++i) {
+      if (const Patch* patch = patches[static_cast<std::size_t>(i)]; patch != nullptr) {
+        own[i] = std::max(patch->plane.variance, std::pow(noise.min_sigma_m, 2));
+        common[i] =
+            patch->plane.height_variance(in_map(static_cast<std::size_t>(i))) + std::pow(noise.model_sigma_m, 2);
+        scaled.push_back(std::abs(e[i]) / std::sqrt(own[i] + common[i]));
+      }
+    }
+    const double kernel = noise.kernel * (adapt ? std::max(1.0, 1.4826 * median(scaled)) : 1.0);
+    weights = robust = VectorXd::Zero(size);
+    for (Index i = 0; i < size; ++i) {
+      const Patch* patch = patches[static_cast<std::size_t>(i)];
+      if (patch != nullptr) {
+        const double inside = std::max(0.0, 1.0 - e[i] * e[i] / (kernel * kernel * (own[i] + common[i])));
+        robust[i] = inside * inside;
+        weights[i] = robust[i] / (own[i] + members[patch] * noise.repeated * common[i]);
+      }
+    }
+  }
+
+  [[nodiscard]] Vector3d in_map(std::size_t i) const {
+    return trajectory.pose(stamp_s + scan.times()[i]) * scan.points()[i];
+  }
+
+  [[nodiscard]] Vector3d normal(std::size_t i) const {
+    return trajectory.reference().linear().transpose() * patches[i]->plane.normal;
+  }
+
+  /// n . (p(t) + R(t) x - m) - n . (d_p + d_phi x X)
+  [[nodiscard]] VectorXd residuals() const {
+    VectorXd e = VectorXd::Zero(static_cast<Index>(scan.size()));
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      if (patches[i] == nullptr) {
+        continue;
+      }
+      const Vector3d X = trajectory.reference().inverse() * in_map(i);
+      const double phase = patches[i]->plane.phase;
+      const Vector6d d = (1.0 - phase) * map_error.head<6>() + phase * map_error.tail<6>();
+      e[static_cast<Index>(i)] =
+          patches[i]->plane.distance(in_map(i)) - normal(i).dot(Vector3d(d.tail<3>()) + Vector3d(d.head<3>()).cross(X));
+    }
+    return e;
+  }
+
+  [[nodiscard]] Layout layout() const { return {3, static_cast<Index>(trajectory.coefficients().size())}; }
+
+  [[nodiscard]] MatrixXd jacobian() const {
+    constexpr double kStep = 1e-6;
+    const Layout at = layout();
+    MatrixXd J = MatrixXd::Zero(static_cast<Index>(scan.size()), at.size());
+    Definition moved = *this;
+    const auto differentiate = [&](double& unknown, Index column) {
+      const double value = unknown;
+      unknown = value + kStep;
+      J.col(column) = moved.residuals();
+      unknown = value - kStep;
+      J.col(column) = (J.col(column) - moved.residuals()) / (2.0 * kStep);
+      unknown = value;
+    };
+    for (Index k = 0; k < Layout::kMapError; ++k) {
+      differentiate(moved.map_error[k], at.map_error() + k);
+    }
+    differentiate(moved.stamp_s, at.stamp());
+    for (std::size_t k = 0; k < trajectory.coefficients().size(); ++k) {
+      for (Index axis = 0; axis < 6; ++axis) {
+        differentiate(moved.trajectory.coefficients()[k][axis], at.coefficient(k) + axis);
+      }
+    }
+    return J;
+  }
+
+  [[nodiscard]] MatrixXd normals() const {
+    MatrixXd N = MatrixXd::Zero(static_cast<Index>(scan.size()), 3);
+    for (std::size_t i = 0; i < scan.size(); ++i) {
+      if (patches[i] != nullptr) {
+        N.row(static_cast<Index>(i)) = normal(i);
+      }
+    }
+    return N;
+  }
+};
+
+struct Sums {
+  MatrixXd H;
+  VectorXd g;
+};
+
+/// Of the definition; an offset of the map is eliminated that is known, along each axis of sum w n n^T, to held of the
+/// information there.
+Sums expected_sums(const Definition& definition, const Vector3d& held) {
+  const MatrixXd J = definition.jacobian();
+  const auto W = definition.weights.asDiagonal();
+  const MatrixXd N = definition.normals();
+  const Eigen::Matrix3d nn = N.transpose() * W * N;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(nn);
+  const Vector3d known = axes.eigenvalues().array() * held.array() / (1.0 - held.array());
+  const Eigen::Matrix3d A = nn + axes.eigenvectors() * known.asDiagonal() * axes.eigenvectors().transpose();
+  const VectorXd We = W * definition.residuals();
+  const MatrixXd U = J.transpose() * W * N;
+  return {J.transpose() * W * J - U * A.ldlt().solve(U.transpose()),
+          J.transpose() * We - U * A.ldlt().solve(N.transpose() * We)};
+}
+
+Sums sums_of(const PlaneTerms& terms, const Layout& at) {
+  Sums sums{MatrixXd::Zero(at.size(), at.size()), VectorXd::Zero(at.size())};
+  terms.add(at, sums.H, sums.g);
+  return sums;
+}
+
+VectorXd some_map_error() {
+  VectorXd error(12);
+  error << 2e-4, -1e-4, 3e-4, 0.004, -0.002, 0.001, -1e-4, 2e-4, 1e-4, -0.003, 0.002, 0.002;
+  return error;
+}
+
+/// In units of what each unknown is known to by itself.
+void expect_equal(const Sums& found, const Sums& expected, double tolerance) {
+  VectorXd scale(expected.g.size());
+  for (Index k = 0; k < scale.size(); ++k) {
+    scale[k] = expected.H(k, k) > 1e-3 ? 1.0 / std::sqrt(expected.H(k, k)) : 0.0;
+  }
+  const MatrixXd off = scale.asDiagonal() * (found.H - expected.H) * scale.asDiagonal();
+  const VectorXd g = scale.cwiseProduct(expected.g);
+  EXPECT_LT(off.cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_LT((scale.cwiseProduct(found.g) - g).cwiseAbs().maxCoeff(), tolerance * g.cwiseAbs().maxCoeff());
+  EXPECT_LT((found.H - found.H.transpose()).norm(), 1e-9 * found.H.norm());
+}
+
+TEST(PlaneTerms, AreTheSumsOfTheirEquation) {
+  for (const bool has_ends : {true, false}) {
+    Room room;
+    room.has_ends = has_ends;
+    const PlaneMap map = room.map();
+    const Scan scan = scan_of(room, true_trajectory(), 3000);
+    for (const bool adapt : {false, true}) {
+      PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+      terms.associate(wrong_trajectory(), some_map_error(), {}, adapt);
+      const Definition definition(scan, map, wrong_trajectory(), some_map_error(), {}, adapt);
+      // Off by the map error times how X depends on the motion, a few 1e-4.
+      expect_equal(sums_of(terms, definition.layout()), expected_sums(definition, terms.quality().held), 2e-3);
+      EXPECT_EQ(sums_of(terms, definition.layout()).g.head(3).norm(), 0.0) << "nothing of the Doppler's error";
+      EXPECT_EQ(sums_of(terms, definition.layout()).g[definition.layout().last_stamp()], 0.0);
+    }
+  }
+}
+
+TEST(PlaneTerms, TellHowWellThePointsFit) {
+  const Room room;
+  const PlaneMap map = room.map();
+  const Scan scan = scan_of(room, true_trajectory(), 3000);
+  PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+  terms.associate(wrong_trajectory(), some_map_error(), {}, true);
+  const Definition definition(scan, map, wrong_trajectory(), some_map_error(), {}, true);
+  const PlaneQuality quality = terms.quality();
+  EXPECT_EQ(quality.on_planes, scan.size() - static_cast<std::size_t>(std::count(definition.patches.begin(),
+                                                                                 definition.patches.end(), nullptr)));
+  EXPECT_GT(quality.on_planes, 2500U);
+  EXPECT_NEAR(quality.matched, definition.robust.sum(), 1e-3 * quality.matched);
+  const double squares = definition.robust.dot(definition.residuals().cwiseAbs2());
+  EXPECT_NEAR(quality.rms_m, std::sqrt(squares / definition.robust.sum()), 1e-3 * quality.rms_m);
+}
+
+TEST(PlaneTerms, PlacePointsAtTheirOwnTimes) {
+  // Exact planes, exact points at any time: what is left is the straight step over half a slice.
+  Room room;
+  room.noise_m = 0.0;
+  const PlaneMap map = room.map();
+  const Scan scan = scan_of(room, true_trajectory(), 5000, false);
+  PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+  terms.associate(true_trajectory(), VectorXd::Zero(12), {}, false);
+  EXPECT_GT(terms.quality().matched, 4000.0);
+  EXPECT_LT(terms.quality().rms_m, 1e-5);
+}
+
+TEST(PlaneTerms, AStampCanBeSetAnew) {
+  const Room room;
+  const PlaneMap map = room.map();
+  const Scan scan = scan_of(room, true_trajectory(), 3000);
+  PlaneTerms moved(scan, map, kStamp_s + 0.002, kSlice_s, kOneThread);
+  moved.set_stamp(kStamp_s);
+  moved.associate(true_trajectory(), some_map_error(), {}, false);
+  PlaneTerms made(scan, map, kStamp_s, kSlice_s, kOneThread);
+  made.associate(true_trajectory(), some_map_error(), {}, false);
+  const Definition definition(scan, map, true_trajectory(), some_map_error(), {}, false);
+  expect_equal(sums_of(moved, definition.layout()), sums_of(made, definition.layout()), 1e-9);
+}
+
+TEST(PlaneTerms, OneStepFindsTheMotion) {
+  // With every coefficient free only what all of them share is well known: a rigid displacement.
+  const Room room;
+  const PlaneMap map = room.map();
+  const Scan scan = scan_of(room, true_trajectory(), 6000);
+  SplineTrajectory displaced = true_trajectory();
+  for (Vector6d& c : displaced.coefficients()) {
+    c[3] += 0.01;
+    c[4] -= 0.008;
+    c[5] += 0.005;
+  }
+  PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+  terms.associate(displaced, VectorXd::Zero(12), {}, true);
+  const Layout at{0, static_cast<Index>(displaced.coefficients().size())};
+  const Sums sums = sums_of(terms, at);
+  MatrixXd B = MatrixXd::Zero(at.size(), 6);
+  for (std::size_t k = 0; k < displaced.coefficients().size(); ++k) {
+    B.block(at.coefficient(k), 0, 6, 6).setIdentity();
+  }
+  const MatrixXd H = B.transpose() * sums.H * B;
+  const Vector6d step = -H.ldlt().solve(B.transpose() * sums.g);
+  EXPECT_LT((step.tail<3>() - Vector3d(-0.01, 0.008, -0.005)).norm(), 1e-3);
+  EXPECT_LT(step.head<3>().norm(), 2e-4);
+}
+
+TEST(PlaneTerms, ARoomHoldsAllDirections) {
+  const Room room;
+  const PlaneMap map = room.map();
+  const Scan scan = scan_of(room, true_trajectory(), 3000);
+  PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+  terms.associate(true_trajectory(), VectorXd::Zero(12), {}, false);
+  EXPECT_GT(terms.quality().held.minCoeff(), 0.97);
+}
+
+TEST(PlaneTerms, ATunnelDoesNotHoldAlongItself) {
+  Room tunnel;
+  tunnel.has_ends = false;
+  const PlaneMap map = tunnel.map(8000);
+  const Scan scan = scan_of(tunnel, true_trajectory(), 3000);
+  PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+  terms.associate(true_trajectory(), VectorXd::Zero(12), {}, false);
+  const Vector3d held = terms.quality().held;  // from the weakest axis to the strongest
+  EXPECT_LT(held[0], 0.01);
+  EXPECT_GT(held[1], 0.97);
+  EXPECT_GT(held[2], 0.97);
+  // Nothing is left of the information along the tunnel that the noise of the normals seems to give.
+  const Definition definition(scan, map, true_trajectory(), VectorXd::Zero(12), {}, false);
+  const Vector3d along = definition.trajectory.reference().linear().transpose() * Vector3d::UnitX();
+  const double by_noise = (definition.normals() * along).cwiseAbs2().dot(definition.weights);
+  ASSERT_GT(by_noise, 0.0);
+  const Layout at = definition.layout();
+  VectorXd shift = VectorXd::Zero(at.size());
+  for (std::size_t k = 0; k < definition.trajectory.coefficients().size(); ++k) {
+    shift.segment<3>(at.coefficient(k) + 3) = along;
+  }
+  EXPECT_LT(shift.dot(sums_of(terms, at).H * shift), 0.02 * by_noise);
+}
+
+TEST(PlaneTerms, LearnHowRoughSurfacesAre) {
+  // A piece of wall of two metres is a centimetre off in the map, each by itself; seen are flat walls.
+  Room rough;
+  rough.patch_sigma_m = 0.01;
+  const PlaneMap map = rough.map();
+  PlaneNoise noise;
+  noise.model_sigma_m = 0.01;
+  for (const double rigid_m : {0.0, 0.02}) {
+    SplineTrajectory trajectory = true_trajectory();
+    for (Vector6d& c : trajectory.coefficients()) {
+      c[3] += rigid_m;
+    }
+    const Scan scan = scan_of(Room{}, true_trajectory(), 6000);
+    PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+    terms.associate(trajectory, VectorXd::Zero(12), noise, true);
+    ASSERT_TRUE(terms.quality().model_sigma_m);
+    EXPECT_NEAR(*terms.quality().model_sigma_m, 0.01, 0.003) << "displaced by " << rigid_m;
+    const PlaneMap flat = Room{}.map();
+    PlaneTerms on_flat(scan, flat, kStamp_s, kSlice_s, kOneThread);
+    on_flat.associate(trajectory, VectorXd::Zero(12), {}, true);
+    ASSERT_TRUE(on_flat.quality().model_sigma_m);
+    EXPECT_LT(*on_flat.quality().model_sigma_m, 0.002) << "displaced by " << rigid_m;
+  }
+}
+
+TEST(PlaneTerms, WithoutAMapAddNothing) {
+  const PlaneMap map({});
+  const Scan scan = scan_of(Room{}, true_trajectory(), 300);
+  PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+  terms.associate(true_trajectory(), VectorXd::Zero(12), {}, true);
+  const Layout at{3, static_cast<Index>(true_trajectory().coefficients().size())};
+  const Sums sums = sums_of(terms, at);
+  EXPECT_EQ(sums.H.norm(), 0.0);
+  EXPECT_EQ(sums.g.norm(), 0.0);
+  const PlaneQuality quality = terms.quality();
+  EXPECT_EQ(quality.on_planes, 0U);
+  EXPECT_EQ(quality.matched, 0.0);
+  EXPECT_EQ(quality.rms_m, 0.0);
+  EXPECT_FALSE(quality.model_sigma_m);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::window

@@ -1,0 +1,326 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/window_estimator.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+
+#include "dynamic_icp/method/base/scan_limits.hpp"
+
+namespace dynamic_icp::window {
+namespace {
+
+using Matrix12d = Eigen::Matrix<double, 12, 12>;
+
+// The motion of so much time goes on evenly into the next scan.
+constexpr double kEven_s = 0.1;
+
+// Slices of a knot interval whose points share a pose, but for a straight step.
+constexpr double kSlices = 8.0;
+
+// Tukey's kernel of the planes, in standard deviations.
+constexpr double kPlaneKernel = 4.0;
+
+// A step shorter than this (rad and m) ends the iterations.
+constexpr double kStep = 2e-5;
+constexpr int kMinIterations = 3;
+
+// How often the Doppler is averaged anew, with weights around the trajectory of the moment; more often in the first
+// scans of all, when the noise is not known.
+constexpr int kPasses = 2;
+constexpr int kFirstPasses = 3;
+constexpr int kFirstScans = 3;
+constexpr int kStartPasses = 10;  // until the scales of the error field have settled
+constexpr double kFirstGate_mps = 10.0;
+constexpr double kGate_mps = 1.0;
+
+// A scan is solved again when the variance of stamps or of errors of scans more than doubled, twice at most.
+constexpr double kMuchNoise = 1.0;
+constexpr int kNoiseRounds = 3;
+
+// 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
+constexpr double kNothing = 1e-9;
+
+// The map is never one scan alone.
+constexpr double kFewestScans = 2.0;
+
+// Faces of a mirror: one scan may show one of them only.
+constexpr std::size_t kMaxFaces = 8;
+
+// What may be learned: the wheels of a car hop with 300 rad/s^3 and m/s^3 at most.
+constexpr double kPriorJerks = 4.0;
+constexpr double kMinJerk_rad_s3 = 0.1;
+constexpr double kMaxJerk_rad_s3 = 500.0;
+constexpr double kMinJerk_mps3 = 0.5;
+constexpr double kMaxJerk_mps3 = 3000.0;
+constexpr LearnedVariance::Prior kScanError_mps{.sigma = 0.003, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
+
+LearnedVariance::Prior stamp_prior(const WindowConfig& config) {
+  return {.sigma = config.start_stamp_sigma_s, .counts = 2.0, .min_sigma = 1e-5, .max_sigma = 3e-3};
+}
+
+Matrix12d twice(const Matrix6d& A) {
+  Matrix12d result = Matrix12d::Zero();
+  result.topLeftCorner<6, 6>() = A;
+  result.bottomRightCorner<6, 6>() = A;
+  return result;
+}
+
+}  // namespace
+
+WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_scans)
+    : config_(config),
+      map_memory_scans_(std::max(kFewestScans, map_memory_scans)),
+      trajectory_(config.knot_spacing_s),
+      stamp_variance_(stamp_prior(config)),
+      scan_error_variance_(kScanError_mps),
+      model_sigma_m_(config.model_sigma_m) {
+  for (std::size_t axis = 0; axis < jerk_variance_.size(); ++axis) {
+    jerk_variance_[axis] =
+        axis < 3 ? LearnedVariance({config.start_jerk_rad_s3, kPriorJerks, kMinJerk_rad_s3, kMaxJerk_rad_s3})
+                 : LearnedVariance({config.start_jerk_mps3, kPriorJerks, kMinJerk_mps3, kMaxJerk_mps3});
+  }
+}
+
+void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor,
+                            const Eigen::Vector3d& velocity, const std::optional<Eigen::Vector3d>& omega,
+                            const Workers& workers) {
+  const auto lay_trajectory = [&] {
+    trajectory_.begin(scan.stamp_s + std::min(0.0, scan.begin_s), scan.stamp_s + std::max(0.0, scan.end_s),
+                      T_map_sensor, velocity, omega.value_or(Eigen::Vector3d::Zero()));
+  };
+  lay_trajectory();
+  take(scan);
+  first_ = {scan.stamp_s, scan.begin_s, scan.end_s};
+  stamp_errors_.setZero();
+  map_error_.setZero();
+  scans_ = 1;
+  const std::size_t coefficients = trajectory_.coefficients().size();
+  if (quadratic_) {
+    quadratic_->keep_field_only(coefficients);
+  }
+  average_doppler(scan, true, workers);
+  if (!field_) {
+    field_.emplace(cells_.cells(), scan.whole->channels().face.empty() ? 1 : kMaxFaces);
+    theta_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(field_->size()));
+    quadratic_.emplace(theta_.size(), coefficients);
+  }
+  linearise_here();
+  if (!settle_first(scan, workers)) {
+    theta_.setZero();  // what was known of the sensor does not fit
+    quadratic_.emplace(theta_.size(), coefficients);
+    lay_trajectory();
+    linearise_here();
+    settle_first(scan, workers);
+  }
+  Problem all = assemble(nullptr, 0);
+  add_start(scan, all);
+  join(std::move(all));
+  find_twist();
+  ++scans_ever_;
+}
+
+/// Fits the first scan; whether that worked.
+bool WindowEstimator::settle_first(const WindowScan& scan, const Workers& workers) {
+  for (int pass = 0; pass < kStartPasses; ++pass) {
+    if (pass < kFirstPasses) {
+      average_doppler(scan, pass == 0, workers);
+    }
+    Problem all = assemble(nullptr, 0);
+    add_start(scan, all);
+    if (!(solve(all) < kMaxCoordinate_m)) {
+      return false;
+    }
+    all = assemble(nullptr, 0);
+    add_start(scan, all);
+    learn_field(std::move(all));
+  }
+  return true;
+}
+
+WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_points, mapping::PlaneMap& map,
+                                     const std::optional<Eigen::Isometry3d>& start, const Workers& workers) {
+  WindowMotion motion;
+  motion.points = scan.static_points->size();
+  const double last_s = stamp_s();
+  const std::size_t first_new = trajectory_.coefficients().size() - 3;
+  advance(scan);
+  if (start) {
+    const Vector6d twist = log_se3(trajectory_.pose(last_s).inverse() * *start) / (stamp_s() - last_s);
+    trajectory_.set_constant_twist(last_s, twist.tail<3>(), twist.head<3>());
+  }
+  std::optional<PlaneTerms> planes;
+  for (int round = 0; round < kNoiseRounds; ++round) {
+    iterate(scan, first_points, first_new, map, planes, motion, workers);
+    if (motion.diverged) {
+      return motion;
+    }
+    learn_field(whole_problem(planes, first_new));
+    if (std::max(learn_stamps(), learn_scan_errors()) < kMuchNoise) {
+      break;
+    }
+  }
+  stamp_variance_.keep();
+  scan_error_variance_.keep();
+  learn_jerk(last_s);
+  compare_with_planes(false, *planes);
+  motion.planes = planes->quality();
+  join(whole_problem(planes, first_new));
+  learn_roughness(motion.planes);
+  motion_between(last_s, motion);
+  find_twist();
+  ++scans_;
+  ++scans_ever_;
+  const double share = 1.0 / std::clamp(static_cast<double>(scans_), kFewestScans, map_memory_scans_);
+  quadratic_->mix_map_error(share, sweep_rows(layout()));  // the map takes this sweep in
+  map_error_ *= 1.0 - share;
+  walk_field();
+  quadratic_->drop_coefficients(trajectory_.drop_before(stamp_s() + std::min(0.0, begin_s_)));
+  return motion;
+}
+
+void WindowEstimator::take(const WindowScan& scan) {
+  stamp_s_ = scan.stamp_s;
+  begin_s_ = scan.begin_s;
+  end_s_ = scan.end_s;
+}
+
+/// The quadratic of the past is about the state at hand.
+void WindowEstimator::linearise_here() {
+  coefficients_0_ = trajectory_.coefficients();
+  theta_0_ = theta_;
+  map_error_0_ = map_error_;
+  stamp_errors_0_ = stamp_errors_;
+}
+
+/// Makes room for a scan: coefficients, its stamp, and its stamp as the reference.
+void WindowEstimator::advance(const WindowScan& scan) {
+  quadratic_->next_stamp();
+  stamp_errors_ << stamp_errors_[1], 0.0;
+  quadratic_->append_coefficients(trajectory_.extend(scan.stamp_s + std::max(0.0, scan.end_s), kEven_s));
+  const TrajectoryPoint to = trajectory_.at(scan.stamp_s);
+  Matrix6d B = Matrix6d::Zero();
+  B.topLeftCorner<3, 3>() = to.R;
+  B.bottomRightCorner<3, 3>() = to.R;
+  B.bottomLeftCorner<3, 3>() = skew(to.p) * to.R;
+  quadratic_->move_reference(trajectory_.move_reference(scan.stamp_s), twice(B));
+  map_error_ = twice(B).partialPivLu().solve(map_error_).eval();
+  take(scan);
+  linearise_here();
+}
+
+/// Gauss-Newton steps until they are short. The first scan is laid anew with each step of the second.
+void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, std::size_t first_new,
+                              mapping::PlaneMap& map, std::optional<PlaneTerms>& planes, WindowMotion& motion,
+                              const Workers& workers) {
+  const bool is_second = scans_ == 1;
+  const int passes = scans_ever_ < kFirstScans ? kFirstPasses : kPasses;
+  motion.converged = false;
+  for (int k = 0; k < config_.max_iterations && !motion.converged; ++k, ++motion.iterations) {
+    if (motion.iterations < passes) {
+      average_doppler(scan, scans_ever_ < kFirstScans, workers);
+    }
+    if (is_second && motion.iterations > 0) {
+      lay_first_again(first_points, map, workers);
+    }
+    if (is_second || !planes) {
+      planes.emplace(*scan.static_points, map, stamp_s(), config_.knot_spacing_s / kSlices, workers);
+    }
+    compare_with_planes(true, *planes);
+    const double step = solve(whole_problem(planes, first_new));
+    if (!(step < kMaxCoordinate_m)) {
+      motion.diverged = true;
+      return;
+    }
+    motion.converged = step < kStep && motion.iterations + 1 >= kMinIterations;
+  }
+}
+
+void WindowEstimator::compare_with_planes(bool adapt, PlaneTerms& planes) const {
+  planes.set_stamp(stamp_s());
+  planes.associate(
+      trajectory_, map_error_,
+      {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel, config_.max_noise_share}, adapt);
+}
+
+WindowEstimator::Problem WindowEstimator::whole_problem(const std::optional<PlaneTerms>& planes,
+                                                        std::size_t first_new) const {
+  Problem all = assemble(config_.use_planes && planes ? &*planes : nullptr, first_new);
+  add_stamp(stamp_variance_.value(), all);
+  if (scans_ == 1) {
+    tie_map_to_first_sweep(all);
+  }
+  return all;
+}
+
+/// Weights around the trajectory of the moment.
+void WindowEstimator::average_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers) {
+  doppler_.reset();
+  if (scan.measured == nullptr) {
+    return;
+  }
+  static_doppler(*scan.whole, workers, predicted_);
+  cells_.sort(*scan.whole, *scan.is_moving, config_.knot_spacing_s, workers);
+  cells_.average(*scan.whole, *scan.measured, predicted_, is_first_pass ? kFirstGate_mps : kGate_mps);
+  if (field_) {
+    doppler_.emplace(cells_.cells(), *field_, trajectory_, theta_, stamp_s(), cell_variance_, scan.whole->is_of_rig());
+  }
+}
+
+/// One step. Theta, on which everything depends linearly, is eliminated.
+double WindowEstimator::solve(Problem problem) {
+  const Layout at = layout();
+  const Eigen::Index n = at.size() - at.field;
+  field_->add_prior(theta_, problem.H.topLeftCorner(at.field, at.field), problem.g.head(at.field));
+  const Eigen::LLT<Eigen::MatrixXd> fields(problem.H.topLeftCorner(at.field, at.field));
+  const Eigen::MatrixXd W =
+      fields.matrixL().solve(problem.H.topRightCorner(at.field, n)) * (config_.learn_field ? 1.0 : 0.0);
+  const Eigen::VectorXd w = fields.matrixL().solve(problem.g.head(at.field));
+  Eigen::MatrixXd S = problem.H.bottomRightCorner(n, n);
+  S.noalias() -= W.transpose() * W;
+  S.diagonal().array() += kNothing;
+  const Eigen::LLT<Eigen::MatrixXd> rest(S);
+  const Eigen::VectorXd y = -rest.solve(problem.g.tail(n) - W.transpose() * w);
+  if (fields.info() != Eigen::Success || rest.info() != Eigen::Success || !y.allFinite()) {
+    return std::numeric_limits<double>::infinity();
+  }
+  if (config_.learn_field) {
+    theta_ -= fields.matrixU().solve(w + W * y);
+  }
+  map_error_ += y.head(Layout::kMapError);
+  stamp_errors_ += y.segment<2>(Layout::kMapError);
+  double largest = 0.0;
+  for (std::size_t k = 0; k < trajectory_.coefficients().size(); ++k) {
+    const auto step = y.segment<6>(Layout::kBefore + 6 * static_cast<Eigen::Index>(k));
+    trajectory_.coefficients()[k] += step;
+    largest = std::max(largest, step.cwiseAbs().maxCoeff());
+  }
+  return largest;
+}
+
+/// The scan becomes part of the past; the prior of the field stays apart, so that its scale can still be learned.
+void WindowEstimator::join(Problem problem) {
+  quadratic_->set(problem.H, problem.g);
+  linearise_here();
+  learn_field(std::move(problem));
+  learn_cell_variance();
+}
+
+/// The rotation of the first scan is known now: its points are moved to where they were.
+void WindowEstimator::lay_first_again(const Scan& first_points, mapping::PlaneMap& map, const Workers& workers) {
+  WindowScan first;
+  first.stamp_s = first_.stamp_s;
+  first.begin_s = first_.begin_s;
+  first.end_s = first_.end_s;
+  first.static_points = &first_points;
+  map.clear();
+  add_to_map(first, map, workers);
+  map_error_.setZero();
+}
+
+}  // namespace dynamic_icp::window

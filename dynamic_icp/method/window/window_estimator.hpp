@@ -1,0 +1,171 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/method/mapping/plane_map.hpp"
+#include "dynamic_icp/method/motion/twist.hpp"
+#include "dynamic_icp/method/window/doppler_cells.hpp"
+#include "dynamic_icp/method/window/doppler_error_field.hpp"
+#include "dynamic_icp/method/window/doppler_terms.hpp"
+#include "dynamic_icp/method/window/learned_variance.hpp"
+#include "dynamic_icp/method/window/plane_terms.hpp"
+#include "dynamic_icp/method/window/spline_trajectory.hpp"
+#include "dynamic_icp/method/window/window_config.hpp"
+#include "dynamic_icp/method/window/window_quadratic.hpp"
+
+namespace dynamic_icp::window {
+
+/// What the estimator reads of a scan; all of it must outlive the call.
+struct WindowScan {
+  double stamp_s = 0.0;
+  double begin_s = 0.0;  ///< of its points, after the stamp
+  double end_s = 0.0;
+  const Scan* whole = nullptr;
+  const std::vector<double>* measured = nullptr;  ///< m/s, Doppler of each point of `whole` as measured; null: none
+  const std::vector<std::uint8_t>* is_moving = nullptr;  ///< of each point of `whole`
+  const Scan* static_points = nullptr;                   ///< thinned
+};
+
+/// The motion from the last scan to this one, and how well it is known.
+struct WindowMotion {
+  Eigen::Isometry3d T_target_source = Eigen::Isometry3d::Identity();
+  Matrix6d covariance = Matrix6d::Zero();  ///< left perturbation [omega (rad); rho (m)], target axes
+  PlaneQuality planes;
+  std::size_t points = 0;
+  int iterations = 0;
+  bool converged = false;
+  bool diverged = false;  ///< a step was not finite, or beyond the reach of any scan
+};
+
+/// One estimator: the trajectory of the sensor in continuous time over the last two scans, the error field of its
+/// Doppler and the error of the map, from Doppler and planes together. See docs/derivations/window.md.
+///
+/// With z = [theta; map error; stamp errors; coefficients] a scan minimises
+///   sum_cells rho (s + u . v(t) - Phi theta)^2 / sigma^2  +  sum_points rho (plane residual)^2 / sigma^2
+///   + sum_intervals jerk^2 / q  +  theta^T (tau^2 K)^-1 theta  +  past scans
+/// by Gauss and Newton; then it joins the past.
+class WindowEstimator {
+ public:
+  /// `map_memory_scans` as that of the map: each scan takes such a share of its error.
+  WindowEstimator(const WindowConfig& config, double map_memory_scans);
+
+  /// The first scan in a map; nothing of the past is kept but the error field. Velocities in sensor axes at the stamp.
+  void begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& velocity,
+             const std::optional<Eigen::Vector3d>& omega, const Workers& workers);
+
+  /// The next scan. `start` is its pose where it is known better than by going on evenly (the second scan in a map).
+  /// The second scan shows how the first one turned: `map` is laid anew then.
+  WindowMotion update(const WindowScan& scan, const Scan& first_points, mapping::PlaneMap& map,
+                      const std::optional<Eigen::Isometry3d>& start, const Workers& workers);
+
+  /// Adds the static points of the scan at hand to a map.
+  std::vector<Eigen::Vector3d> add_to_map(const WindowScan& scan, mapping::PlaneMap& map, const Workers& workers);
+
+  [[nodiscard]] const SplineTrajectory& trajectory() const { return trajectory_; }
+  [[nodiscard]] int scans() const { return scans_; }
+  /// When the scan at hand was taken: its stamp and the error of that, s.
+  [[nodiscard]] double stamp_s() const { return stamp_s_ + stamp_errors_[1]; }
+
+  /// How the sensor moved at the stamp of the scan at hand.
+  [[nodiscard]] const motion::Twist& twist() const { return twist_; }
+
+  /// Standard deviation of the Doppler of single points, the median over ranges, m/s; nothing before the first scan.
+  [[nodiscard]] std::optional<double> point_noise() const;
+
+  /// The error of the Doppler of each point of a scan as learned so far, m/s.
+  void field_errors(const Scan& scan, const Workers& workers, std::vector<double>& errors) const;
+
+  /// The Doppler of each point of the scan at hand, had it no error, m/s.
+  void static_doppler(const Scan& scan, const Workers& workers, std::vector<double>& predicted) const;
+
+  [[nodiscard]] const std::optional<DopplerErrorField>& field() const { return field_; }
+  [[nodiscard]] const Eigen::VectorXd& theta() const { return theta_; }
+
+ private:
+  struct Problem {
+    Eigen::MatrixXd H;
+    Eigen::VectorXd g;
+  };
+
+  void take(const WindowScan& scan);
+  void linearise_here();
+  bool settle_first(const WindowScan& scan, const Workers& workers);
+  void advance(const WindowScan& scan);
+  void iterate(const WindowScan& scan, const Scan& first_points, std::size_t first_new, mapping::PlaneMap& map,
+               std::optional<PlaneTerms>& planes, WindowMotion& motion, const Workers& workers);
+  void average_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers);
+  void compare_with_planes(bool adapt, PlaneTerms& planes) const;
+  double solve(Problem problem);
+  void join(Problem problem);
+  void lay_first_again(const Scan& first_points, mapping::PlaneMap& map, const Workers& workers);
+
+  // window_problem.cpp
+  [[nodiscard]] Problem assemble(const PlaneTerms* planes, std::size_t first_new) const;
+  [[nodiscard]] Problem whole_problem(const std::optional<PlaneTerms>& planes, std::size_t first_new) const;
+  void add_jerk(std::size_t first_new, Problem& problem) const;
+  void add_stamp(double variance, Problem& problem) const;
+  void add_start(const WindowScan& scan, Problem& problem) const;
+  void tie_map_to_first_sweep(Problem& problem) const;
+  [[nodiscard]] Eigen::MatrixXd displacement_rows(double time_s, const Layout& layout) const;
+  [[nodiscard]] Eigen::MatrixXd sweep_rows(const Layout& layout) const;
+
+  // window_learning.cpp
+  void learn_field(Problem problem);
+  void learn_jerk(double last_s);
+  double learn_stamps();
+  double learn_scan_errors();
+  void learn_roughness(const PlaneQuality& planes);
+  void learn_cell_variance();
+  void walk_field();
+
+  // window_uses.cpp
+  void motion_between(double source_s, WindowMotion& motion) const;
+  void find_twist();
+  [[nodiscard]] Layout layout() const { return quadratic_->layout(); }
+
+  WindowConfig config_;
+  double map_memory_scans_;
+  SplineTrajectory trajectory_;
+  std::optional<WindowQuadratic> quadratic_;
+  std::optional<DopplerErrorField> field_;
+  Eigen::VectorXd theta_;
+  Eigen::VectorXd map_error_ = Eigen::VectorXd::Zero(Layout::kMapError);
+  std::vector<Vector6d> coefficients_0_;  ///< where the quadratic was linearised
+  Eigen::VectorXd theta_0_;
+  Eigen::VectorXd map_error_0_;
+  Eigen::Vector2d stamp_errors_ = Eigen::Vector2d::Zero();  ///< s, of the last scan and of the one at hand
+  Eigen::Vector2d stamp_errors_0_ = Eigen::Vector2d::Zero();
+  DopplerCells cells_;
+  std::optional<DopplerTerms> doppler_;
+  std::vector<double> predicted_;
+  Eigen::MatrixXd covariance_;  ///< of [map error; stamp errors; coefficients] after the last scan
+  motion::Twist twist_;
+  Eigen::MatrixXd field_covariance_;              ///< of theta, where it was asked for
+  std::array<LearnedVariance, 6> jerk_variance_;  ///< [rad/s^3; m/s^3] squared, of each axis
+  LearnedVariance stamp_variance_;                ///< s^2
+  LearnedVariance scan_error_variance_;           ///< (m/s)^2, of what all Doppler values of a scan have in common
+  double cell_variance_ = 1e-4;                   ///< (m/s)^2
+  double model_sigma_m_ = 0.003;
+  double stamp_s_ = 0.0;
+  double begin_s_ = 0.0;
+  double end_s_ = 0.0;
+  struct {
+    double stamp_s = 0.0;
+    double begin_s = 0.0;
+    double end_s = 0.0;
+  } first_;        ///< the first scan in the map
+  int scans_ = 0;  ///< in the map
+  int scans_ever_ = 0;
+};
+
+}  // namespace dynamic_icp::window

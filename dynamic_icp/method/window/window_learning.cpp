@@ -1,0 +1,135 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+#include "dynamic_icp/method/window/window_estimator.hpp"
+
+// What a scan tells of its noise and of the error of its sensor.
+namespace dynamic_icp::window {
+namespace {
+
+// MacKay's fixed point needs something to be known.
+constexpr double kLeastKnown = 0.02;
+
+// 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
+constexpr double kNothing = 1e-9;
+
+// Of the newest scan in a mean over the last scans.
+constexpr double kGain = 0.2;
+constexpr double kMinCellVariance = 1e-6;
+constexpr double kMaxCellVariance = 0.1;
+constexpr double kMinModelSigma_m = 3e-4;
+
+// The field walks by this share of its scale in so many scans; its velocity-like part in each.
+constexpr int kWalkPeriod = 5;
+constexpr double kWalkShare = 0.03;
+constexpr double kVelocityWalk_mps = 0.002;
+
+}  // namespace
+
+/// The covariance of the window, and from it the scales of the error field.
+void WindowEstimator::learn_field(Problem problem) {
+  const Layout at = layout();
+  const Eigen::Index n = at.size() - at.field;
+  field_->add_prior(theta_, problem.H.topLeftCorner(at.field, at.field), problem.g.head(at.field));
+  const Eigen::LLT<Eigen::MatrixXd> fields(problem.H.topLeftCorner(at.field, at.field));
+  const Eigen::MatrixXd W =
+      fields.matrixL().solve(problem.H.topRightCorner(at.field, n)) * (config_.learn_field ? 1.0 : 0.0);
+  Eigen::MatrixXd S = problem.H.bottomRightCorner(n, n);
+  S.noalias() -= W.transpose() * W;
+  S.diagonal().array() += kNothing;
+  covariance_ = S.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+  if (config_.learn_field) {
+    const Eigen::MatrixXd Z = fields.matrixU().solve(W);
+    field_covariance_ = fields.solve(Eigen::MatrixXd::Identity(at.field, at.field));
+    field_covariance_.noalias() += Z * covariance_ * Z.transpose();
+    field_->learn_scales(theta_, field_covariance_);
+  }
+}
+
+/// Process noise of each axis from the jerk between the last two scans, by MacKay's fixed point
+/// q = sum J^2 / sum (1 - Var J / q).
+void WindowEstimator::learn_jerk(double last_s) {
+  const std::array<double, 4> w = trajectory_.jerk_weights();
+  const std::size_t begin = trajectory_.interval(last_s);
+  const std::size_t end = trajectory_.interval(stamp_s());
+  Vector6d squares = Vector6d::Zero();
+  Vector6d counts = Vector6d::Zero();
+  for (std::size_t k = begin; k < end; ++k) {
+    Vector6d variance = Vector6d::Zero();
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = 0; j < 4; ++j) {
+        const auto row = Layout::kBefore + static_cast<Eigen::Index>(6 * (k + i));
+        const auto column = Layout::kBefore + static_cast<Eigen::Index>(6 * (k + j));
+        variance += (w[i] * w[j]) * covariance_.block<6, 6>(row, column).diagonal();
+      }
+    }
+    const Vector6d jerk = trajectory_.jerk(k);
+    squares += jerk.cwiseAbs2();
+    for (Eigen::Index axis = 0; axis < 6; ++axis) {
+      counts[axis] += 1.0 - variance[axis] / jerk_variance_[static_cast<std::size_t>(axis)].value();
+    }
+  }
+  const double least = kLeastKnown * static_cast<double>(end - begin);
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    jerk_variance_[static_cast<std::size_t>(axis)].update(squares[axis], std::max(counts[axis], least));
+  }
+}
+
+/// How far stamps are off; by which share their variance grew.
+double WindowEstimator::learn_stamps() {
+  const Eigen::Index now = Layout::kMapError + 1;
+  return stamp_variance_.propose(stamp_errors_[1], covariance_(now, now));
+}
+
+/// And what all Doppler values of a scan have in common.
+double WindowEstimator::learn_scan_errors() {
+  if (!doppler_) {
+    return 0.0;
+  }
+  const DopplerTerms::ScanError& error = doppler_->scan_error();
+  const Eigen::Index n = covariance_.rows();
+  const Eigen::VectorXd by_rest = error.by_unknowns.tail(n);
+  const double variance = error.variance + by_rest.dot(covariance_ * by_rest);
+  return scan_error_variance_.propose(error.value, variance);
+}
+
+/// How rough the surfaces are.
+void WindowEstimator::learn_roughness(const PlaneQuality& planes) {
+  if (planes.model_sigma_m) {
+    const double seen = std::max(kMinModelSigma_m, *planes.model_sigma_m);
+    const double variance = model_sigma_m_ * model_sigma_m_;
+    model_sigma_m_ = std::sqrt(variance + kGain * (seen * seen - variance));
+  }
+}
+
+/// What the points of a cell have in common.
+void WindowEstimator::learn_cell_variance() {
+  if (doppler_) {
+    const double seen = std::clamp(doppler_->unexplained_variance(cells_.cells(), *field_, trajectory_, theta_),
+                                   kMinCellVariance, kMaxCellVariance);
+    cell_variance_ += (scans_ever_ == 0 ? 1.0 : kGain) * (seen - cell_variance_);
+  }
+}
+
+/// The error of a sensor drifts. Its velocity-like part changes with the scene, too, and what planes say of it errs
+/// alike scan after scan: they tell of the last seconds only.
+void WindowEstimator::walk_field() {
+  if (!config_.learn_field) {
+    return;
+  }
+  for (const DopplerErrorField::Group& group : field_->groups()) {
+    const bool is_velocity = group.name == "velocity";
+    if (!is_velocity && scans_ever_ % kWalkPeriod != 0) {
+      continue;
+    }
+    const double sigma = is_velocity ? kVelocityWalk_mps : kWalkShare * group.tau;
+    quadratic_->walk_field(static_cast<Eigen::Index>(group.begin), sigma * sigma * group.K);
+  }
+}
+
+}  // namespace dynamic_icp::window

@@ -1,0 +1,150 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <cmath>
+
+#include "dynamic_icp/method/window/window_estimator.hpp"
+
+// What a scan minimises: the terms of WindowEstimator, linearised.
+namespace dynamic_icp::window {
+namespace {
+
+// The map begins with the first sweep: its error is that of the sweep, to 5 urad and 20 um.
+constexpr double kTieRotation = 5e-6;
+constexpr double kTiePosition_m = 2e-5;
+
+// The first scan: its pose is the origin and its stamp is when time begins; its motion is unknown.
+constexpr double kStartRotation = 1e-6;
+constexpr double kStartPosition_m = 1e-5;
+constexpr double kStartVelocity_mps = 50.0;
+constexpr double kStartAlpha_rad_s2 = 1.0;
+constexpr double kStartAcceleration_mps2 = 3.0;
+constexpr double kStartStamp_s = 1e-6;
+
+// (m/s)^2, of an error that is not looked for.
+constexpr double kNoError = 1e-9;
+
+// 1/rad^2 and 1/m^2: a map that errs by 0.1 rad and 1 m.
+const Vector6d kMapInformation{{100.0, 100.0, 100.0, 1.0, 1.0, 1.0}};
+
+}  // namespace
+
+WindowEstimator::Problem WindowEstimator::assemble(const PlaneTerms* planes, std::size_t first_new) const {
+  const Layout at = layout();
+  Eigen::VectorXd d(at.size());
+  d.head(at.field) = theta_ - theta_0_;
+  d.segment(at.map_error(), Layout::kMapError) = map_error_ - map_error_0_;
+  d.segment<2>(at.last_stamp()) = stamp_errors_ - stamp_errors_0_;
+  for (std::size_t k = 0; k < coefficients_0_.size(); ++k) {
+    d.segment<6>(at.coefficient(k)) = trajectory_.coefficients()[k] - coefficients_0_[k];
+  }
+  Problem problem{quadratic_->Q(), quadratic_->g() + quadratic_->Q() * d};
+  if (doppler_ && config_.use_doppler) {
+    doppler_->add(trajectory_, theta_, at, config_.learn_field ? scan_error_variance_.value() : kNoError, problem.H,
+                  problem.g);
+  }
+  if (planes != nullptr) {
+    planes->add(at, problem.H, problem.g);
+  }
+  // What no scan shows of the map's error stays within what it may be.
+  Eigen::VectorXd information(Layout::kMapError);
+  information << kMapInformation, kMapInformation;
+  problem.H.diagonal().segment<Layout::kMapError>(at.map_error()) += information;
+  problem.g.segment<Layout::kMapError>(at.map_error()) += information.cwiseProduct(map_error_);
+  add_jerk(first_new, problem);
+  return problem;
+}
+
+/// What is known of the stamp at hand.
+void WindowEstimator::add_stamp(double variance, Problem& problem) const {
+  const Eigen::Index stamp = layout().stamp();
+  problem.H(stamp, stamp) += 1.0 / variance;
+  problem.g[stamp] += stamp_errors_[1] / variance;
+}
+
+/// White noise on jerk, constant between knots: the intervals from `first_new` on.
+void WindowEstimator::add_jerk(std::size_t first_new, Problem& problem) const {
+  const std::array<double, 4> w = trajectory_.jerk_weights();
+  const Layout at = layout();
+  Vector6d information;
+  for (Eigen::Index axis = 0; axis < 6; ++axis) {
+    information[axis] = 1.0 / jerk_variance_[static_cast<std::size_t>(axis)].value();
+  }
+  for (std::size_t k = first_new; k + 3 < trajectory_.coefficients().size(); ++k) {
+    const Vector6d gradient = information.cwiseProduct(trajectory_.jerk(k));
+    for (std::size_t i = 0; i < 4; ++i) {
+      problem.g.segment<6>(at.coefficient(k + i)) += w[i] * gradient;
+      for (std::size_t j = 0; j < 4; ++j) {
+        problem.H.block<6, 6>(at.coefficient(k + i), at.coefficient(k + j)).diagonal() += (w[i] * w[j]) * information;
+      }
+    }
+  }
+}
+
+void WindowEstimator::add_start(const WindowScan& scan, Problem& problem) const {
+  const TrajectoryPoint point = trajectory_.at(scan.stamp_s);
+  const double h = trajectory_.knot_spacing();
+  const double x = (scan.stamp_s - trajectory_.interval_begin(point.first)) / h;
+  const std::array<double, 4> curvature = {(1.0 - x) / (h * h), (3.0 * x - 2.0) / (h * h), (1.0 - 3.0 * x) / (h * h),
+                                           x / (h * h)};
+  const auto sigmas = [](double rotation, double position) {
+    Vector6d sigma;
+    sigma << Eigen::Vector3d::Constant(rotation), Eigen::Vector3d::Constant(position);
+    return sigma;
+  };
+  const Layout at = layout();
+  const auto add = [&](const std::array<double, 4>& w, const Vector6d& sigma, const std::vector<Vector6d>& prior) {
+    const Vector6d information = sigma.cwiseAbs2().cwiseInverse();
+    Vector6d e = Vector6d::Zero();
+    for (std::size_t i = 0; i < 4; ++i) {
+      e += w[i] * (trajectory_.coefficients()[point.first + i] - prior[point.first + i]);
+    }
+    for (std::size_t i = 0; i < 4; ++i) {
+      problem.g.segment<6>(at.coefficient(point.first + i)) += w[i] * information.cwiseProduct(e);
+      for (std::size_t j = 0; j < 4; ++j) {
+        problem.H.block<6, 6>(at.coefficient(point.first + i), at.coefficient(point.first + j)).diagonal() +=
+            (w[i] * w[j]) * information;
+      }
+    }
+  };
+  add_stamp(kStartStamp_s * kStartStamp_s, problem);
+  add(point.weight, sigmas(kStartRotation, kStartPosition_m), coefficients_0_);
+  add(point.slope, sigmas(config_.start_omega_rad_s, kStartVelocity_mps), coefficients_0_);
+  add(curvature, sigmas(kStartAlpha_rad_s2, kStartAcceleration_mps2), coefficients_0_);
+}
+
+/// Rows of the rigid displacement, about the origin of the reference, of what is seen at a time; per coefficient.
+Eigen::MatrixXd WindowEstimator::displacement_rows(double time_s, const Layout& layout) const {
+  const TrajectoryPoint point = trajectory_.at(time_s);
+  const Eigen::Matrix3d L = point.R * point.J;
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, 6 * layout.coefficients);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto column = static_cast<Eigen::Index>(6 * (point.first + k));
+    rows.block<3, 3>(0, column) = point.weight[k] * L;
+    rows.block<3, 3>(3, column) = point.weight[k] * skew(point.p) * L;
+    rows.block<3, 3>(3, column + 3) = point.weight[k] * Eigen::Matrix3d::Identity();
+  }
+  return rows;
+}
+
+/// The same at the start and the end of the sweep at hand.
+Eigen::MatrixXd WindowEstimator::sweep_rows(const Layout& layout) const {
+  Eigen::MatrixXd rows(Layout::kMapError, 6 * layout.coefficients);
+  rows << displacement_rows(stamp_s() + begin_s_, layout), displacement_rows(stamp_s() + end_s_, layout);
+  return rows;
+}
+
+void WindowEstimator::tie_map_to_first_sweep(Problem& problem) const {
+  const Layout at = layout();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(Layout::kMapError, at.size());
+  rows.block(0, at.coefficient(0), 6, 6 * at.coefficients) = -displacement_rows(first_.stamp_s + first_.begin_s, at);
+  rows.block(6, at.coefficient(0), 6, 6 * at.coefficients) = -displacement_rows(first_.stamp_s + first_.end_s, at);
+  rows.block(0, at.map_error(), Layout::kMapError, Layout::kMapError).setIdentity();
+  Vector6d information;
+  information << Eigen::Vector3d::Constant(1.0 / (kTieRotation * kTieRotation)),
+      Eigen::Vector3d::Constant(1.0 / (kTiePosition_m * kTiePosition_m));
+  Eigen::VectorXd w(Layout::kMapError);
+  w << information, information;
+  problem.H.noalias() += rows.transpose() * w.asDiagonal() * rows;
+}
+
+}  // namespace dynamic_icp::window

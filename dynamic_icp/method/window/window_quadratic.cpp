@@ -1,0 +1,145 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/window_quadratic.hpp"
+
+#include <utility>
+
+#include <Eigen/Cholesky>
+
+namespace dynamic_icp::window {
+namespace {
+
+// 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
+constexpr double kNothing = 1e-9;
+
+}  // namespace
+
+WindowQuadratic::WindowQuadratic(Eigen::Index field_size, std::size_t coefficients)
+    : layout_{field_size, static_cast<Eigen::Index>(coefficients)},
+      Q_(Eigen::MatrixXd::Zero(layout_.size(), layout_.size())),
+      g_(Eigen::VectorXd::Zero(layout_.size())) {}
+
+void WindowQuadratic::set(const Eigen::MatrixXd& Q, Eigen::VectorXd g) {
+  // Rounding must not let the two halves part.
+  Q_ = 0.5 * (Q + Q.transpose());
+  g_ = std::move(g);
+}
+
+void WindowQuadratic::append_coefficients(std::size_t count) {
+  const Eigen::Index before = layout_.size();
+  layout_.coefficients += static_cast<Eigen::Index>(count);
+  const Eigen::Index added = layout_.size() - before;
+  Q_.conservativeResize(layout_.size(), layout_.size());
+  g_.conservativeResize(layout_.size());
+  Q_.rightCols(added).setZero();
+  Q_.bottomRows(added).setZero();
+  g_.tail(added).setZero();
+}
+
+void WindowQuadratic::next_stamp() {
+  const Eigen::Index last = layout_.last_stamp();
+  const Eigen::Index now = layout_.stamp();
+  const double information = Q_(last, last);
+  if (information > 0.0) {
+    const Eigen::VectorXd column = Q_.col(last);
+    const double gradient = g_[last];
+    Q_.noalias() -= column * column.transpose() / information;
+    g_ -= column * (gradient / information);
+  }
+  Q_.row(last) = Q_.row(now);
+  Q_.col(last) = Q_.col(now);
+  Q_(last, last) = Q_(now, now);
+  g_[last] = g_[now];
+  Q_.row(now).setZero();
+  Q_.col(now).setZero();
+  g_[now] = 0.0;
+}
+
+void WindowQuadratic::drop_coefficients(std::size_t count) {
+  if (count == 0) {
+    return;
+  }
+  const Eigen::Index begin = layout_.coefficient(0);
+  const auto dropped = 6 * static_cast<Eigen::Index>(count);
+  const Eigen::Index after = layout_.size() - begin - dropped;
+  Eigen::MatrixXd kept(layout_.size() - dropped, layout_.size() - dropped);
+  Eigen::MatrixXd cross(dropped, begin + after);
+  cross << Q_.block(begin, 0, dropped, begin), Q_.block(begin, begin + dropped, dropped, after);
+  kept << Q_.topLeftCorner(begin, begin), Q_.block(0, begin + dropped, begin, after),
+      Q_.block(begin + dropped, 0, after, begin), Q_.bottomRightCorner(after, after);
+  Eigen::VectorXd g(begin + after);
+  g << g_.head(begin), g_.tail(after);
+  Eigen::MatrixXd old = Q_.block(begin, begin, dropped, dropped);
+  old.diagonal().array() += kNothing;
+  const Eigen::LLT<Eigen::MatrixXd> eliminated(old);
+  const Eigen::MatrixXd W = eliminated.matrixL().solve(cross);
+  const Eigen::VectorXd w = eliminated.matrixL().solve(g_.segment(begin, dropped));
+  kept.noalias() -= W.transpose() * W;
+  g.noalias() -= W.transpose() * w;
+  Q_ = std::move(kept);
+  g_ = std::move(g);
+  layout_.coefficients -= static_cast<Eigen::Index>(count);
+}
+
+void WindowQuadratic::keep_field_only(std::size_t coefficients) {
+  const Eigen::Index begin = layout_.field;
+  const Eigen::Index rest = layout_.size() - begin;
+  Eigen::MatrixXd others = Q_.bottomRightCorner(rest, rest);
+  others.diagonal().array() += kNothing;
+  const Eigen::LLT<Eigen::MatrixXd> eliminated(others);
+  const Eigen::MatrixXd W = eliminated.matrixL().solve(Q_.bottomLeftCorner(rest, begin));
+  const Eigen::VectorXd w = eliminated.matrixL().solve(g_.tail(rest));
+  Eigen::MatrixXd field = Q_.topLeftCorner(begin, begin);
+  field.noalias() -= W.transpose() * W;
+  const Eigen::VectorXd field_g = g_.head(begin) - W.transpose() * w;
+  layout_.coefficients = static_cast<Eigen::Index>(coefficients);
+  Q_ = Eigen::MatrixXd::Zero(layout_.size(), layout_.size());
+  g_ = Eigen::VectorXd::Zero(layout_.size());
+  Q_.topLeftCorner(begin, begin) = field;
+  g_.head(begin) = field_g;
+}
+
+void WindowQuadratic::move_reference(const std::vector<Matrix6d>& changes,
+                                     const Eigen::Matrix<double, 12, 12>& map_change) {
+  const Eigen::Index d = layout_.map_error();
+  const auto apply = [&](Eigen::Index at, const auto& A) {
+    Q_.middleRows(at, A.rows()) = (A.transpose() * Q_.middleRows(at, A.rows())).eval();
+    Q_.middleCols(at, A.rows()) = (Q_.middleCols(at, A.rows()) * A).eval();
+    g_.segment(at, A.rows()) = (A.transpose() * g_.segment(at, A.rows())).eval();
+  };
+  apply(d, map_change);
+  for (std::size_t k = 0; k < changes.size(); ++k) {
+    apply(layout_.coefficient(k), changes[k]);
+  }
+}
+
+void WindowQuadratic::mix_map_error(double share, const Eigen::MatrixXd& J) {
+  // map error = (map error' - share J dc) / (1 - share)
+  const Eigen::Index d = layout_.map_error();
+  const Eigen::Index c = layout_.coefficient(0);
+  const Eigen::Index n = layout_.size() - c;
+  const double scale = 1.0 / (1.0 - share);
+  const Eigen::MatrixXd B = -share * scale * J;  // 12 x n
+  const Eigen::MatrixXd d_rows = Q_.middleRows(d, Layout::kMapError);
+  const Eigen::VectorXd d_g = g_.segment(d, Layout::kMapError);
+  Q_.bottomRows(n) += B.transpose() * d_rows;
+  Q_.rightCols(n) += Q_.middleCols(d, Layout::kMapError) * B;
+  Q_.middleRows(d, Layout::kMapError) *= scale;
+  Q_.middleCols(d, Layout::kMapError) *= scale;
+  g_.tail(n) += B.transpose() * d_g;
+  g_.segment(d, Layout::kMapError) *= scale;
+}
+
+void WindowQuadratic::walk_field(Eigen::Index begin, const Eigen::MatrixXd& W) {
+  // (Q^-1 + E W E^T)^-1 = Q - Q E (W^-1 + E^T Q E)^-1 E^T Q
+  const Eigen::Index n = W.rows();
+  Eigen::MatrixXd A = W.llt().solve(Eigen::MatrixXd::Identity(n, n));
+  A += Q_.block(begin, begin, n, n);
+  const Eigen::LLT<Eigen::MatrixXd> sum(A);
+  const Eigen::MatrixXd Z = sum.matrixL().solve(Q_.middleRows(begin, n));
+  const Eigen::VectorXd z = sum.matrixL().solve(g_.segment(begin, n));
+  Q_.noalias() -= Z.transpose() * Z;
+  g_.noalias() -= Z.transpose() * z;
+}
+
+}  // namespace dynamic_icp::window

@@ -1,0 +1,57 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "dynamic_icp/method/window/doppler_terms.hpp"
+#include "dynamic_icp/method/window/spline_trajectory.hpp"
+
+namespace dynamic_icp::window {
+
+/// All that past scans say of the unknowns z = [theta; map error; stamp errors; coefficients], as the quadratic
+///   1/2 d^T Q d + g^T d,   d = z - z_0,
+/// about the estimate z_0 at which they were linearised. What has no future is eliminated, what changes its meaning is
+/// transformed; nothing is approximated but the linearisation.
+class WindowQuadratic {
+ public:
+  WindowQuadratic(Eigen::Index field_size, std::size_t coefficients);
+
+  [[nodiscard]] const Layout& layout() const { return layout_; }
+  [[nodiscard]] const Eigen::MatrixXd& Q() const { return Q_; }
+  [[nodiscard]] const Eigen::VectorXd& g() const { return g_; }
+
+  /// Replaces the quadratic; the layout stays.
+  void set(const Eigen::MatrixXd& Q, Eigen::VectorXd g);
+
+  /// Coefficients of which nothing is known are appended.
+  void append_coefficients(std::size_t count);
+
+  /// The error of the last stamp is eliminated, that of the stamp at hand becomes the last, a new one is unknown.
+  void next_stamp();
+
+  /// The first coefficients are eliminated.
+  void drop_coefficients(std::size_t count);
+
+  /// Everything but theta is eliminated, and `coefficients` unknown ones follow.
+  void keep_field_only(std::size_t coefficients);
+
+  /// The reference pose moved: coefficients changed by d c_before = A d c_after, see SplineTrajectory::move_reference;
+  /// the map error is a rigid displacement about the reference, `to` in the old frame.
+  void move_reference(const std::vector<Matrix6d>& changes, const Eigen::Matrix<double, 12, 12>& map_change);
+
+  /// The map takes in a scan: map error' = (1 - share) map error + share J dc, with the error of the sweep J dc.
+  void mix_map_error(double share, const Eigen::MatrixXd& J);
+
+  /// Some of theta, from `begin` on, walk at random with the covariance W: Q <- (Q^-1 + W)^-1, the estimate stays.
+  void walk_field(Eigen::Index begin, const Eigen::MatrixXd& W);
+
+ private:
+  Layout layout_;
+  Eigen::MatrixXd Q_;
+  Eigen::VectorXd g_;
+};
+
+}  // namespace dynamic_icp::window

@@ -1,0 +1,231 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/window/window_quadratic.hpp"
+
+#include <random>
+#include <vector>
+
+#include <Eigen/Cholesky>
+#include <Eigen/LU>
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::window {
+namespace {
+
+using Eigen::Index;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+
+constexpr Index kField = 5;
+constexpr std::size_t kCoefficients = 4;
+
+// Marginalisation adds 1e-9 to what it eliminates; eigenvalues of these problems are one and more.
+constexpr double kTolerance = 1e-7;
+
+MatrixXd random_matrix(std::mt19937& random, Index rows, Index columns) {
+  std::normal_distribution<double> normal;
+  return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
+}
+
+MatrixXd random_information(std::mt19937& random, Index n) {
+  const MatrixXd A = random_matrix(random, n, n);
+  return A * A.transpose() + MatrixXd::Identity(n, n);
+}
+
+/// Everything is correlated with everything.
+WindowQuadratic random_quadratic(unsigned seed) {
+  std::mt19937 random(seed);
+  WindowQuadratic quadratic(kField, kCoefficients);
+  const Index n = quadratic.layout().size();
+  quadratic.set(random_information(random, n), random_matrix(random, n, 1));
+  return quadratic;
+}
+
+VectorXd minimiser(const WindowQuadratic& quadratic) { return -quadratic.Q().ldlt().solve(quadratic.g()); }
+
+double value(const WindowQuadratic& quadratic, const VectorXd& d) {
+  return 0.5 * d.dot(quadratic.Q() * d) + quadratic.g().dot(d);
+}
+
+std::vector<Index> range(Index begin, Index end) {
+  std::vector<Index> result;
+  for (Index k = begin; k < end; ++k) {
+    result.push_back(k);
+  }
+  return result;
+}
+
+/// The quadratic over `rows` of its unknowns says what the whole one says of them and `kept`.
+void expect_marginal(const WindowQuadratic& marginal, const std::vector<Index>& rows, const WindowQuadratic& whole,
+                     const std::vector<Index>& kept) {
+  ASSERT_EQ(rows.size(), kept.size());
+  const MatrixXd Q = marginal.Q()(rows, rows);
+  const MatrixXd covariance = whole.Q().inverse()(kept, kept);
+  EXPECT_LT((Q.inverse() - covariance).norm(), kTolerance);
+  EXPECT_LT((-Q.inverse() * marginal.g()(rows) - minimiser(whole)(kept)).norm(), kTolerance);
+}
+
+TEST(Layout, PlacesTheUnknownsOneAfterTheOther) {
+  const Layout layout{kField, 2};
+  EXPECT_EQ(layout.map_error(), 5);
+  EXPECT_EQ(layout.last_stamp(), 17);
+  EXPECT_EQ(layout.stamp(), 18);
+  EXPECT_EQ(layout.coefficient(0), 19);
+  EXPECT_EQ(layout.coefficient(1), 25);
+  EXPECT_EQ(layout.size(), 31);
+}
+
+TEST(WindowQuadratic, KnowsNothingAtFirst) {
+  const WindowQuadratic quadratic(kField, kCoefficients);
+  EXPECT_EQ(quadratic.Q(), MatrixXd::Zero(43, 43));
+  EXPECT_EQ(quadratic.g(), VectorXd::Zero(43));
+}
+
+TEST(WindowQuadratic, NewCoefficientsAreUnknown) {
+  WindowQuadratic quadratic = random_quadratic(1);
+  const WindowQuadratic before = quadratic;
+  quadratic.append_coefficients(3);
+  EXPECT_EQ(quadratic.layout().coefficients, 7);
+  ASSERT_EQ(quadratic.Q().rows(), before.Q().rows() + 18);
+  EXPECT_EQ(quadratic.Q().topLeftCorner(43, 43), before.Q());
+  EXPECT_EQ(quadratic.g().head(43), before.g());
+  EXPECT_EQ(quadratic.Q().rightCols(18).norm(), 0.0);
+  EXPECT_EQ(quadratic.Q().bottomRows(18).norm(), 0.0);
+  EXPECT_EQ(quadratic.g().tail(18).norm(), 0.0);
+}
+
+TEST(WindowQuadratic, DroppingCoefficientsLeavesWhatIsKnownOfTheOthers) {
+  for (const Index count : {1, 3, 4}) {
+    WindowQuadratic quadratic = random_quadratic(2);
+    const WindowQuadratic before = quadratic;
+    quadratic.drop_coefficients(static_cast<std::size_t>(count));
+    EXPECT_EQ(quadratic.layout().coefficients, 4 - count);
+    ASSERT_EQ(quadratic.Q().rows(), quadratic.layout().size());
+    std::vector<Index> kept = range(0, before.layout().coefficient(0));
+    for (const Index k : range(before.layout().coefficient(static_cast<std::size_t>(count)), before.layout().size())) {
+      kept.push_back(k);
+    }
+    expect_marginal(quadratic, range(0, quadratic.layout().size()), before, kept);
+  }
+}
+
+TEST(WindowQuadratic, DroppingNothingChangesNothing) {
+  WindowQuadratic quadratic = random_quadratic(3);
+  const WindowQuadratic before = quadratic;
+  quadratic.drop_coefficients(0);
+  EXPECT_EQ(quadratic.Q(), before.Q());
+  EXPECT_EQ(quadratic.g(), before.g());
+}
+
+TEST(WindowQuadratic, TheStampAtHandBecomesTheLast) {
+  WindowQuadratic quadratic = random_quadratic(4);
+  const WindowQuadratic before = quadratic;
+  quadratic.next_stamp();
+  const Layout& at = quadratic.layout();
+  EXPECT_EQ(quadratic.Q().row(at.stamp()).norm(), 0.0) << "nothing is known of the new one";
+  EXPECT_EQ(quadratic.Q().col(at.stamp()).norm(), 0.0);
+  EXPECT_EQ(quadratic.g()[at.stamp()], 0.0);
+  // The others in their places, with the stamp that was at hand in the place of the last.
+  std::vector<Index> rows = range(0, at.size());
+  std::erase(rows, at.stamp());
+  std::vector<Index> kept = range(0, at.size());
+  std::erase(kept, at.last_stamp());
+  expect_marginal(quadratic, rows, before, kept);
+}
+
+TEST(WindowQuadratic, AStampThatNothingIsKnownOfIsDroppedWithoutHarm) {
+  WindowQuadratic quadratic = random_quadratic(5);
+  quadratic.next_stamp();
+  const WindowQuadratic before = quadratic;  // the stamp at hand has no information
+  quadratic.next_stamp();
+  quadratic.next_stamp();
+  EXPECT_TRUE(quadratic.Q().allFinite());
+  EXPECT_TRUE(quadratic.g().allFinite());
+  const Layout& at = quadratic.layout();
+  std::vector<Index> others = range(0, at.size());
+  std::erase(others, at.stamp());
+  std::erase(others, at.last_stamp());
+  std::vector<Index> known = range(0, at.size());
+  std::erase(known, at.stamp());
+  const MatrixXd covariance = before.Q()(known, known).inverse();
+  std::vector<Index> in_known = range(0, at.size() - 1);
+  std::erase(in_known, at.last_stamp());
+  EXPECT_LT((quadratic.Q()(others, others).inverse() - covariance(in_known, in_known)).norm(), kTolerance);
+}
+
+TEST(WindowQuadratic, KeepsOfTheFieldWhatIsKnown) {
+  WindowQuadratic quadratic = random_quadratic(6);
+  const WindowQuadratic before = quadratic;
+  quadratic.keep_field_only(7);
+  EXPECT_EQ(quadratic.layout().coefficients, 7);
+  ASSERT_EQ(quadratic.Q().rows(), quadratic.layout().size());
+  expect_marginal(quadratic, range(0, kField), before, range(0, kField));
+  const Index others = quadratic.layout().size() - kField;
+  EXPECT_EQ(quadratic.Q().rightCols(others).norm(), 0.0);
+  EXPECT_EQ(quadratic.Q().bottomRows(others).norm(), 0.0);
+  EXPECT_EQ(quadratic.g().tail(others).norm(), 0.0);
+}
+
+TEST(WindowQuadratic, MovingTheReferenceIsAChangeOfVariables) {
+  std::mt19937 random(7);
+  WindowQuadratic quadratic = random_quadratic(7);
+  const WindowQuadratic before = quadratic;
+  const Layout& at = before.layout();
+  std::vector<Matrix6d> changes;
+  MatrixXd whole = MatrixXd::Identity(at.size(), at.size());  // d_before = whole d_after
+  const Eigen::Matrix<double, 12, 12> map_change = random_matrix(random, 12, 12);
+  whole.block(at.map_error(), at.map_error(), 12, 12) = map_change;
+  for (std::size_t k = 0; k < kCoefficients; ++k) {
+    changes.emplace_back(random_matrix(random, 6, 6));
+    whole.block(at.coefficient(k), at.coefficient(k), 6, 6) = changes.back();
+  }
+  quadratic.move_reference(changes, map_change);
+  for (int k = 0; k < 10; ++k) {
+    const VectorXd after = random_matrix(random, at.size(), 1);
+    const double expected = value(before, whole * after);
+    EXPECT_NEAR(value(quadratic, after), expected, 1e-10 * std::abs(expected) + 1e-9);
+  }
+  EXPECT_LT((quadratic.Q() - quadratic.Q().transpose()).norm(), 1e-9 * quadratic.Q().norm());
+}
+
+TEST(WindowQuadratic, MixingTheMapErrorIsAChangeOfVariables) {
+  std::mt19937 random(8);
+  for (const double share : {0.1, 0.5}) {
+    WindowQuadratic quadratic = random_quadratic(8);
+    const WindowQuadratic before = quadratic;
+    const Layout& at = before.layout();
+    const MatrixXd J = random_matrix(random, Layout::kMapError, 6 * at.coefficients);
+    quadratic.mix_map_error(share, J);
+    for (int k = 0; k < 10; ++k) {
+      const VectorXd d = random_matrix(random, at.size(), 1);
+      VectorXd mixed = d;
+      mixed.segment(at.map_error(), 12) =
+          (1.0 - share) * d.segment(at.map_error(), 12) + share * J * d.tail(6 * at.coefficients);
+      const double expected = value(before, d);
+      EXPECT_NEAR(value(quadratic, mixed), expected, 1e-10 * std::abs(expected) + 1e-9);
+    }
+    EXPECT_LT((quadratic.Q() - quadratic.Q().transpose()).norm(), 1e-9 * quadratic.Q().norm());
+  }
+}
+
+TEST(WindowQuadratic, AWalkAddsToTheCovarianceAndKeepsTheEstimate) {
+  std::mt19937 random(9);
+  WindowQuadratic quadratic = random_quadratic(9);
+  const WindowQuadratic before = quadratic;
+  const MatrixXd W = random_information(random, 3);
+  quadratic.walk_field(1, W);
+  MatrixXd covariance = before.Q().inverse();
+  covariance.block(1, 1, 3, 3) += W;
+  EXPECT_LT((quadratic.Q() - covariance.inverse()).norm(), 1e-8 * before.Q().norm());
+  EXPECT_LT((minimiser(quadratic) - minimiser(before)).norm(), kTolerance);
+}
+
+TEST(WindowQuadratic, AWalkOfWhatIsUnknownChangesNothing) {
+  WindowQuadratic quadratic(kField, kCoefficients);
+  quadratic.walk_field(0, MatrixXd::Identity(2, 2));
+  EXPECT_EQ(quadratic.Q().norm(), 0.0);
+  EXPECT_EQ(quadratic.g().norm(), 0.0);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::window

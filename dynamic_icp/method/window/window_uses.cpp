@@ -1,0 +1,145 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cmath>
+
+#include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/window/window_estimator.hpp"
+
+// What the estimate of a scan is used for.
+namespace dynamic_icp::window {
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kPlacingBlock = 512;
+
+// Parts of a knot interval within which the motion changes linearly.
+constexpr double kSlices = 8.0;
+
+}  // namespace
+
+std::vector<Eigen::Vector3d> WindowEstimator::add_to_map(const WindowScan& scan, mapping::PlaneMap& map,
+                                                         const Workers& workers) {
+  const Scan& points = *scan.static_points;
+  std::vector<Eigen::Vector3d> in_map(points.size());
+  std::vector<double> phases(points.size(), 0.0);
+  std::vector<Eigen::Vector3d> at_stamp(points.size());
+  const double stamp_s = scan.stamp_s;
+  const Eigen::Isometry3d T_map_stamp = trajectory_.pose(stamp_s);
+  const Eigen::Isometry3d T_stamp_reference = T_map_stamp.inverse() * trajectory_.reference();
+  const double duration_s = scan.end_s - scan.begin_s;
+  workers.for_each(points.size(), kPlacingBlock, [&](std::size_t i) {
+    const double tau = points.has_times() ? points.times()[i] : 0.0;
+    const TrajectoryPoint at = trajectory_.at(stamp_s + tau);
+    at_stamp[i] = T_stamp_reference * Eigen::Vector3d(at.R * points.points()[i] + at.p);
+    in_map[i] = T_map_stamp * at_stamp[i];
+    phases[i] = duration_s > 0.0 ? std::clamp((tau - scan.begin_s) / duration_s, 0.0, 1.0) : 0.0;
+  });
+  map.add(in_map, T_map_stamp.translation(), workers, phases);
+  return at_stamp;
+}
+
+void WindowEstimator::motion_between(double source_s, WindowMotion& motion) const {
+  const TrajectoryPoint a = trajectory_.at(source_s);
+  const TrajectoryPoint b = trajectory_.at(stamp_s());
+  const Eigen::Matrix3d R = b.R.transpose() * a.R;
+  motion.T_target_source.linear() = R;
+  motion.T_target_source.translation() = b.R.transpose() * (a.p - b.p);
+  // omega = R alpha - beta and rho = R_b^T (dp_a - dp_b) - beta x t - omega x t, with alpha, beta = J dphi.
+  const Eigen::Vector3d t = motion.T_target_source.translation();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, covariance_.rows());
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto of_a = Layout::kBefore + static_cast<Eigen::Index>(6 * (a.first + k));
+    const auto of_b = Layout::kBefore + static_cast<Eigen::Index>(6 * (b.first + k));
+    const Eigen::Matrix3d alpha = a.weight[k] * R * a.J;
+    const Eigen::Matrix3d beta = b.weight[k] * b.J;
+    rows.block<3, 3>(0, of_a) += alpha;
+    rows.block<3, 3>(0, of_b) -= beta;
+    rows.block<3, 3>(3, of_a) += skew(t) * alpha;
+    rows.block<3, 3>(3, of_a + 3) += a.weight[k] * b.R.transpose();
+    rows.block<3, 3>(3, of_b + 3) -= b.weight[k] * b.R.transpose();
+  }
+  rows.block<3, 1>(0, Layout::kMapError) = R * a.omega;
+  rows.block<3, 1>(3, Layout::kMapError) = skew(t) * (R * a.omega) + R * a.velocity;
+  rows.block<3, 1>(0, Layout::kMapError + 1) = -b.omega;
+  rows.block<3, 1>(3, Layout::kMapError + 1) = -b.velocity;
+  motion.covariance = rows * covariance_ * rows.transpose();
+  motion.covariance = (0.5 * (motion.covariance + motion.covariance.transpose())).eval();
+}
+
+/// How the sensor moves at its stamp: v = R^T dp/dt and omega = J dphi/dt, with dv = R^T d(dp/dt) + [v]x J dphi and
+/// domega = J d(dphi/dt) + 1/2 [omega]x dphi.
+void WindowEstimator::find_twist() {
+  const TrajectoryPoint at = trajectory_.at(stamp_s());
+  twist_.angular = at.omega;
+  twist_.linear = at.velocity;
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, covariance_.rows());
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto column = Layout::kBefore + static_cast<Eigen::Index>(6 * (at.first + k));
+    rows.block<3, 3>(0, column) = at.slope[k] * at.J + 0.5 * at.weight[k] * skew(at.omega);
+    rows.block<3, 3>(3, column) = at.weight[k] * skew(at.velocity) * at.J;
+    rows.block<3, 3>(3, column + 3) = at.slope[k] * at.R.transpose();
+  }
+  twist_.covariance = rows * covariance_ * rows.transpose();
+  twist_.covariance = (0.5 * (twist_.covariance + twist_.covariance.transpose())).eval();
+}
+
+std::optional<double> WindowEstimator::point_noise() const {
+  const std::vector<double>& variance = cells_.noise().variance;
+  return variance.empty() ? std::nullopt : std::optional(std::sqrt(median(variance)));
+}
+
+void WindowEstimator::field_errors(const Scan& scan, const Workers& workers, std::vector<double>& errors) const {
+  errors.assign(scan.size(), 0.0);
+  if (!field_ || !config_.learn_field) {
+    return;
+  }
+  const Channels& channels = scan.channels();
+  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+    DopplerCell point;
+    point.u = scan.directions()[i];
+    point.range_m = scan.points()[i].norm();
+    point.intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
+    point.line = channels.line.empty() ? DopplerCells::line_of(point.u) : channels.line[i];
+    point.face = channels.face.empty() ? std::uint8_t{0} : channels.face[i];
+    point.sensor = channels.sensor.empty() ? std::uint8_t{0} : channels.sensor[i];
+    errors[i] = field_->at(point, theta_);
+  });
+}
+
+void WindowEstimator::static_doppler(const Scan& scan, const Workers& workers, std::vector<double>& predicted) const {
+  struct Motion {
+    Eigen::Vector3d velocity;
+    Eigen::Vector3d omega;
+  };
+  const double step_s = config_.knot_spacing_s / kSlices;
+  double first_s = 0.0;
+  double last_s = 0.0;
+  if (scan.has_times()) {
+    const auto [low, high] = std::minmax_element(scan.times().begin(), scan.times().end());
+    first_s = *low;
+    last_s = *high;
+  }
+  std::vector<Motion> motions;
+  for (double t = first_s; t <= last_s + step_s; t += step_s) {
+    const TrajectoryPoint at = trajectory_.at(stamp_s() + t);
+    motions.push_back({at.velocity, at.omega});
+  }
+  predicted.resize(scan.size());
+  const bool is_of_rig = scan.is_of_rig();
+  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+    const double t = scan.has_times() ? scan.times()[i] - first_s : 0.0;
+    const double x = t / step_s;
+    const auto k = std::min(motions.size() - 1, static_cast<std::size_t>(x));
+    const std::size_t next = std::min(motions.size() - 1, k + 1);
+    const double share = x - static_cast<double>(k);
+    const Eigen::Vector3d& u = scan.directions()[i];
+    Eigen::Vector3d v = (1.0 - share) * motions[k].velocity + share * motions[next].velocity;
+    if (is_of_rig) {
+      v += motions[k].omega.cross(scan.mountings()[scan.channels().sensor[i]].translation());
+    }
+    predicted[i] = -u.dot(v);
+  });
+}
+
+}  // namespace dynamic_icp::window
