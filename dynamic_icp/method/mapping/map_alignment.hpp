@@ -10,7 +10,7 @@
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/base/se3.hpp"
-#include "dynamic_icp/method/mapping/map_align_config.hpp"
+#include "dynamic_icp/method/mapping/mapping_config.hpp"
 #include "dynamic_icp/method/mapping/plane_map.hpp"
 #include "dynamic_icp/method/mapping/plane_sums.hpp"
 #include "dynamic_icp/method/motion/rotation_filter.hpp"

@@ -124,6 +124,34 @@ ConfigFields fields(MapOdometryConfig& config) {
   return all;
 }
 
+ConfigFields fields(WindowOdometryConfig& config) {
+  EgoMotionConfig& ego_motion = config.ego_motion;
+  ConfigFields all;
+  append_preprocess(all, config.preprocess);
+  append_fields(all, "ego_motion.filter", fields(ego_motion.filter));
+  append_fields(
+      all, "ego_motion",
+      {{"static_sigmas", &ego_motion.static_sigmas, 0.0, 100.0, "",
+        "with a local map a point is moving only beyond this many standard deviations of the static Doppler"}});
+  append_fields(all, "ego_motion.consensus", fields(ego_motion.consensus));
+  append_fields(all, "sweep", fields(config.sweep));
+  append_fields(all, "mapping", fields(config.mapping));
+  append_fields(all, "registration.map", fields(config.map_align));
+  append_fields(all, "rotation", fields(config.rotation));
+  append_fields(all, "window", fields(config.window));
+  append_fields(all, "dynamics", {{"predict", &config.track_objects, 0, 0, "", kPredict}});
+  append_fields(all, "tracking", fields(config.tracking));
+  append_fields(all, "odometry",
+                {{"search_start", &config.search_start, 0, 0, "",
+                  "with a local map: try several rotations for the first two scans"},
+                 {"lost_match", &config.lost_match, 0.0, 1.0, "",
+                  "with a local map: lost when less than this share of the usual number of points fits the map"},
+                 {"unobservable_sigma_m", &config.unobservable_sigma_m, 1e-6, 1e3, "m",
+                  "with a local map: directions with a larger standard deviation are reported as degenerate"}});
+  append_stream(all, config.stream);
+  return all;
+}
+
 ConfigFields fields(ScanToScanIcpConfig& config) {
   ConfigFields all;
   append_preprocess(all, config.preprocess);
@@ -191,16 +219,29 @@ void check(const PaperConfig& config) {
   check_together(config.preprocess);
 }
 
-void check(const MapOdometryConfig& config) {
-  check_ranges(config);
-  check_together(config.preprocess);
-  const ego_motion::ConsensusRegressionConfig& consensus = config.ego_motion.consensus;
+namespace {
+
+void check_noise(const ego_motion::ConsensusRegressionConfig& consensus) {
   if (consensus.min_noise_mps > consensus.max_noise_mps) {
     throw UsageError(
         fmt::format("configuration key 'ego_motion.consensus.min_noise_mps' is {}, expected at most "
                     "'ego_motion.consensus.max_noise_mps' ({} m/s)",
                     consensus.min_noise_mps, consensus.max_noise_mps));
   }
+}
+
+}  // namespace
+
+void check(const MapOdometryConfig& config) {
+  check_ranges(config);
+  check_together(config.preprocess);
+  check_noise(config.ego_motion.consensus);
+}
+
+void check(const WindowOdometryConfig& config) {
+  check_ranges(config);
+  check_together(config.preprocess);
+  check_noise(config.ego_motion.consensus);
 }
 
 void check(const ScanToScanIcpConfig& config) {
@@ -226,6 +267,7 @@ const std::vector<Pipeline>& pipelines() {
   using registration::GeometryTerm;
   static const std::vector<Pipeline> all = {{"dynamic-icp", "default", MapOdometryConfig{}},
                                             {"dynamic-icp", "paper", PaperConfig{}},
+                                            {"dynamic-icp", "window", WindowOdometryConfig{}},
                                             {"doppler-icp", "", DopplerIcpConfig{}},
                                             {"point-to-point", "", icp(GeometryTerm::kPointToPoint)},
                                             {"point-to-plane", "", icp(GeometryTerm::kPointToPlane)},
@@ -285,80 +327,6 @@ Config configuration(std::string_view method, std::string_view preset) {
     }
   }
   throw_unknown("method", method, method_names());
-}
-
-namespace {
-
-/// A part that can be switched off.
-template <class PipelineConfig>
-struct Part {
-  std::string_view name;
-  void (*switch_off)(PipelineConfig& config);
-};
-
-constexpr Part<PaperConfig> kPaperParts[] = {
-    {"none", [](PaperConfig&) {}},
-    {"no-vf", [](PaperConfig& config) { config.ego_motion.filter.enabled = false; }},
-    {"no-dpp", [](PaperConfig& config) { config.dynamics.predict = false; }},
-    {"no-dr", [](PaperConfig& config) { config.registration.doppler_weight = 0.0; }}};
-
-constexpr Part<MapOdometryConfig> kMapOdometryParts[] = {
-    {"none", [](MapOdometryConfig&) {}},
-    {"no-vf", [](MapOdometryConfig& config) { config.ego_motion.filter.enabled = false; }},
-    {"no-dpp", [](MapOdometryConfig& config) { config.track_objects = false; }},
-    {"no-dr", [](MapOdometryConfig& config) { config.use_displacement = false; }},
-    {"no-consensus", [](MapOdometryConfig& config) { config.ego_motion.use_consensus = false; }},
-    {"no-bias", [](MapOdometryConfig& config) { config.ego_motion.consensus.estimate_bias = false; }},
-    {"no-deskew", [](MapOdometryConfig& config) { config.sweep.deskew = false; }},
-    {"no-map", [](MapOdometryConfig& config) { config.mapping.memory_scans = 0.0; }},
-    {"no-search", [](MapOdometryConfig& config) { config.search_start = false; }}};
-
-// The baselines are compared as a whole.
-template <class PipelineConfig>
-constexpr Part<PipelineConfig> kNoParts[] = {{"none", [](PipelineConfig&) {}}};
-
-std::span<const Part<PaperConfig>> parts_of(const PaperConfig& /*config*/) { return kPaperParts; }
-std::span<const Part<MapOdometryConfig>> parts_of(const MapOdometryConfig& /*config*/) { return kMapOdometryParts; }
-template <class PipelineConfig>
-std::span<const Part<PipelineConfig>> parts_of(const PipelineConfig& /*config*/) {
-  return kNoParts<PipelineConfig>;
-}
-
-template <class PipelineConfig>
-void switch_off(PipelineConfig& config, std::string_view name) {
-  const auto parts = parts_of(config);
-  const auto part = std::ranges::find(parts, name, &Part<PipelineConfig>::name);
-  if (part != parts.end()) {
-    part->switch_off(config);
-    return;
-  }
-  if (std::ranges::find(kMapOdometryParts, name, &Part<MapOdometryConfig>::name) == std::end(kMapOdometryParts)) {
-    throw_unknown("ablation", name, ablation_names());
-  }
-  throw UsageError(fmt::format("ablation '{}' is about a part that this pipeline does not have; it has: {}", name,
-                               fmt::join(ablation_names(config), ", ")));
-}
-
-}  // namespace
-
-void apply_ablation(Config& config, std::string_view name) {
-  std::visit([&](auto& pipeline) { switch_off(pipeline, name); }, config);
-}
-
-void apply_ablation(PaperConfig& config, std::string_view name) { switch_off(config, name); }
-
-void apply_ablation(MapOdometryConfig& config, std::string_view name) { switch_off(config, name); }
-
-std::vector<std::string_view> ablation_names(const Config& config) {
-  return std::visit(
-      [](const auto& pipeline) {
-        std::vector<std::string_view> names;
-        for (const auto& part : parts_of(pipeline)) {
-          names.push_back(part.name);
-        }
-        return names;
-      },
-      config);
 }
 
 }  // namespace dynamic_icp::odometry

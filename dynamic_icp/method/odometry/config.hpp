@@ -15,8 +15,7 @@
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/method/ego_motion/ego_filter.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
-#include "dynamic_icp/method/mapping/map_align_config.hpp"
-#include "dynamic_icp/method/mapping/plane_map_config.hpp"
+#include "dynamic_icp/method/mapping/mapping_config.hpp"
 #include "dynamic_icp/method/motion/rotation_filter_config.hpp"
 #include "dynamic_icp/method/motion/sweep_times.hpp"
 #include "dynamic_icp/method/preprocess/normals.hpp"
@@ -24,6 +23,7 @@
 #include "dynamic_icp/method/preprocess/voxel_grid.hpp"
 #include "dynamic_icp/method/registration/align_config.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
+#include "dynamic_icp/method/window/window_config.hpp"
 
 // One struct for each pipeline, with all that it reads and nothing else. An empty one has the values published for its
 // method, or the best ones. `fields` lists its keys, e.g. "preprocess.voxel.voxel_size_m"; `check` throws UsageError
@@ -100,6 +100,26 @@ struct MapOdometryConfig {
 ConfigFields fields(MapOdometryConfig& config);
 void check(const MapOdometryConfig& config);
 
+/// Dynamic-ICP with one estimator of motion and Doppler errors: preset `window`.
+struct WindowOdometryConfig {
+  PreprocessConfig preprocess;
+  EgoMotionConfig ego_motion;
+  motion::SweepConfig sweep;
+  mapping::PlaneMapConfig mapping;
+  mapping::MapAlignConfig map_align;  ///< of the first two scans
+  motion::RotationFilterConfig rotation;
+  window::WindowConfig window;
+  bool track_objects = true;
+  tracking::TrackerConfig tracking;
+  bool search_start = true;
+  double lost_match = 0.5;
+  double unobservable_sigma_m = 0.1;
+  StreamConfig stream;
+};
+
+ConfigFields fields(WindowOdometryConfig& config);
+void check(const WindowOdometryConfig& config);
+
 /// Point-to-point, point-to-plane and plane-to-plane (gicp) from scan to scan. Preprocessing, gate and stopping rule
 /// are those of the paper.
 struct ScanToScanIcpConfig {
@@ -147,7 +167,8 @@ ConfigFields fields(KissIcpConfig& config);
 void check(const KissIcpConfig& config);
 
 /// The configuration of any pipeline; `Config{}` is preset `default`.
-using Config = std::variant<MapOdometryConfig, PaperConfig, ScanToScanIcpConfig, DopplerIcpConfig, KissIcpConfig>;
+using Config = std::variant<MapOdometryConfig, PaperConfig, WindowOdometryConfig, ScanToScanIcpConfig, DopplerIcpConfig,
+                            KissIcpConfig>;
 
 ConfigFields fields(Config& config);
 void check(const Config& config);
@@ -183,6 +204,7 @@ Config configuration(std::string_view method, std::string_view preset = "default
 void apply_ablation(Config& config, std::string_view name);
 void apply_ablation(PaperConfig& config, std::string_view name);
 void apply_ablation(MapOdometryConfig& config, std::string_view name);
+void apply_ablation(WindowOdometryConfig& config, std::string_view name);
 
 /// The parts that a pipeline has, "none" first.
 std::vector<std::string_view> ablation_names(const Config& config = {});

@@ -9,6 +9,7 @@
 #include "dynamic_icp/method/odometry/kiss_icp.hpp"
 #include "dynamic_icp/method/odometry/map_odometry.hpp"
 #include "dynamic_icp/method/odometry/scan_to_scan_icp.hpp"
+#include "dynamic_icp/method/odometry/window_odometry.hpp"
 
 namespace dynamic_icp::odometry {
 
@@ -36,6 +37,9 @@ struct Maker {
 
   std::unique_ptr<Odometry> operator()(const MapOdometryConfig& config) const {
     return std::make_unique<MapOdometry>(config, threads, context.doppler_kind);
+  }
+  std::unique_ptr<Odometry> operator()(const WindowOdometryConfig& config) const {
+    return std::make_unique<WindowOdometry>(config, threads, context.doppler_kind);
   }
   std::unique_ptr<Odometry> operator()(const PaperConfig& config) const {
     return std::make_unique<DynamicIcp>(config, threads, context.doppler_kind);

@@ -39,8 +39,11 @@ std::optional<MapWriter> make_map(const RunSettings& settings) {
 
 /// What the configuration says of sweeps; nothing where the method does not look at it.
 motion::SweepConfig* sweep_config(odometry::Config& config) {
-  auto* with_map = std::get_if<odometry::MapOdometryConfig>(&config);
-  return with_map != nullptr ? &with_map->sweep : nullptr;
+  if (auto* with_map = std::get_if<odometry::MapOdometryConfig>(&config)) {
+    return &with_map->sweep;
+  }
+  auto* with_window = std::get_if<odometry::WindowOdometryConfig>(&config);
+  return with_window != nullptr ? &with_window->sweep : nullptr;
 }
 
 Needs needs_of(const RunSettings& settings) {

@@ -1,0 +1,327 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/odometry/window_odometry.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "dynamic_icp/method/base/scan_limits.hpp"
+#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/method/ego_motion/creeping_cells.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/mapping/rotation_search.hpp"
+#include "dynamic_icp/method/motion/deskew.hpp"
+#include "dynamic_icp/method/motion/motion_uncertainty.hpp"
+#include "dynamic_icp/method/motion/twist.hpp"
+#include "dynamic_icp/method/odometry/compensated_motion.hpp"
+#include "dynamic_icp/method/odometry/frame_labels.hpp"
+#include "dynamic_icp/method/odometry/frame_steps.hpp"
+#include "dynamic_icp/method/odometry/stage_clock.hpp"
+#include "dynamic_icp/method/registration/gauss_newton.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+// Fewer agree with a map only by chance: of the points on its patches, and of all.
+constexpr double kMinAgreement = 0.2;
+constexpr double kMinMatch = 0.01;
+constexpr double kUsualMatchGain = 0.2;
+
+// How far the velocity of the sensor may be from the last one: m/s.
+constexpr double kVelocitySigma_mps = 0.5;
+constexpr double kAccelerationSigma_mps2 = 3.0;
+constexpr double kNoBias_mps = 1e-3;
+
+// How far the second scan may be from where the first velocity leads.
+constexpr double kSecondPosition_m = 0.05;
+
+double match(const window::WindowMotion& motion) {
+  return motion.points > 0 ? motion.planes.matched / static_cast<double>(motion.points) : 0.0;
+}
+
+std::vector<std::uint32_t> static_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
+  std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
+  return rows;
+}
+
+}  // namespace
+
+WindowOdometry::WindowOdometry(const WindowOdometryConfig& config, int threads, DopplerKind expected)
+    : config_(checked(config)),
+      workers_(threads),
+      expected_(expected),
+      map_(config.mapping),
+      estimator_(config.window, config.mapping.memory_scans),
+      tracker_(config.tracking),
+      stream_(config.stream) {}
+
+std::vector<std::string> WindowOdometry::assumptions() const {
+  return expected_ == DopplerKind::kCompensated ? std::vector{compensated_doppler_note()} : std::vector<std::string>{};
+}
+
+Frame WindowOdometry::process(const ScanView& raw) {
+  stream_.check_order(raw.stamp);
+  Frame frame;
+  StageClock clock(frame.times);
+  thin_and_sort(raw, frame);
+  clock.finish(Stage::kPreprocess);
+
+  const FrameStatus found = stream_.add(raw.stamp, memory_.thinned.size());
+  frame.status = found;
+  if (is_skipped(found)) {
+    if (estimator_.scans() > 0) {
+      predict_only(stream_.elapsed_s(), found, frame);
+    }
+    return frame;
+  }
+  const double stamp_s = stream_.elapsed_s();
+  separate_static_points();
+  const window::WindowScan now = scan_at(stamp_s);
+  clock.finish(Stage::kEgoMotion);
+
+  if (found == FrameStatus::kFirst) {
+    begin(now, Eigen::Isometry3d::Identity(), {});
+  } else if (found == FrameStatus::kTimeGap) {
+    predict_only(stamp_s, found, frame);
+    begin(now, frame.T_world_sensor, {});
+  } else {
+    update(now, frame);
+  }
+  T_world_sensor_ = frame.T_world_sensor;
+  stamp_s_ = stamp_s;
+  judge_points(now);
+  frame.ego = ego_;
+  clock.finish(Stage::kRegistration);
+
+  window::WindowScan placed = now;
+  placed.stamp_s = estimator_.stamp_s();
+  frame.static_points = estimator_.add_to_map(placed, map_, workers_);
+  track_objects(now, frame);
+  clock.finish(Stage::kDynamics);
+  return frame;
+}
+
+/// The scan in range without the error of its Doppler that is known, the rows that the voxel grid keeps, and its
+/// Doppler by cells.
+void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
+  frame.sweep = motion::sweep_as_configured(raw, config_.sweep);
+  const ScanView timed = motion::retimed(raw, config_.sweep, memory_.times);
+  Scan& whole = memory_.whole;
+  assign(timed, config_.preprocess, workers_, whole, frame);
+  memory_.measured = whole.doppler();
+  estimator_.field_errors(whole, workers_, memory_.errors);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    whole.shift_doppler(i, -memory_.errors[i]);
+  }
+  workers_.both(
+      [&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, memory_.thinned); },
+      [&] {
+        ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
+                                    memory_.rows);
+      });
+  frame.points_used = memory_.thinned.size();
+}
+
+ego_motion::EgoPrior WindowOdometry::ego_prior() const {
+  ego_motion::EgoPrior prior;
+  if (estimator_.scans() == 0) {
+    prior = ego_motion::first_prior(config_.ego_motion.drift);
+  } else {
+    const window::SplineTrajectory& trajectory = estimator_.trajectory();
+    const double end_s = trajectory.interval_begin(trajectory.coefficients().size() - 3);
+    prior.has_velocity = true;
+    prior.mean.head<3>() = trajectory.at(end_s).velocity;
+    prior.covariance =
+        ego_motion::Vector7d(
+            ego_motion::Vector7d{{kVelocitySigma_mps, kVelocitySigma_mps, kVelocitySigma_mps, kAccelerationSigma_mps2,
+                                  kAccelerationSigma_mps2, kAccelerationSigma_mps2, kNoBias_mps}}
+                .cwiseAbs2())
+            .asDiagonal();
+  }
+  prior.covariance(6, 6) = kNoBias_mps * kNoBias_mps;
+  return prior;
+}
+
+/// What is static, by the velocity that most of the scene agrees on.
+void WindowOdometry::separate_static_points() {
+  const Scan& whole = memory_.whole;
+  const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
+  ego_ = is_relative ? ego_motion::estimate_velocity(memory_.rows, ego_prior(), config_.ego_motion.consensus, workers_)
+                     : unknown_velocity();
+  const ego_motion::EgoVelocity in_doppler = is_relative ? ego_ : static_frame(whole);
+  ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
+  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(in_doppler), workers_, memory_.is_moving);
+  if (is_relative && config_.ego_motion.filter.enabled) {
+    const std::vector<std::uint8_t> creeps = ego_motion::creeping_cells(
+        memory_.rows, ego_, estimator_.point_noise().value_or(ego_.inlier_rms_mps), config_.ego_motion.static_sigmas);
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      memory_.is_moving[i] |= creeps[memory_.sort.cell[i]];
+    }
+  }
+  static_points_ = whole.select(static_rows(memory_.thinned, memory_.is_moving));
+}
+
+window::WindowScan WindowOdometry::scan_at(double stamp_s) const {
+  window::WindowScan scan;
+  const motion::TimeSpan span = motion::time_span(memory_.whole);
+  scan.stamp_s = stamp_s;
+  scan.begin_s = span.first;
+  scan.end_s = span.last;
+  scan.whole = &memory_.whole;
+  scan.measured = memory_.whole.doppler_kind() == DopplerKind::kRelative ? &memory_.measured : nullptr;
+  scan.is_moving = &memory_.is_moving;
+  scan.static_points = &static_points_;
+  return scan;
+}
+
+void WindowOdometry::begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor,
+                           const std::optional<Eigen::Vector3d>& omega) {
+  map_.clear();
+  usual_match_ = 0.0;
+  estimator_.begin(now, T_map_sensor, ego_.velocity_sensor, omega, workers_);
+  first_points_ = static_points_;
+}
+
+/// Where the second scan is: its rotation is not known yet.
+std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::WindowScan& now) const {
+  const double dt_s = now.stamp_s - estimator_.stamp_s();
+  const Eigen::Isometry3d T_map_last = estimator_.trajectory().pose(estimator_.stamp_s());
+  mapping::MotionPrior prior;
+  motion::RotationState rotation = motion::first_rotation_state(config_.rotation);
+  rotation.R_map_sensor = T_map_last.linear();
+  rotation = motion::predict(rotation, dt_s, config_.rotation);
+  prior.R_map_sensor = rotation.R_map_sensor;
+  prior.covariance = rotation.covariance;
+  prior.sweep.velocity = ego_.velocity_sensor - ego_.reference_time_s * ego_.acceleration_sensor;
+  prior.sweep.acceleration = ego_.acceleration_sensor;
+  const Eigen::Vector3d half = 0.5 * dt_s * prior.sweep.velocity;
+  prior.displacement_fixed = T_map_last * half;
+  prior.displacement_rotated = half;
+  prior.translation_covariance = kSecondPosition_m * kSecondPosition_m * Eigen::Matrix3d::Identity();
+  const mapping::MapAlignment found =
+      mapping::search_and_align(*now.static_points, map_, prior, config_.map_align, workers_);
+  if (found.diverged || found.matched < kMinAgreement * static_cast<double>(found.on_planes)) {
+    return std::nullopt;
+  }
+  return found.T_map_sensor;
+}
+
+void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
+  std::optional<Eigen::Isometry3d> start;
+  if (estimator_.scans() == 1 && config_.search_start) {
+    start = search_second(now);
+  }
+  const window::SplineTrajectory& trajectory = estimator_.trajectory();
+  const window::TrajectoryPoint last = trajectory.at(trajectory.interval_begin(trajectory.coefficients().size() - 3));
+  const double dt_s = now.stamp_s - estimator_.stamp_s();
+  const bool is_second = estimator_.scans() == 1;
+  const window::WindowMotion motion = estimator_.update(now, first_points_, map_, start, workers_);
+  const bool is_lost = motion.diverged || match(motion) < std::max(kMinMatch, config_.lost_match * usual_match_) ||
+                       motion.planes.matched < kMinAgreement * static_cast<double>(motion.planes.on_planes);
+  if (is_lost || !is_plausible_motion(motion.T_target_source, dt_s)) {
+    const Eigen::Isometry3d predicted = motion::motion_of(last.omega, ego_.velocity_sensor, -dt_s);
+    set_motion(frame, FrameStatus::kLost, T_world_sensor_, predicted);
+    frame.alignment.covariance = Matrix6d(Vector6d::Constant(dt_s * dt_s).asDiagonal());
+    begin(now, frame.T_world_sensor, last.omega);
+    return;
+  }
+  usual_match_ = is_second ? match(motion) : usual_match_ + kUsualMatchGain * (match(motion) - usual_match_);
+  first_points_ = {};
+  describe(motion, frame);
+}
+
+/// What the frame says of a motion.
+void WindowOdometry::describe(const window::WindowMotion& motion, Frame& frame) const {
+  registration::Alignment& alignment = frame.alignment;
+  const double length_m = registration::typical_distance(static_points_);
+  alignment.iterations = motion.iterations;
+  alignment.fitness = match(motion);
+  alignment.inlier_rmse = motion.planes.rms_m;
+  alignment.correspondences = motion.planes.on_planes;
+  alignment.geometry = {motion.planes.on_planes, static_cast<std::size_t>(motion.planes.matched), motion.planes.rms_m};
+  alignment.length_m = length_m;
+  alignment.covariance = motion.covariance;
+  alignment.degenerate = motion::unobservable_directions(motion.covariance, length_m, config_.unobservable_sigma_m);
+  alignment.information_ratio = motion::information_ratio(motion.covariance, length_m);
+  alignment.T_target_source = motion.T_target_source;
+  alignment.status =
+      motion.converged ? registration::AlignStatus::kConverged : registration::AlignStatus::kIterationLimit;
+  FrameStatus status = FrameStatus::kConverged;
+  if (!alignment.degenerate.empty()) {
+    alignment.status = registration::AlignStatus::kDegenerate;
+    status = FrameStatus::kDegenerate;
+  }
+  set_motion(frame, status, T_world_sensor_, motion.T_target_source);
+}
+
+/// A scan that cannot be used, or one after a long gap: the last motion continues.
+void WindowOdometry::predict_only(double stamp_s, FrameStatus status, Frame& frame) const {
+  const double dt_s = std::min(stamp_s - stamp_s_, kMaxPrediction_s);
+  const window::TrajectoryPoint last = estimator_.trajectory().at(estimator_.stamp_s());
+  set_motion(frame, status, T_world_sensor_, motion::motion_of(last.omega, last.velocity, -dt_s));
+  const double turned_rad = config_.rotation.start_omega_rad_s * dt_s;
+  const double moved_m = 0.5 * kUnmodelledAcceleration_mps2 * dt_s * dt_s;
+  Matrix6d covariance = Matrix6d::Zero();
+  covariance.diagonal().head<3>().setConstant(turned_rad * turned_rad);
+  covariance.diagonal().tail<3>().setConstant(moved_m * moved_m);
+  frame.alignment.covariance = covariance;
+}
+
+/// The velocity as it is known now, and what moves against it.
+void WindowOdometry::judge_points(const window::WindowScan& now) {
+  const motion::SweepMotion sweep = sweep_of(now);
+  ego_.velocity_sensor = sweep.velocity_at(ego_.reference_time_s);
+  ego_.acceleration_sensor = sweep.acceleration;
+  ego_.covariance = estimator_.twist().covariance.bottomRightCorner<3, 3>();
+  if (now.measured == nullptr) {
+    ego_.status = ego_motion::EgoVelocityStatus::kFromMotion;
+    ego_.unobservable.setZero();
+    return;
+  }
+  const Scan& whole = memory_.whole;
+  estimator_.static_doppler(whole, workers_, memory_.predicted);
+  for (std::size_t i = 0; i < whole.size(); ++i) {
+    memory_.radial[i] = whole.doppler()[i] - memory_.predicted[i];
+  }
+  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(ego_), workers_, memory_.is_moving);
+}
+
+/// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
+ego_motion::VelocityFilterConfig WindowOdometry::filter_for(const ego_motion::EgoVelocity& ego) const {
+  ego_motion::VelocityFilterConfig filter = config_.ego_motion.filter;
+  const double noise_mps = estimator_.point_noise().value_or(ego.inlier_rms_mps);
+  filter.tau_0_mps = std::max(filter.tau_0_mps, config_.ego_motion.static_sigmas * noise_mps);
+  return filter;
+}
+
+/// The trajectory during the scan as an even acceleration.
+motion::SweepMotion WindowOdometry::sweep_of(const window::WindowScan& now) const {
+  const window::SplineTrajectory& trajectory = estimator_.trajectory();
+  motion::SweepMotion sweep;
+  const double stamp_s = estimator_.stamp_s();
+  const window::TrajectoryPoint at = trajectory.at(stamp_s);
+  sweep.omega = at.omega;
+  sweep.velocity = at.velocity;
+  const double duration_s = now.end_s - now.begin_s;
+  if (duration_s > 0.0) {
+    const window::TrajectoryPoint begin = trajectory.at(stamp_s + now.begin_s);
+    const window::TrajectoryPoint end = trajectory.at(stamp_s + now.end_s);
+    sweep.alpha = (end.omega - begin.omega) / duration_s;
+    sweep.acceleration = (end.velocity - begin.velocity) / duration_s;
+  }
+  return sweep;
+}
+
+void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) {
+  std::vector<tracking::TrackedObject> objects;
+  const motion::SweepMotion sweep = sweep_of(now);
+  frame.twist = estimator_.twist();
+  if (config_.track_objects) {
+    memory_.whole = motion::deskew(std::move(memory_.whole), sweep, workers_);
+    objects = tracker_.update(memory_.whole, memory_.radial, memory_.is_moving, frame.T_world_sensor, workers_);
+  }
+  describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, std::move(objects), workers_);
+}
+
+}  // namespace dynamic_icp::odometry

@@ -1,0 +1,86 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "dynamic_icp/method/base/parallel.hpp"
+#include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
+#include "dynamic_icp/method/mapping/map_alignment.hpp"
+#include "dynamic_icp/method/mapping/plane_map.hpp"
+#include "dynamic_icp/method/odometry/config.hpp"
+#include "dynamic_icp/method/odometry/frame.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/method/odometry/scan_stream.hpp"
+#include "dynamic_icp/method/preprocess/voxel_grid.hpp"
+#include "dynamic_icp/method/tracking/object_tracker.hpp"
+#include "dynamic_icp/method/window/window_estimator.hpp"
+
+namespace dynamic_icp::odometry {
+
+/// Preset `window` of Dynamic-ICP: one estimator of trajectory, error field of the Doppler and map error, from Doppler
+/// and planes together (window_estimator.hpp). A consensus regression finds what is static; moving objects are tracked
+/// beside it.
+///
+/// The same scans give the same bits for any number of threads.
+class WindowOdometry final : public Odometry {
+ public:
+  /// `threads` = 0 takes as many as the machine has; `expected` is what the Doppler will be, for `assumptions`. Throws
+  /// UsageError when the configuration is out of range.
+  explicit WindowOdometry(const WindowOdometryConfig& config, int threads = 0,
+                          DopplerKind expected = DopplerKind::kRelative);
+
+  Frame process(const ScanView& raw) override;
+
+  [[nodiscard]] std::vector<std::string> assumptions() const override;
+
+ private:
+  /// Of the scan at hand. The memory is used again for the next one.
+  struct ScanMemory {
+    Scan whole;  ///< what is in range; Doppler without the error that is known
+    std::vector<double> times;
+    std::vector<std::uint32_t> thinned;
+    std::vector<double> measured;  ///< m/s, Doppler of each point as measured
+    std::vector<double> errors;    ///< m/s, as known before the scan
+    std::vector<double> predicted;
+    std::vector<double> radial;
+    std::vector<std::uint8_t> is_moving;
+    ego_motion::DopplerRows rows;
+    preprocess::VoxelMemory voxels;
+    spatial::CellOrder sort;
+  };
+
+  void thin_and_sort(const ScanView& raw, Frame& frame);
+  void separate_static_points();
+  [[nodiscard]] ego_motion::VelocityFilterConfig filter_for(const ego_motion::EgoVelocity& ego) const;
+  [[nodiscard]] window::WindowScan scan_at(double stamp_s) const;
+  [[nodiscard]] ego_motion::EgoPrior ego_prior() const;
+  void begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor,
+             const std::optional<Eigen::Vector3d>& omega);
+  void update(const window::WindowScan& now, Frame& frame);
+  [[nodiscard]] std::optional<Eigen::Isometry3d> search_second(const window::WindowScan& now) const;
+  void describe(const window::WindowMotion& motion, Frame& frame) const;
+  void predict_only(double stamp_s, FrameStatus status, Frame& frame) const;
+  void judge_points(const window::WindowScan& now);
+  void track_objects(const window::WindowScan& now, Frame& frame);
+  [[nodiscard]] motion::SweepMotion sweep_of(const window::WindowScan& now) const;
+
+  WindowOdometryConfig config_;
+  Workers workers_;
+  DopplerKind expected_;
+  ScanMemory memory_;
+  Scan static_points_;
+  ego_motion::EgoVelocity ego_;
+  mapping::PlaneMap map_;
+  window::WindowEstimator estimator_;
+  Scan first_points_;  ///< the only scan in the map, until the next one shows how it turned
+  tracking::ObjectTracker tracker_;
+  ScanStream stream_;
+  Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
+  double stamp_s_ = 0.0;
+  double usual_match_ = 0.0;
+};
+
+}  // namespace dynamic_icp::odometry
