@@ -33,6 +33,9 @@ constexpr double kVelocitySigma_mps = 0.5;
 constexpr double kAccelerationSigma_mps2 = 3.0;
 constexpr double kNoBias_mps = 1e-3;
 
+// No sensor sweeps for longer.
+constexpr double kMaxSweep_s = 0.5;
+
 // How far the second scan may be from where the first velocity leads.
 constexpr double kSecondPosition_m = 0.05;
 
@@ -106,9 +109,14 @@ Frame WindowOdometry::process(const ScanView& raw) {
 /// Doppler by cells.
 void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
   frame.sweep = motion::sweep_as_configured(raw, config_.sweep);
-  const ScanView timed = motion::retimed(raw, config_.sweep, memory_.times);
+  ScanView timed = motion::retimed(raw, config_.sweep, memory_.times);
   Scan& whole = memory_.whole;
   assign(timed, config_.preprocess, workers_, whole, frame);
+  if (const motion::TimeSpan span = motion::time_span(whole); span.last - span.first > kMaxSweep_s) {
+    frame.dropped = {};
+    timed.times = {};  // no sweep of a moving sensor: the trajectory would have thousands of knots
+    assign(timed, config_.preprocess, workers_, whole, frame);
+  }
   memory_.measured = whole.doppler();
   estimator_.field_errors(whole, workers_, memory_.errors);
   for (std::size_t i = 0; i < whole.size(); ++i) {

@@ -82,13 +82,11 @@ void DopplerCells::sort(const Scan& scan, const std::vector<std::uint8_t>& is_mo
       channels.line.empty()
           ? kElevations
           : static_cast<std::size_t>(*std::max_element(channels.line.begin(), channels.line.end())) + 1;
-  const std::size_t sensors = std::max<std::size_t>(1, scan.mountings().size());
   key_.resize(scan.size());
   range_.resize(scan.size());
   workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
     range_[i] = scan.points()[i].norm();
     if (is_moving[i] != 0) {
-      key_[i] = kNone;
       return;
     }
     const Eigen::Vector3d& u = scan.directions()[i];
@@ -98,23 +96,14 @@ void DopplerCells::sort(const Scan& scan, const std::vector<std::uint8_t>& is_mo
         scan.has_times()
             ? std::min(intervals - 1, static_cast<std::size_t>((scan.times()[i] - span.first) / interval_s))
             : 0;
-    key_[i] = static_cast<std::uint32_t>(((sensor * intervals + interval) * lines + line) * kAzimuths +
-                                         azimuth_sector(u.x(), u.y()));
+    key_[i] = ((sensor * intervals + interval) * lines + line) * kAzimuths + azimuth_sector(u.x(), u.y());
   });
-  number_.assign(sensors * intervals * lines * kAzimuths, kNone);
+  numbers_.clear();
   cell_.resize(scan.size());
-  cell_count_ = 0;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (key_[i] == kNone) {
-      cell_[i] = kNone;
-      continue;
-    }
-    std::uint32_t& number = number_[key_[i]];
-    if (number == kNone) {
-      number = static_cast<std::uint32_t>(cell_count_++);
-    }
-    cell_[i] = number;
+    cell_[i] = is_moving[i] != 0 ? kNone : numbers_.number_of(key_[i]);
   }
+  cell_count_ = numbers_.count();
 }
 
 /// From how points scatter within their cells: any motion and any smooth error is the same for all of a cell.

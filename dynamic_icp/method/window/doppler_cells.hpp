@@ -10,6 +10,7 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/spatial/key_numbers.hpp"
 
 namespace dynamic_icp::window {
 
@@ -62,11 +63,11 @@ class DopplerCells {
  private:
   void learn_noise(const Scan& scan, const std::vector<double>& deviation);
 
-  std::vector<std::uint32_t> key_;     ///< of each row
-  std::vector<std::uint32_t> number_;  ///< of each key
-  std::vector<std::uint32_t> cell_;    ///< of each row
-  std::vector<double> range_;          ///< m, of each row
-  std::vector<double> residual_;       ///< m/s
+  std::vector<std::uint64_t> key_;   ///< of each row
+  spatial::KeyNumbers numbers_;      ///< of each key
+  std::vector<std::uint32_t> cell_;  ///< of each row
+  std::vector<double> range_;        ///< m, of each row
+  std::vector<double> residual_;     ///< m/s
   std::vector<DopplerCell> cells_;
   std::vector<double> sums_;
   std::vector<double> counts_;
