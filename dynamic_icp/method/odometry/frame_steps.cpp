@@ -22,6 +22,11 @@ Scan preprocess(const ScanView& raw, const PreprocessConfig& config, const Worke
   return scan;
 }
 
+std::vector<std::uint32_t> static_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
+  std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
+  return rows;
+}
+
 bool is_plausible_motion(const Eigen::Isometry3d& T_target_source, double dt_s) {
   return T_target_source.linear().allFinite() && T_target_source.translation().norm() <= kMaxDoppler_mps * dt_s;
 }

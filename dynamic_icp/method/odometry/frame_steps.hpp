@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
@@ -23,6 +26,9 @@ void assign(const ScanView& raw, const PreprocessConfig& config, const Workers& 
 
 /// Takes over the scan and thins it by the voxel grid.
 Scan preprocess(const ScanView& raw, const PreprocessConfig& config, const Workers& workers, Frame& frame);
+
+/// Those of `rows` that are static.
+std::vector<std::uint32_t> static_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving);
 
 /// Whether a vehicle can make this motion in `dt_s`; false when it is not finite.
 bool is_plausible_motion(const Eigen::Isometry3d& T_target_source, double dt_s);

@@ -9,6 +9,7 @@
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
+#include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/odometry/map_odometry.hpp"
 
 namespace dynamic_icp::odometry {
@@ -19,12 +20,6 @@ ego_motion::VelocityFilterConfig filter_for(const EgoMotionConfig& config, const
   ego_motion::VelocityFilterConfig filter = config.filter;
   filter.tau_0_mps = std::max(filter.tau_0_mps, config.static_sigmas * ego.inlier_rms_mps);
   return filter;
-}
-
-/// Those of `rows` that are static.
-std::vector<std::uint32_t> static_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
-  std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
-  return rows;
 }
 
 }  // namespace

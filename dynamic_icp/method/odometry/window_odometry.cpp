@@ -43,11 +43,6 @@ double match(const window::WindowMotion& motion) {
   return motion.points > 0 ? motion.planes.matched / static_cast<double>(motion.points) : 0.0;
 }
 
-std::vector<std::uint32_t> static_rows(std::vector<std::uint32_t> rows, const std::vector<std::uint8_t>& is_moving) {
-  std::erase_if(rows, [&](std::uint32_t row) { return is_moving[row] != 0; });
-  return rows;
-}
-
 }  // namespace
 
 WindowOdometry::WindowOdometry(const WindowOdometryConfig& config, int threads, DopplerKind expected)

@@ -17,7 +17,7 @@ namespace {
 
 constexpr std::uint32_t kInformativePoints = 5;  // a patch tells of itself with so many points on it
 constexpr std::size_t kInformativePatches = 50;  // and all patches together when there are so many
-constexpr double kLeastHeld = 1e-6;
+constexpr double kMinHeld = 1e-6;
 
 }  // namespace
 
@@ -179,7 +179,7 @@ void PlaneTerms::hold_directions(double max_noise_share) {
     const Eigen::Vector3d axis = R_map_reference_ * axes_.col(k);
     const double by_noise = axis.dot(noise * axis);
     const double share = by_noise / std::max(1e-9, in_axes(k, k));
-    held_[k] = std::clamp(1.0 - share / max_noise_share, kLeastHeld, 1.0 - 1e-9);
+    held_[k] = std::clamp(1.0 - share / max_noise_share, kMinHeld, 1.0 - 1e-9);
   }
   offset_information_ = in_axes;
   for (Eigen::Index k = 0; k < 3; ++k) {

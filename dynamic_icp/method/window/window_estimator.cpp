@@ -47,7 +47,7 @@ constexpr int kNoiseRounds = 3;
 constexpr double kNothing = 1e-9;
 
 // The map is never one scan alone.
-constexpr double kFewestScans = 2.0;
+constexpr double kMinScans = 2.0;
 
 // Faces of a mirror: one scan may show one of them only.
 constexpr std::size_t kMaxFaces = 8;
@@ -75,7 +75,7 @@ Matrix12d twice(const Matrix6d& A) {
 
 WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_scans)
     : config_(config),
-      map_memory_scans_(std::max(kFewestScans, map_memory_scans)),
+      map_memory_scans_(std::max(kMinScans, map_memory_scans)),
       trajectory_(config.knot_spacing_s),
       stamp_variance_(stamp_prior(config)),
       scan_error_variance_(kScanError_mps),
@@ -176,7 +176,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   find_twist();
   ++scans_;
   ++scans_ever_;
-  const double share = 1.0 / std::clamp(static_cast<double>(scans_), kFewestScans, map_memory_scans_);
+  const double share = 1.0 / std::clamp(static_cast<double>(scans_), kMinScans, map_memory_scans_);
   quadratic_->mix_map_error(share, sweep_rows(layout()));  // the map takes this sweep in
   map_error_ *= 1.0 - share;
   walk_field();

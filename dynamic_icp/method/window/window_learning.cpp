@@ -13,7 +13,7 @@ namespace dynamic_icp::window {
 namespace {
 
 // MacKay's fixed point needs something to be known.
-constexpr double kLeastKnown = 0.02;
+constexpr double kMinKnown = 0.02;
 
 // 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
 constexpr double kNothing = 1e-9;
@@ -74,7 +74,7 @@ void WindowEstimator::learn_jerk(double last_s) {
       counts[axis] += 1.0 - variance[axis] / jerk_variance_[static_cast<std::size_t>(axis)].value();
     }
   }
-  const double least = kLeastKnown * static_cast<double>(end - begin);
+  const double least = kMinKnown * static_cast<double>(end - begin);
   for (Eigen::Index axis = 0; axis < 6; ++axis) {
     jerk_variance_[static_cast<std::size_t>(axis)].update(squares[axis], std::max(counts[axis], least));
   }
