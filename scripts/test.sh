@@ -38,7 +38,7 @@ if [[ "${1:-}" == threads ]]; then
   run_tests tsan -R '^(base|odometry)\..*(Workers|Threads)'
 elif [[ "${1:-}" == method ]]; then
   scripts/install_dependencies.sh fuzzing
-  modules=(base spatial estimation preprocess ego_motion motion dynamics tracking registration mapping odometry)
+  modules=(base spatial estimation preprocess ego_motion motion dynamics tracking registration mapping window odometry)
   configure method
   cmake --build --preset method --target $(printf 'dynamic_icp_%s_test ' "${modules[@]}") dynamic_icp_library_test
   run_tests method -R "^($(IFS='|'; echo "${modules[*]}")|library)\\."
