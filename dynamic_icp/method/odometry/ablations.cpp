@@ -3,7 +3,6 @@
 
 // The parts of the pipelines that can be switched off.
 #include <algorithm>
-#include <iterator>
 #include <span>
 
 #include <fmt/format.h>
@@ -45,6 +44,8 @@ constexpr Part<WindowOdometryConfig> kWindowParts[] = {
     {"no-dpp", [](WindowOdometryConfig& config) { config.track_objects = false; }},
     {"no-dr", [](WindowOdometryConfig& config) { config.window.use_doppler = false; }},
     {"no-bias", [](WindowOdometryConfig& config) { config.window.learn_field = false; }},
+    {"no-planes", [](WindowOdometryConfig& config) { config.window.use_planes = false; }},
+    {"no-vibration", [](WindowOdometryConfig& config) { config.window.learn_vibration = false; }},
     {"no-deskew", [](WindowOdometryConfig& config) { config.sweep.deskew = false; }},
     {"no-map", [](WindowOdometryConfig& config) { config.mapping.memory_scans = 0.0; }},
     {"no-search", [](WindowOdometryConfig& config) { config.search_start = false; }}};
@@ -61,6 +62,11 @@ std::span<const Part<PipelineConfig>> parts_of(const PipelineConfig& /*config*/)
   return kNoParts<PipelineConfig>;
 }
 
+template <class Parts>
+bool is_part(const Parts& parts, std::string_view name) {
+  return std::ranges::any_of(parts, [&](const auto& part) { return part.name == name; });
+}
+
 template <class PipelineConfig>
 void switch_off(PipelineConfig& config, std::string_view name) {
   const auto parts = parts_of(config);
@@ -69,7 +75,7 @@ void switch_off(PipelineConfig& config, std::string_view name) {
     part->switch_off(config);
     return;
   }
-  if (std::ranges::find(kMapOdometryParts, name, &Part<MapOdometryConfig>::name) == std::end(kMapOdometryParts)) {
+  if (!is_part(kMapOdometryParts, name) && !is_part(kWindowParts, name)) {
     throw UsageError(fmt::format("unknown ablation '{}'; known are: {}", name, fmt::join(ablation_names(), ", ")));
   }
   throw UsageError(fmt::format("ablation '{}' is about a part that this pipeline does not have; it has: {}", name,

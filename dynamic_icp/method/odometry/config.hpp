@@ -199,8 +199,9 @@ Config configuration(std::string_view method, std::string_view preset = "default
 /// Switches a part off: "none"; as in the paper's ablation study "no-vf" (no velocity filter: all points count as
 /// static), "no-dpp" (no prediction: moving points are left out; with the local map: no tracking), "no-dr" (no Doppler
 /// term in the alignment); with the local map also "no-consensus" (Huber regression of the ego velocity), "no-bias" (no
-/// Doppler bias), "no-deskew", "no-map" (only the last scan), "no-search" (first pair from one start). Throws
-/// UsageError for other names, and for parts the pipeline does not have.
+/// Doppler bias), "no-deskew", "no-map" (only the last scan), "no-search" (first pair from one start);
+/// with preset "window" also "no-planes" and "no-vibration". Throws UsageError for other names, and for parts the
+/// pipeline does not have.
 void apply_ablation(Config& config, std::string_view name);
 void apply_ablation(PaperConfig& config, std::string_view name);
 void apply_ablation(MapOdometryConfig& config, std::string_view name);

@@ -11,7 +11,8 @@
 
 namespace dynamic_icp::window {
 
-/// How the unknowns stand in the vectors and matrices of the window: [theta; map error; stamp errors; coefficients].
+/// How the unknowns stand in the vectors and matrices of the window: [theta; map error; stamp errors; coefficients;
+/// vibration].
 struct Layout {
   static constexpr Eigen::Index kMapError = 12;  ///< [rotation; position] at the start and the end of the sweep
 
@@ -20,6 +21,7 @@ struct Layout {
 
   Eigen::Index field = 0;         ///< size of theta
   Eigen::Index coefficients = 0;  ///< number of coefficients, six unknowns each
+  bool vibrates = false;          ///< each coefficient has six more: how far the vibration moved it
 
   [[nodiscard]] Eigen::Index map_error() const { return field; }
   [[nodiscard]] Eigen::Index last_stamp() const { return field + kMapError; }
@@ -27,7 +29,8 @@ struct Layout {
   [[nodiscard]] Eigen::Index coefficient(std::size_t k) const {
     return field + kBefore + 6 * static_cast<Eigen::Index>(k);
   }
-  [[nodiscard]] Eigen::Index size() const { return field + kBefore + 6 * coefficients; }
+  [[nodiscard]] Eigen::Index vibration(std::size_t k) const { return coefficient(k) + 6 * coefficients; }
+  [[nodiscard]] Eigen::Index size() const { return field + kBefore + (vibrates ? 12 : 6) * coefficients; }
 };
 
 /// The Doppler of one scan as normal equations in the motion at three nodes of each knot interval and in theta:

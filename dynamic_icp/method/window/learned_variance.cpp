@@ -24,7 +24,9 @@ LearnedVariance::LearnedVariance(const Prior& prior)
       min_variance_(prior.min_sigma * prior.min_sigma),
       max_variance_(prior.max_sigma * prior.max_sigma),
       squares_(prior.counts * variance_),
-      counts_(prior.counts) {}
+      counts_(prior.counts),
+      next_squares_(squares_),
+      next_counts_(counts_) {}
 
 double LearnedVariance::propose(double estimate, double posterior_variance) {
   // With the share k that the data know of x, the measurement alone was x / k with the variance q (1 - k) / k.
@@ -43,12 +45,17 @@ void LearnedVariance::update(double squares, double known) {
   next_squares_ = kMemory * squares_ + squares;
   next_counts_ = kMemory * counts_ + known;
   renew(next_squares_, next_counts_);
-  keep();
+}
+
+void LearnedVariance::follow(double variance, double counts) {
+  followed_squares_ = counts * variance;
+  followed_counts_ = counts;
 }
 
 double LearnedVariance::renew(double squares, double counts) {
   const double before = variance_;
-  const double ratio = std::clamp(squares / counts / variance_, 1.0 / kMaxChange, kMaxChange);
+  const double ratio =
+      std::clamp((squares + followed_squares_) / (counts + followed_counts_) / variance_, 1.0 / kMaxChange, kMaxChange);
   const double moved = variance_ * (ratio > kMuchMore ? std::pow(ratio, kOvershoot) : ratio);
   variance_ = std::clamp(moved, min_variance_, max_variance_);
   return variance_ / before - 1.0;

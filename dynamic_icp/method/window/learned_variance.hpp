@@ -28,8 +28,13 @@ class LearnedVariance {
   void keep();
 
   /// From several unknowns of a scan that depend on each other, by MacKay's fixed point
-  /// q = sum x^2 / sum (1 - posterior variance / q): `squares` over `known`.
+  /// q = sum x^2 / sum (1 - posterior variance / q): `squares` over `known`. May be called again before `keep`.
   void update(double squares, double known);
+
+  /// q is held near a variance: so many unknowns of it that do not fade count besides those seen.
+  void follow(double variance, double counts);
+
+  [[nodiscard]] double counts() const { return next_counts_; }  ///< unknowns seen, faded
 
  private:
   double renew(double squares, double counts);
@@ -39,6 +44,8 @@ class LearnedVariance {
   double max_variance_ = 1.0;
   double squares_ = 0.0;  ///< sum over the past, faded
   double counts_ = 0.0;
+  double followed_squares_ = 0.0;  ///< that do not fade
+  double followed_counts_ = 0.0;
   double next_squares_ = 0.0;
   double next_counts_ = 0.0;
 };

@@ -37,6 +37,7 @@ void SplineTrajectory::begin(double time_s, double until_s, const Eigen::Isometr
     c << omega * t, velocity * t;
     c_.push_back(c);
   }
+  v_.assign(c_.size(), Vector6d::Zero());
 }
 
 void SplineTrajectory::set_constant_twist(double time_s, const Eigen::Vector3d& velocity,
@@ -52,6 +53,7 @@ void SplineTrajectory::set_constant_twist(double time_s, const Eigen::Vector3d& 
     const Eigen::Isometry3d T = T_reference_from * exp_se3(t * twist);
     c_[k] << log_so3(T.linear()), T.translation();
   }
+  v_.assign(c_.size(), Vector6d::Zero());
 }
 
 std::size_t SplineTrajectory::extend(double until_s, double memory_s) {
@@ -61,12 +63,14 @@ std::size_t SplineTrajectory::extend(double until_s, double memory_s) {
   while (interval_begin(c_.size() - kOrder + 1) <= until_s) {
     c_.push_back(c_.back() + step);
   }
+  v_.resize(c_.size(), Vector6d::Zero());
   return c_.size() - before;
 }
 
 std::size_t SplineTrajectory::drop_before(double time_s) {
   const std::size_t count = interval(time_s);
   c_.erase(c_.begin(), c_.begin() + static_cast<std::ptrdiff_t>(count));
+  v_.erase(v_.begin(), v_.begin() + static_cast<std::ptrdiff_t>(count));
   first_ += static_cast<long>(count);
   return count;
 }
@@ -83,6 +87,9 @@ std::vector<Matrix6d> SplineTrajectory::move_reference(double time_s) {
     A.topLeftCorner<3, 3>() = J_before.inverse() * right_jacobian_so3(c.head<3>());
     A.bottomRightCorner<3, 3>() = to.R;
     changes.push_back(A);
+  }
+  for (std::size_t k = 0; k < v_.size(); ++k) {
+    v_[k] = changes[k].partialPivLu().solve(v_[k]).eval();
   }
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = to.R;

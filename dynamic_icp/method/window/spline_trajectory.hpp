@@ -54,6 +54,9 @@ class SplineTrajectory {
   [[nodiscard]] const Eigen::Isometry3d& reference() const { return T_map_reference_; }
   [[nodiscard]] std::vector<Vector6d>& coefficients() { return c_; }
   [[nodiscard]] const std::vector<Vector6d>& coefficients() const { return c_; }
+  /// The part of each coefficient that is vibration.
+  [[nodiscard]] std::vector<Vector6d>& vibration() { return v_; }
+  [[nodiscard]] const std::vector<Vector6d>& vibration() const { return v_; }
   [[nodiscard]] double knot_spacing() const { return h_; }
 
   /// The interval between knots that a time lies in: the first of its coefficients.
@@ -70,6 +73,7 @@ class SplineTrajectory {
   long first_ = 0;  ///< number of the interval that the first coefficient begins
   Eigen::Isometry3d T_map_reference_ = Eigen::Isometry3d::Identity();
   std::vector<Vector6d> c_;  ///< [phi (rad); p (m)]
+  std::vector<Vector6d> v_;
 };
 
 }  // namespace dynamic_icp::window

@@ -52,12 +52,6 @@ constexpr double kMinScans = 2.0;
 // Faces of a mirror: one scan may show one of them only.
 constexpr std::size_t kMaxFaces = 8;
 
-// What may be learned: the wheels of a car hop with 300 rad/s^3 and m/s^3 at most.
-constexpr double kPriorJerks = 4.0;
-constexpr double kMinJerk_rad_s3 = 0.1;
-constexpr double kMaxJerk_rad_s3 = 500.0;
-constexpr double kMinJerk_mps3 = 0.5;
-constexpr double kMaxJerk_mps3 = 3000.0;
 constexpr LearnedVariance::Prior kScanError_mps{.sigma = 0.003, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
 
 LearnedVariance::Prior stamp_prior(const WindowConfig& config) {
@@ -77,15 +71,10 @@ WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_s
     : config_(config),
       map_memory_scans_(std::max(kMinScans, map_memory_scans)),
       trajectory_(config.knot_spacing_s),
+      motion_prior_(config),
       stamp_variance_(stamp_prior(config)),
       scan_error_variance_(kScanError_mps),
-      model_sigma_m_(config.model_sigma_m) {
-  for (std::size_t axis = 0; axis < jerk_variance_.size(); ++axis) {
-    jerk_variance_[axis] =
-        axis < 3 ? LearnedVariance({config.start_jerk_rad_s3, kPriorJerks, kMinJerk_rad_s3, kMaxJerk_rad_s3})
-                 : LearnedVariance({config.start_jerk_mps3, kPriorJerks, kMinJerk_mps3, kMaxJerk_mps3});
-  }
-}
+      model_sigma_m_(config.model_sigma_m) {}
 
 void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor,
                             const Eigen::Vector3d& velocity, const std::optional<Eigen::Vector3d>& omega,
@@ -108,12 +97,12 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
   if (!field_) {
     field_.emplace(cells_.cells(), scan.whole->channels().face.empty() ? 1 : kMaxFaces);
     theta_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(field_->size()));
-    quadratic_.emplace(theta_.size(), coefficients);
+    quadratic_.emplace(theta_.size(), coefficients, config_.learn_vibration);
   }
   linearise_here();
   if (!settle_first(scan, workers)) {
     theta_.setZero();  // what was known of the sensor does not fit
-    quadratic_.emplace(theta_.size(), coefficients);
+    quadratic_.emplace(theta_.size(), coefficients, config_.learn_vibration);
     lay_trajectory();
     linearise_here();
     settle_first(scan, workers);
@@ -139,7 +128,11 @@ bool WindowEstimator::settle_first(const WindowScan& scan, const Workers& worker
     all = assemble(nullptr, 0);
     add_start(scan, all);
     learn_field(std::move(all));
+    if (scans_ever_ == 0 && pass >= kFirstPasses) {
+      learn_motion(stamp_s() + begin_s_, stamp_s() + end_s_);
+    }
   }
+  motion_prior_.keep();
   return true;
 }
 
@@ -167,7 +160,8 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   }
   stamp_variance_.keep();
   scan_error_variance_.keep();
-  learn_jerk(last_s);
+  learn_motion(last_s, stamp_s());
+  motion_prior_.keep();
   compare_with_planes(false, *planes);
   motion.planes = planes->quality();
   join(whole_problem(planes, first_new));
@@ -193,6 +187,7 @@ void WindowEstimator::take(const WindowScan& scan) {
 /// The quadratic of the past is about the state at hand.
 void WindowEstimator::linearise_here() {
   coefficients_0_ = trajectory_.coefficients();
+  vibration_0_ = trajectory_.vibration();
   theta_0_ = theta_;
   map_error_0_ = map_error_;
   stamp_errors_0_ = stamp_errors_;
@@ -299,6 +294,9 @@ double WindowEstimator::solve(Problem problem) {
     const auto step = y.segment<6>(Layout::kBefore + 6 * static_cast<Eigen::Index>(k));
     trajectory_.coefficients()[k] += step;
     largest = std::max(largest, step.cwiseAbs().maxCoeff());
+    if (at.vibrates) {
+      trajectory_.vibration()[k] += y.segment<6>(at.vibration(k) - at.field);
+    }
   }
   return largest;
 }

@@ -18,6 +18,7 @@
 #include "dynamic_icp/method/window/doppler_error_field.hpp"
 #include "dynamic_icp/method/window/doppler_terms.hpp"
 #include "dynamic_icp/method/window/learned_variance.hpp"
+#include "dynamic_icp/method/window/motion_prior.hpp"
 #include "dynamic_icp/method/window/plane_terms.hpp"
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
 #include "dynamic_icp/method/window/window_config.hpp"
@@ -50,7 +51,7 @@ struct WindowMotion {
 /// One estimator: the trajectory of the sensor in continuous time over the last two scans, the error field of its
 /// Doppler and the error of the map, from Doppler and planes together. See docs/derivations/window.md.
 ///
-/// With z = [theta; map error; stamp errors; coefficients] a scan minimises
+/// With z = [theta; map error; stamp errors; coefficients; vibration] a scan minimises
 ///   sum_cells rho (s + u . v(t) - Phi theta)^2 / sigma^2  +  sum_points rho (plane residual)^2 / sigma^2
 ///   + sum_intervals jerk^2 / q  +  theta^T (tau^2 K)^-1 theta  +  past scans
 /// by Gauss and Newton; then it joins the past.
@@ -112,7 +113,6 @@ class WindowEstimator {
   // window_problem.cpp
   [[nodiscard]] Problem assemble(const PlaneTerms* planes, std::size_t first_new) const;
   [[nodiscard]] Problem whole_problem(const std::optional<PlaneTerms>& planes, std::size_t first_new) const;
-  void add_jerk(std::size_t first_new, Problem& problem) const;
   void add_stamp(double variance, Problem& problem) const;
   void add_start(const WindowScan& scan, Problem& problem) const;
   void tie_map_to_first_sweep(Problem& problem) const;
@@ -121,7 +121,7 @@ class WindowEstimator {
 
   // window_learning.cpp
   void learn_field(Problem problem);
-  void learn_jerk(double last_s);
+  void learn_motion(double from_s, double to_s);
   double learn_stamps();
   double learn_scan_errors();
   void learn_roughness(const PlaneQuality& planes);
@@ -141,6 +141,7 @@ class WindowEstimator {
   Eigen::VectorXd theta_;
   Eigen::VectorXd map_error_ = Eigen::VectorXd::Zero(Layout::kMapError);
   std::vector<Vector6d> coefficients_0_;  ///< where the quadratic was linearised
+  std::vector<Vector6d> vibration_0_;
   Eigen::VectorXd theta_0_;
   Eigen::VectorXd map_error_0_;
   Eigen::Vector2d stamp_errors_ = Eigen::Vector2d::Zero();  ///< s, of the last scan and of the one at hand
@@ -148,13 +149,13 @@ class WindowEstimator {
   DopplerCells cells_;
   std::optional<DopplerTerms> doppler_;
   std::vector<double> predicted_;
-  Eigen::MatrixXd covariance_;  ///< of [map error; stamp errors; coefficients] after the last scan
+  Eigen::MatrixXd covariance_;  ///< of [map error; stamp errors; coefficients; vibration] after the last scan
   motion::Twist twist_;
-  Eigen::MatrixXd field_covariance_;              ///< of theta, where it was asked for
-  std::array<LearnedVariance, 6> jerk_variance_;  ///< [rad/s^3; m/s^3] squared, of each axis
-  LearnedVariance stamp_variance_;                ///< s^2
-  LearnedVariance scan_error_variance_;           ///< (m/s)^2, of what all Doppler values of a scan have in common
-  double cell_variance_ = 1e-4;                   ///< (m/s)^2
+  Eigen::MatrixXd field_covariance_;  ///< of theta, where it was asked for
+  MotionPrior motion_prior_;
+  LearnedVariance stamp_variance_;       ///< s^2
+  LearnedVariance scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common
+  double cell_variance_ = 1e-4;          ///< (m/s)^2
   double model_sigma_m_ = 0.003;
   double stamp_s_ = 0.0;
   double begin_s_ = 0.0;

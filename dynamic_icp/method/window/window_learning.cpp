@@ -12,9 +12,6 @@
 namespace dynamic_icp::window {
 namespace {
 
-// MacKay's fixed point needs something to be known.
-constexpr double kMinKnown = 0.02;
-
 // 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
 constexpr double kNothing = 1e-9;
 
@@ -51,33 +48,9 @@ void WindowEstimator::learn_field(Problem problem) {
   }
 }
 
-/// Process noise of each axis from the jerk between the last two scans, by MacKay's fixed point
-/// q = sum J^2 / sum (1 - Var J / q).
-void WindowEstimator::learn_jerk(double last_s) {
-  const std::array<double, 4> w = trajectory_.jerk_weights();
-  const std::size_t begin = trajectory_.interval(last_s);
-  const std::size_t end = trajectory_.interval(stamp_s());
-  Vector6d squares = Vector6d::Zero();
-  Vector6d counts = Vector6d::Zero();
-  for (std::size_t k = begin; k < end; ++k) {
-    Vector6d variance = Vector6d::Zero();
-    for (std::size_t i = 0; i < 4; ++i) {
-      for (std::size_t j = 0; j < 4; ++j) {
-        const auto row = Layout::kBefore + static_cast<Eigen::Index>(6 * (k + i));
-        const auto column = Layout::kBefore + static_cast<Eigen::Index>(6 * (k + j));
-        variance += (w[i] * w[j]) * covariance_.block<6, 6>(row, column).diagonal();
-      }
-    }
-    const Vector6d jerk = trajectory_.jerk(k);
-    squares += jerk.cwiseAbs2();
-    for (Eigen::Index axis = 0; axis < 6; ++axis) {
-      counts[axis] += 1.0 - variance[axis] / jerk_variance_[static_cast<std::size_t>(axis)].value();
-    }
-  }
-  const double least = kMinKnown * static_cast<double>(end - begin);
-  for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    jerk_variance_[static_cast<std::size_t>(axis)].update(squares[axis], std::max(counts[axis], least));
-  }
+/// How the sensor moves between two times.
+void WindowEstimator::learn_motion(double from_s, double to_s) {
+  motion_prior_.learn(trajectory_, trajectory_.interval(from_s), trajectory_.interval(to_s), layout(), covariance_);
 }
 
 /// How far stamps are off; by which share their variance grew.

@@ -36,6 +36,9 @@ WindowEstimator::Problem WindowEstimator::assemble(const PlaneTerms* planes, std
   d.segment<2>(at.last_stamp()) = stamp_errors_ - stamp_errors_0_;
   for (std::size_t k = 0; k < coefficients_0_.size(); ++k) {
     d.segment<6>(at.coefficient(k)) = trajectory_.coefficients()[k] - coefficients_0_[k];
+    if (at.vibrates) {
+      d.segment<6>(at.vibration(k)) = trajectory_.vibration()[k] - vibration_0_[k];
+    }
   }
   Problem problem{quadratic_->Q(), quadratic_->g() + quadratic_->Q() * d};
   if (doppler_ && config_.use_doppler) {
@@ -50,7 +53,7 @@ WindowEstimator::Problem WindowEstimator::assemble(const PlaneTerms* planes, std
   information << kMapInformation, kMapInformation;
   problem.H.diagonal().segment<Layout::kMapError>(at.map_error()) += information;
   problem.g.segment<Layout::kMapError>(at.map_error()) += information.cwiseProduct(map_error_);
-  add_jerk(first_new, problem);
+  motion_prior_.add(trajectory_, first_new, at, problem.H, problem.g);
   return problem;
 }
 
@@ -59,25 +62,6 @@ void WindowEstimator::add_stamp(double variance, Problem& problem) const {
   const Eigen::Index stamp = layout().stamp();
   problem.H(stamp, stamp) += 1.0 / variance;
   problem.g[stamp] += stamp_errors_[1] / variance;
-}
-
-/// White noise on jerk, constant between knots: the intervals from `first_new` on.
-void WindowEstimator::add_jerk(std::size_t first_new, Problem& problem) const {
-  const std::array<double, 4> w = trajectory_.jerk_weights();
-  const Layout at = layout();
-  Vector6d information;
-  for (Eigen::Index axis = 0; axis < 6; ++axis) {
-    information[axis] = 1.0 / jerk_variance_[static_cast<std::size_t>(axis)].value();
-  }
-  for (std::size_t k = first_new; k + 3 < trajectory_.coefficients().size(); ++k) {
-    const Vector6d gradient = information.cwiseProduct(trajectory_.jerk(k));
-    for (std::size_t i = 0; i < 4; ++i) {
-      problem.g.segment<6>(at.coefficient(k + i)) += w[i] * gradient;
-      for (std::size_t j = 0; j < 4; ++j) {
-        problem.H.block<6, 6>(at.coefficient(k + i), at.coefficient(k + j)).diagonal() += (w[i] * w[j]) * information;
-      }
-    }
-  }
 }
 
 void WindowEstimator::add_start(const WindowScan& scan, Problem& problem) const {

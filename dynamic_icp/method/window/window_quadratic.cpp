@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/window/window_quadratic.hpp"
 
+#include <numeric>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -12,10 +13,21 @@ namespace {
 // 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
 constexpr double kNothing = 1e-9;
 
+std::vector<Eigen::Index> range(Eigen::Index first, Eigen::Index count) {
+  std::vector<Eigen::Index> result(static_cast<std::size_t>(count));
+  std::iota(result.begin(), result.end(), first);
+  return result;
+}
+
+std::vector<Eigen::Index> join(std::vector<Eigen::Index> a, const std::vector<Eigen::Index>& b) {
+  a.insert(a.end(), b.begin(), b.end());
+  return a;
+}
+
 }  // namespace
 
-WindowQuadratic::WindowQuadratic(Eigen::Index field_size, std::size_t coefficients)
-    : layout_{field_size, static_cast<Eigen::Index>(coefficients)},
+WindowQuadratic::WindowQuadratic(Eigen::Index field_size, std::size_t coefficients, bool vibrates)
+    : layout_{field_size, static_cast<Eigen::Index>(coefficients), vibrates},
       Q_(Eigen::MatrixXd::Zero(layout_.size(), layout_.size())),
       g_(Eigen::VectorXd::Zero(layout_.size())) {}
 
@@ -26,14 +38,22 @@ void WindowQuadratic::set(const Eigen::MatrixXd& Q, Eigen::VectorXd g) {
 }
 
 void WindowQuadratic::append_coefficients(std::size_t count) {
-  const Eigen::Index before = layout_.size();
+  const Eigen::Index begin = layout_.coefficient(0);
+  const Eigen::Index before = 6 * layout_.coefficients;
+  const Eigen::Index size = layout_.size();
   layout_.coefficients += static_cast<Eigen::Index>(count);
-  const Eigen::Index added = layout_.size() - before;
-  Q_.conservativeResize(layout_.size(), layout_.size());
-  g_.conservativeResize(layout_.size());
-  Q_.rightCols(added).setZero();
-  Q_.bottomRows(added).setZero();
-  g_.tail(added).setZero();
+  const std::vector<Eigen::Index> to = join(range(0, begin + before), range(layout_.vibration(0), before));
+  Eigen::MatrixXd Q = Eigen::MatrixXd::Zero(layout_.size(), layout_.size());
+  Eigen::VectorXd g = Eigen::VectorXd::Zero(layout_.size());
+  for (Eigen::Index k = 0; k < size; ++k) {
+    const Eigen::Index at = to[static_cast<std::size_t>(k)];
+    g[at] = g_[k];
+    for (Eigen::Index i = 0; i < size; ++i) {
+      Q(to[static_cast<std::size_t>(i)], at) = Q_(i, k);
+    }
+  }
+  Q_ = std::move(Q);
+  g_ = std::move(g);
 }
 
 void WindowQuadratic::next_stamp() {
@@ -59,21 +79,24 @@ void WindowQuadratic::drop_coefficients(std::size_t count) {
   if (count == 0) {
     return;
   }
-  const Eigen::Index begin = layout_.coefficient(0);
-  const auto dropped = 6 * static_cast<Eigen::Index>(count);
-  const Eigen::Index after = layout_.size() - begin - dropped;
-  Eigen::MatrixXd kept(layout_.size() - dropped, layout_.size() - dropped);
-  Eigen::MatrixXd cross(dropped, begin + after);
-  cross << Q_.block(begin, 0, dropped, begin), Q_.block(begin, begin + dropped, dropped, after);
-  kept << Q_.topLeftCorner(begin, begin), Q_.block(0, begin + dropped, begin, after),
-      Q_.block(begin + dropped, 0, after, begin), Q_.bottomRightCorner(after, after);
-  Eigen::VectorXd g(begin + after);
-  g << g_.head(begin), g_.tail(after);
-  Eigen::MatrixXd old = Q_.block(begin, begin, dropped, dropped);
+  const Eigen::Index first = layout_.coefficient(0);
+  const auto gone = 6 * static_cast<Eigen::Index>(count);
+  const Eigen::Index left = 6 * layout_.coefficients - gone;
+  std::vector<Eigen::Index> dropped = range(first, gone);
+  std::vector<Eigen::Index> remaining = join(range(0, first), range(first + gone, left));
+  if (layout_.vibrates) {
+    dropped = join(std::move(dropped), range(layout_.vibration(0), gone));
+    remaining = join(std::move(remaining), range(layout_.vibration(0) + gone, left));
+  }
+  Eigen::MatrixXd kept = Q_(remaining, remaining);
+  Eigen::VectorXd g = g_(remaining);
+  Eigen::MatrixXd old = Q_(dropped, dropped);
   old.diagonal().array() += kNothing;
   const Eigen::LLT<Eigen::MatrixXd> eliminated(old);
+  const Eigen::MatrixXd cross = Q_(dropped, remaining);
+  const Eigen::VectorXd old_g = g_(dropped);
   const Eigen::MatrixXd W = eliminated.matrixL().solve(cross);
-  const Eigen::VectorXd w = eliminated.matrixL().solve(g_.segment(begin, dropped));
+  const Eigen::VectorXd w = eliminated.matrixL().solve(old_g);
   kept.noalias() -= W.transpose() * W;
   g.noalias() -= W.transpose() * w;
   Q_ = std::move(kept);
@@ -110,6 +133,9 @@ void WindowQuadratic::move_reference(const std::vector<Matrix6d>& changes,
   apply(d, map_change);
   for (std::size_t k = 0; k < changes.size(); ++k) {
     apply(layout_.coefficient(k), changes[k]);
+    if (layout_.vibrates) {
+      apply(layout_.vibration(k), changes[k]);
+    }
   }
 }
 
@@ -117,16 +143,16 @@ void WindowQuadratic::mix_map_error(double share, const Eigen::MatrixXd& J) {
   // map error = (map error' - share J dc) / (1 - share)
   const Eigen::Index d = layout_.map_error();
   const Eigen::Index c = layout_.coefficient(0);
-  const Eigen::Index n = layout_.size() - c;
+  const Eigen::Index n = J.cols();
   const double scale = 1.0 / (1.0 - share);
   const Eigen::MatrixXd B = -share * scale * J;  // 12 x n
   const Eigen::MatrixXd d_rows = Q_.middleRows(d, Layout::kMapError);
   const Eigen::VectorXd d_g = g_.segment(d, Layout::kMapError);
-  Q_.bottomRows(n) += B.transpose() * d_rows;
-  Q_.rightCols(n) += Q_.middleCols(d, Layout::kMapError) * B;
+  Q_.middleRows(c, n) += B.transpose() * d_rows;
+  Q_.middleCols(c, n) += Q_.middleCols(d, Layout::kMapError) * B;
   Q_.middleRows(d, Layout::kMapError) *= scale;
   Q_.middleCols(d, Layout::kMapError) *= scale;
-  g_.tail(n) += B.transpose() * d_g;
+  g_.segment(c, n) += B.transpose() * d_g;
   g_.segment(d, Layout::kMapError) *= scale;
 }
 

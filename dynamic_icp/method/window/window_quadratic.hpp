@@ -17,7 +17,7 @@ namespace dynamic_icp::window {
 /// transformed; nothing is approximated but the linearisation.
 class WindowQuadratic {
  public:
-  WindowQuadratic(Eigen::Index field_size, std::size_t coefficients);
+  WindowQuadratic(Eigen::Index field_size, std::size_t coefficients, bool vibrates);
 
   [[nodiscard]] const Layout& layout() const { return layout_; }
   [[nodiscard]] const Eigen::MatrixXd& Q() const { return Q_; }

@@ -35,7 +35,7 @@ MatrixXd random_information(std::mt19937& random, Index n) {
 /// Everything is correlated with everything.
 WindowQuadratic random_quadratic(unsigned seed) {
   std::mt19937 random(seed);
-  WindowQuadratic quadratic(kField, kCoefficients);
+  WindowQuadratic quadratic(kField, kCoefficients, true);
   const Index n = quadratic.layout().size();
   quadratic.set(random_information(random, n), random_matrix(random, n, 1));
   return quadratic;
@@ -73,12 +73,17 @@ TEST(Layout, PlacesTheUnknownsOneAfterTheOther) {
   EXPECT_EQ(layout.coefficient(0), 19);
   EXPECT_EQ(layout.coefficient(1), 25);
   EXPECT_EQ(layout.size(), 31);
+  const Layout vibrating{kField, 2, true};
+  EXPECT_EQ(vibrating.coefficient(1), 25);
+  EXPECT_EQ(vibrating.vibration(0), 31);
+  EXPECT_EQ(vibrating.vibration(1), 37);
+  EXPECT_EQ(vibrating.size(), 43);
 }
 
 TEST(WindowQuadratic, KnowsNothingAtFirst) {
-  const WindowQuadratic quadratic(kField, kCoefficients);
-  EXPECT_EQ(quadratic.Q(), MatrixXd::Zero(43, 43));
-  EXPECT_EQ(quadratic.g(), VectorXd::Zero(43));
+  const WindowQuadratic quadratic(kField, kCoefficients, true);
+  EXPECT_EQ(quadratic.Q(), MatrixXd::Zero(67, 67));
+  EXPECT_EQ(quadratic.g(), VectorXd::Zero(67));
 }
 
 TEST(WindowQuadratic, NewCoefficientsAreUnknown) {
@@ -86,12 +91,16 @@ TEST(WindowQuadratic, NewCoefficientsAreUnknown) {
   const WindowQuadratic before = quadratic;
   quadratic.append_coefficients(3);
   EXPECT_EQ(quadratic.layout().coefficients, 7);
-  ASSERT_EQ(quadratic.Q().rows(), before.Q().rows() + 18);
-  EXPECT_EQ(quadratic.Q().topLeftCorner(43, 43), before.Q());
-  EXPECT_EQ(quadratic.g().head(43), before.g());
-  EXPECT_EQ(quadratic.Q().rightCols(18).norm(), 0.0);
-  EXPECT_EQ(quadratic.Q().bottomRows(18).norm(), 0.0);
-  EXPECT_EQ(quadratic.g().tail(18).norm(), 0.0);
+  const Layout& at = quadratic.layout();
+  ASSERT_EQ(quadratic.Q().rows(), before.Q().rows() + 36);
+  std::vector<Index> known = range(0, at.coefficient(4));
+  for (const Index k : range(at.vibration(0), at.vibration(4))) {
+    known.push_back(k);
+  }
+  EXPECT_EQ(quadratic.Q()(known, known), before.Q());
+  EXPECT_EQ(quadratic.g()(known), before.g());
+  EXPECT_NEAR(quadratic.Q().norm(), before.Q().norm(), 1e-9) << "and nothing else";
+  EXPECT_NEAR(quadratic.g().norm(), before.g().norm(), 1e-9);
 }
 
 TEST(WindowQuadratic, DroppingCoefficientsLeavesWhatIsKnownOfTheOthers) {
@@ -102,8 +111,10 @@ TEST(WindowQuadratic, DroppingCoefficientsLeavesWhatIsKnownOfTheOthers) {
     EXPECT_EQ(quadratic.layout().coefficients, 4 - count);
     ASSERT_EQ(quadratic.Q().rows(), quadratic.layout().size());
     std::vector<Index> kept = range(0, before.layout().coefficient(0));
-    for (const Index k : range(before.layout().coefficient(static_cast<std::size_t>(count)), before.layout().size())) {
-      kept.push_back(k);
+    for (const Index block : {before.layout().coefficient(0), before.layout().vibration(0)}) {
+      for (const Index k : range(block + 6 * count, block + 6 * before.layout().coefficients)) {
+        kept.push_back(k);
+      }
     }
     expect_marginal(quadratic, range(0, quadratic.layout().size()), before, kept);
   }
@@ -178,6 +189,7 @@ TEST(WindowQuadratic, MovingTheReferenceIsAChangeOfVariables) {
   for (std::size_t k = 0; k < kCoefficients; ++k) {
     changes.emplace_back(random_matrix(random, 6, 6));
     whole.block(at.coefficient(k), at.coefficient(k), 6, 6) = changes.back();
+    whole.block(at.vibration(k), at.vibration(k), 6, 6) = changes.back();
   }
   quadratic.move_reference(changes, map_change);
   for (int k = 0; k < 10; ++k) {
@@ -200,7 +212,7 @@ TEST(WindowQuadratic, MixingTheMapErrorIsAChangeOfVariables) {
       const VectorXd d = random_matrix(random, at.size(), 1);
       VectorXd mixed = d;
       mixed.segment(at.map_error(), 12) =
-          (1.0 - share) * d.segment(at.map_error(), 12) + share * J * d.tail(6 * at.coefficients);
+          (1.0 - share) * d.segment(at.map_error(), 12) + share * J * d.segment(at.coefficient(0), J.cols());
       const double expected = value(before, d);
       EXPECT_NEAR(value(quadratic, mixed), expected, 1e-10 * std::abs(expected) + 1e-9);
     }
@@ -221,7 +233,7 @@ TEST(WindowQuadratic, AWalkAddsToTheCovarianceAndKeepsTheEstimate) {
 }
 
 TEST(WindowQuadratic, AWalkOfWhatIsUnknownChangesNothing) {
-  WindowQuadratic quadratic(kField, kCoefficients);
+  WindowQuadratic quadratic(kField, kCoefficients, true);
   quadratic.walk_field(0, MatrixXd::Identity(2, 2));
   EXPECT_EQ(quadratic.Q().norm(), 0.0);
   EXPECT_EQ(quadratic.g().norm(), 0.0);
