@@ -75,6 +75,28 @@ TEST_F(PresetWindow, FindsStampsThatJitter) {
   EXPECT_LT(window("highway", "--set lidar.timing.stamp_jitter_s=0.001").rte_mm, 18.0);
 }
 
+TEST_F(PresetWindow, UsesWhatItLearnedInAnotherDrive) {
+  const std::string error = "--set lidar.doppler_error.direction_mps=0.15";
+  window("city", error);
+  const fs::path learned = folder_ / "learned.yaml";
+  fs::copy_file(folder_ / "out" / "calibration.yaml", learned);
+  fs::remove_all(folder_ / "drive");
+  // Between curved walls planes do not tell the error from a motion.
+  const double alone_mm = window("curved-walls", error).rte_mm;
+  const Errors calibrated =
+      simulate_and_run("curved-walls", error, "--preset window --calibration " + learned.string());
+  EXPECT_LT(calibrated.rte_mm, 0.5 * alone_mm);
+
+  const std::string run = "run " + (folder_ / "drive").string() + " --output " + (folder_ / "refused").string();
+  const Outcome other_preset = run_program(run + " --calibration " + learned.string());
+  EXPECT_EQ(other_preset.status, 2);
+  EXPECT_NE(other_preset.text.find("preset 'window'"), std::string::npos) << other_preset.text;
+  const Outcome no_file = run_program(run + " --preset window --calibration " + (folder_ / "none.yaml").string());
+  EXPECT_NE(no_file.status, 0);
+  EXPECT_NE(no_file.text.find("none.yaml"), std::string::npos) << no_file.text;
+  EXPECT_FALSE(fs::exists(folder_ / "refused"));
+}
+
 // What follows does not hold yet: CTest expects these tests to measure an error beyond the limit (CMakeLists.txt), and
 // says so when one is within it.
 // The limits are those of an estimator that learns what the sensor does wrong.

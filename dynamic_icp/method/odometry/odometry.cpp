@@ -39,7 +39,7 @@ struct Maker {
     return std::make_unique<MapOdometry>(config, threads, context.doppler_kind);
   }
   std::unique_ptr<Odometry> operator()(const WindowOdometryConfig& config) const {
-    return std::make_unique<WindowOdometry>(config, threads, context.doppler_kind);
+    return std::make_unique<WindowOdometry>(config, context, threads);
   }
   std::unique_ptr<Odometry> operator()(const PaperConfig& config) const {
     return std::make_unique<DynamicIcp>(config, threads, context.doppler_kind);
@@ -60,6 +60,10 @@ struct Maker {
 std::unique_ptr<Odometry> make_odometry(const Config& config, const SensorContext& context, int threads) {
   if (context.T_vehicle_sensor) {
     check_mounting(*context.T_vehicle_sensor);
+  }
+  if (context.calibration && !std::holds_alternative<WindowOdometryConfig>(config)) {
+    throw UsageError(
+        "a calibration of the sensor is for preset 'window' of dynamic-icp alone: no other method learns one");
   }
   return std::visit(Maker{context, threads}, config);
 }

@@ -29,6 +29,9 @@ class Odometry {
 
   /// What the method had to take for granted because it was not told, for all outputs; usually nothing.
   [[nodiscard]] virtual std::vector<std::string> assumptions() const { return {}; }
+
+  /// What was learned of the sensor so far; nothing where a method does not.
+  [[nodiscard]] virtual std::optional<window::SensorCalibration> calibration() const { return std::nullopt; }
 };
 
 /// What a method may know besides the scans.
@@ -36,6 +39,9 @@ struct SensorContext {
   std::optional<Eigen::Isometry3d> T_vehicle_sensor;  ///< mounting of the sensor, where the recording has it
   /// What the Doppler of the scans will be, for `assumptions`; each scan says itself what is done with it.
   DopplerKind doppler_kind = DopplerKind::kRelative;
+  /// What was learned of this sensor in another recording; for preset `window`. With that of another sensor the first
+  /// scan throws UsageError.
+  std::optional<window::SensorCalibration> calibration = {};
 };
 
 /// Whether the method of that name takes the Doppler into account: without any, its results are not its own.
@@ -43,7 +49,8 @@ bool needs_doppler(std::string_view method);
 
 /// The pipeline of a configuration: `make_odometry(PaperConfig{})`, `make_odometry(configuration("kiss-icp"))`; an
 /// empty one is preset `default`. `threads` = 0 takes as many as the machine has. Throws UsageError when the
-/// configuration or the mounting is out of range.
+/// configuration, the mounting or the calibration is out of range, and for a calibration that the method has no use
+/// for.
 std::unique_ptr<Odometry> make_odometry(const Config& config = {}, const SensorContext& context = {}, int threads = 0);
 
 }  // namespace dynamic_icp::odometry

@@ -45,14 +45,20 @@ double match(const window::WindowMotion& motion) {
 
 }  // namespace
 
-WindowOdometry::WindowOdometry(const WindowOdometryConfig& config, int threads, DopplerKind expected)
+WindowOdometry::WindowOdometry(const WindowOdometryConfig& config, const SensorContext& context, int threads)
     : config_(checked(config)),
       workers_(threads),
-      expected_(expected),
+      expected_(context.doppler_kind),
       map_(config.mapping),
       estimator_(config.window, config.mapping.memory_scans),
       tracker_(config.tracking),
-      stream_(config.stream) {}
+      stream_(config.stream) {
+  if (context.calibration) {
+    estimator_.set_calibration(*context.calibration);
+  }
+}
+
+std::optional<window::SensorCalibration> WindowOdometry::calibration() const { return estimator_.calibration(); }
 
 std::vector<std::string> WindowOdometry::assumptions() const {
   return expected_ == DopplerKind::kCompensated ? std::vector{compensated_doppler_note()} : std::vector<std::string>{};

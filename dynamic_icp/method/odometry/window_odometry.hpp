@@ -27,14 +27,14 @@ namespace dynamic_icp::odometry {
 /// The same scans give the same bits for any number of threads.
 class WindowOdometry final : public Odometry {
  public:
-  /// `threads` = 0 takes as many as the machine has; `expected` is what the Doppler will be, for `assumptions`. Throws
-  /// UsageError when the configuration is out of range.
-  explicit WindowOdometry(const WindowOdometryConfig& config, int threads = 0,
-                          DopplerKind expected = DopplerKind::kRelative);
+  /// `threads` = 0 takes as many as the machine has. Throws UsageError when the configuration or the calibration is out
+  /// of range.
+  explicit WindowOdometry(const WindowOdometryConfig& config, const SensorContext& context = {}, int threads = 0);
 
   Frame process(const ScanView& raw) override;
 
   [[nodiscard]] std::vector<std::string> assumptions() const override;
+  [[nodiscard]] std::optional<window::SensorCalibration> calibration() const override;
 
  private:
   /// Of the scan at hand. The memory is used again for the next one.

@@ -78,20 +78,20 @@ std::size_t DopplerErrorField::add_group(std::string_view name, Eigen::MatrixXd 
   return groups_.back().begin;
 }
 
-DopplerErrorField::DopplerErrorField(const std::vector<DopplerCell>& cells, std::size_t faces) : faces_(faces) {
+FieldShape DopplerErrorField::shape_of(const std::vector<DopplerCell>& cells, std::size_t faces) {
+  FieldShape shape;
+  shape.faces = faces;
   std::size_t sensors = 1;
   double intensity_squares = 0.0;
   for (const DopplerCell& cell : cells) {
     sensors = std::max<std::size_t>(sensors, cell.sensor + 1U);
-    lines_ = std::max<std::size_t>(lines_, cell.line + 1U);
-    intensity_mean_ += cell.intensity / static_cast<double>(cells.size());
+    shape.lines = std::max<std::size_t>(shape.lines, cell.line + 1U);
+    shape.intensity_mean += cell.intensity / static_cast<double>(cells.size());
     intensity_squares += cell.intensity * cell.intensity / static_cast<double>(cells.size());
   }
-  const double spread = std::sqrt(std::max(0.0, intensity_squares - intensity_mean_ * intensity_mean_));
-  intensity_scale_ = spread > 0.0 ? 1.0 / spread : 0.0;
-  lines_ = sensors > 1 || lines_ > kMaxLines ? 0 : lines_;
-  azimuths_ = sensors > 1 ? kRigAzimuths : kAzimuths;
-  sensors_.resize(sensors);
+  const double spread = std::sqrt(std::max(0.0, intensity_squares - shape.intensity_mean * shape.intensity_mean));
+  shape.intensity_scale = spread > 0.0 ? 1.0 / spread : 0.0;
+  shape.lines = sensors > 1 || shape.lines > kMaxLines ? 0 : shape.lines;
   for (std::size_t s = 0; s < sensors; ++s) {
     double azimuth_low = 4.0, azimuth_high = -4.0, elevation_low = 2.0, elevation_high = -2.0;
     for (const DopplerCell& cell : cells) {
@@ -102,49 +102,60 @@ DopplerErrorField::DopplerErrorField(const std::vector<DopplerCell>& cells, std:
         elevation_high = std::max(elevation_high, elevation_of(cell));
       }
     }
-    SensorColumns& c = sensors_[s];
-    c.azimuth_first = azimuth_low - kMargin_rad;
-    c.azimuth_span = std::max(0.1, azimuth_high - azimuth_low + 2.0 * kMargin_rad);
-    c.elevation_first = elevation_low - kMargin_rad;
-    c.elevation_span = std::max(0.05, elevation_high - elevation_low + 2.0 * kMargin_rad);
+    shape.views.push_back({azimuth_low - kMargin_rad, std::max(0.1, azimuth_high - azimuth_low + 2.0 * kMargin_rad),
+                           elevation_low - kMargin_rad,
+                           std::max(0.05, elevation_high - elevation_low + 2.0 * kMargin_rad)});
+  }
+  return shape;
+}
+
+DopplerErrorField::DopplerErrorField(const FieldShape& shape) : shape_(shape) {
+  const bool is_rig = shape.views.size() > 1;
+  azimuths_ = is_rig ? kRigAzimuths : kAzimuths;
+  for (const FieldShape::View& view : shape.views) {
+    SensorColumns c;
     const auto count = static_cast<double>(azimuths_);
-    c.azimuth =
-        add_group("azimuth", exponential_kernel(azimuths_, kCorrelation_rad * count / c.azimuth_span), kStartTau, true);
-    if (sensors == 1) {
+    c.azimuth = add_group("azimuth", exponential_kernel(azimuths_, kCorrelation_rad * count / view.azimuth_span),
+                          kStartTau, true);
+    if (!is_rig) {
       c.cross = add_group("cross",
                           kronecker(exponential_kernel(kCrossAzimuths, 3.0), exponential_kernel(kCrossElevations, 2.0)),
                           kStartTau, true);
-      c.line = lines_ > 0 ? add_group("line", identity(lines_), kStartTau, true) : 0;
-      c.face = faces_ > 1 ? add_group("face", identity(faces_), kStartTau, true)
-                          : add_group("velocity", identity(1), kStartVelocityTau, false);
+      c.line = shape.lines > 0 ? add_group("line", identity(shape.lines), kStartTau, true) : 0;
+      c.face = shape.faces > 1 ? add_group("face", identity(shape.faces), kStartTau, true)
+                               : add_group("velocity", identity(1), kStartVelocityTau, false);
     }
     c.range = add_group("range and intensity", identity(3), kStartTau, true);
     c.velocity = add_group("velocity", identity(3), kStartVelocityTau, false);
+    sensors_.push_back(c);
   }
 }
 
 FieldColumns DopplerErrorField::columns(const DopplerCell& cell) const {
   FieldColumns result;
-  const SensorColumns& c = sensors_[std::min<std::size_t>(cell.sensor, sensors_.size() - 1)];
-  const double azimuth = (azimuth_of(cell) - c.azimuth_first) / c.azimuth_span;
+  const std::size_t sensor = std::min<std::size_t>(cell.sensor, sensors_.size() - 1);
+  const SensorColumns& c = sensors_[sensor];
+  const FieldShape::View& view = shape_.views[sensor];
+  const double azimuth = (azimuth_of(cell) - view.azimuth_first) / view.azimuth_span;
   const double bin = std::clamp(azimuth, 0.0, 1.0) * static_cast<double>(azimuths_);
   result.add(c.azimuth + std::min(azimuths_ - 1, static_cast<std::size_t>(bin)), 1.0);
   if (sensors_.size() == 1) {
     const auto [i, a] = between_nodes(azimuth, kCrossAzimuths);
-    const auto [j, e] = between_nodes((elevation_of(cell) - c.elevation_first) / c.elevation_span, kCrossElevations);
+    const auto [j, e] =
+        between_nodes((elevation_of(cell) - view.elevation_first) / view.elevation_span, kCrossElevations);
     const std::size_t at = c.cross + i * kCrossElevations + j;
     result.add(at, (1.0 - a) * (1.0 - e));
     result.add(at + 1, (1.0 - a) * e);
     result.add(at + kCrossElevations, a * (1.0 - e));
     result.add(at + kCrossElevations + 1, a * e);
-    if (lines_ > 0) {
-      result.add(c.line + std::min<std::size_t>(cell.line, lines_ - 1), 1.0);
+    if (shape_.lines > 0) {
+      result.add(c.line + std::min<std::size_t>(cell.line, shape_.lines - 1), 1.0);
     }
-    result.add(c.face + std::min<std::size_t>(cell.face, faces_ - 1), 1.0);
+    result.add(c.face + std::min<std::size_t>(cell.face, shape_.faces - 1), 1.0);
   }
   result.add(c.range, cell.range_m / kRangeScale_m - kRangeMean);
   result.add(c.range + 1, std::exp(-cell.range_m / kNear_m));
-  result.add(c.range + 2, std::clamp(intensity_scale_ * (cell.intensity - intensity_mean_), -3.0, 3.0));
+  result.add(c.range + 2, std::clamp(shape_.intensity_scale * (cell.intensity - shape_.intensity_mean), -3.0, 3.0));
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     result.add(c.velocity + static_cast<std::size_t>(axis), -cell.u[axis]);
   }

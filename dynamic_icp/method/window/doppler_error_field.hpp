@@ -11,6 +11,7 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/window/doppler_cells.hpp"
+#include "dynamic_icp/method/window/window_config.hpp"
 
 namespace dynamic_icp::window {
 
@@ -40,8 +41,14 @@ struct FieldColumns {
 /// how large the part is that cannot.
 class DopplerErrorField {
  public:
+  explicit DopplerErrorField(const FieldShape& shape);
+
   /// For the sensors, directions and lines that these cells show, and so many faces.
-  DopplerErrorField(const std::vector<DopplerCell>& cells, std::size_t faces);
+  DopplerErrorField(const std::vector<DopplerCell>& cells, std::size_t faces)
+      : DopplerErrorField(shape_of(cells, faces)) {}
+
+  static FieldShape shape_of(const std::vector<DopplerCell>& cells, std::size_t faces);
+  [[nodiscard]] const FieldShape& shape() const { return shape_; }
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] FieldColumns columns(const DopplerCell& cell) const;
@@ -64,23 +71,20 @@ class DopplerErrorField {
     [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(K.rows()); }
   };
   [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
+  [[nodiscard]] std::vector<Group>& groups() { return groups_; }
 
  private:
   struct SensorColumns {
     std::size_t azimuth = 0, cross = 0, line = 0, face = 0, range = 0, velocity = 0;
-    double azimuth_first = 0.0, azimuth_span = 1.0, elevation_first = 0.0, elevation_span = 1.0;
   };
 
   std::size_t add_group(std::string_view name, Eigen::MatrixXd K, double tau, bool is_learned);
 
+  FieldShape shape_;
   std::vector<SensorColumns> sensors_;
   std::vector<Group> groups_;
   std::size_t size_ = 0;
   std::size_t azimuths_ = 0;
-  std::size_t lines_ = 0;  ///< 0: none
-  std::size_t faces_ = 1;
-  double intensity_mean_ = 0.0;
-  double intensity_scale_ = 0.0;
 };
 
 }  // namespace dynamic_icp::window

@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
+#include <string>
+#include <vector>
+
 #include "dynamic_icp/method/base/config_field.hpp"
 
 namespace dynamic_icp::window {
@@ -25,5 +29,38 @@ struct WindowConfig {
 };
 
 ConfigFields fields(WindowConfig& config);
+
+/// For what the unknowns of an error field are made (DopplerErrorField).
+struct FieldShape {
+  /// The directions that a sensor measures in, rad.
+  struct View {
+    double azimuth_first = 0.0;
+    double azimuth_span = 1.0;
+    double elevation_first = 0.0;
+    double elevation_span = 1.0;
+  };
+  std::vector<View> views;  ///< of each sensor
+  std::size_t lines = 0;    ///< 0: none
+  std::size_t faces = 1;
+  double intensity_mean = 0.0;
+  double intensity_scale = 0.0;  ///< 1 / standard deviation; 0: all alike
+};
+
+/// What the estimator learned of a sensor in one recording and may begin with in another one.
+struct SensorCalibration {
+  FieldShape shape;
+  struct Part {
+    std::string name;
+    double scale_mps = 0.0;             ///< standard deviation of its errors
+    std::vector<double> error_mps;      ///< estimates
+    std::vector<double> deviation_mps;  ///< their standard deviations
+  };
+  std::vector<Part> parts;  ///< the groups of the error field
+  std::vector<std::vector<double>>
+      information;               ///< (s/m)^2, of all errors, without their scales: lower triangle, by rows
+  std::vector<double> gradient;  ///< s/m, at the estimates, without their scales
+  double stamp_sigma_s = 0.0;
+  double scan_error_mps = 0.0;  ///< standard deviation of what all Doppler values of a scan have in common
+};
 
 }  // namespace dynamic_icp::window

@@ -52,11 +52,7 @@ constexpr double kMinScans = 2.0;
 // Faces of a mirror: one scan may show one of them only.
 constexpr std::size_t kMaxFaces = 8;
 
-constexpr LearnedVariance::Prior kScanError_mps{.sigma = 0.003, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
-
-LearnedVariance::Prior stamp_prior(const WindowConfig& config) {
-  return {.sigma = config.start_stamp_sigma_s, .counts = 2.0, .min_sigma = 1e-5, .max_sigma = 3e-3};
-}
+constexpr double kScanError_mps = 0.003;
 
 Matrix12d twice(const Matrix6d& A) {
   Matrix12d result = Matrix12d::Zero();
@@ -67,13 +63,21 @@ Matrix12d twice(const Matrix6d& A) {
 
 }  // namespace
 
+LearnedVariance::Prior WindowEstimator::stamp_prior(double sigma_s) {
+  return {.sigma = sigma_s, .counts = 2.0, .min_sigma = 1e-5, .max_sigma = 3e-3};
+}
+
+LearnedVariance::Prior WindowEstimator::scan_error_prior(double sigma_mps) {
+  return {.sigma = sigma_mps, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
+}
+
 WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_scans)
     : config_(config),
       map_memory_scans_(std::max(kMinScans, map_memory_scans)),
       trajectory_(config.knot_spacing_s),
       motion_prior_(config),
-      stamp_variance_(stamp_prior(config)),
-      scan_error_variance_(kScanError_mps),
+      stamp_variance_(stamp_prior(config.start_stamp_sigma_s)),
+      scan_error_variance_(scan_error_prior(kScanError_mps)),
       model_sigma_m_(config.model_sigma_m) {}
 
 void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor,
@@ -94,8 +98,12 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
     quadratic_->keep_field_only(coefficients);
   }
   average_doppler(scan, true, workers);
+  const std::size_t faces = scan.whole->channels().face.empty() ? 1 : kMaxFaces;
+  if (is_calibrated_ && scans_ever_ == 0) {
+    check_calibration(faces);
+  }
   if (!field_) {
-    field_.emplace(cells_.cells(), scan.whole->channels().face.empty() ? 1 : kMaxFaces);
+    field_.emplace(cells_.cells(), faces);
     theta_ = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(field_->size()));
     quadratic_.emplace(theta_.size(), coefficients, config_.learn_vibration);
   }

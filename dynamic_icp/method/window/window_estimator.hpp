@@ -60,7 +60,14 @@ class WindowEstimator {
   /// `map_memory_scans` as that of the map: each scan takes such a share of its error.
   WindowEstimator(const WindowConfig& config, double map_memory_scans);
 
+  /// Before the first scan: what is known of the sensor. Throws UsageError when the parts do not fit each other.
+  void set_calibration(const SensorCalibration& calibration);
+
+  /// What was learned of the sensor; nothing before the first scan and where nothing is learned.
+  [[nodiscard]] std::optional<SensorCalibration> calibration() const;
+
   /// The first scan in a map; nothing of the past is kept but the error field. Velocities in sensor axes at the stamp.
+  /// Throws UsageError when the calibration is that of another sensor.
   void begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& velocity,
              const std::optional<Eigen::Vector3d>& omega, const Workers& workers);
 
@@ -98,6 +105,8 @@ class WindowEstimator {
     Eigen::VectorXd g;
   };
 
+  static LearnedVariance::Prior stamp_prior(double sigma_s);
+  static LearnedVariance::Prior scan_error_prior(double sigma_mps);
   void take(const WindowScan& scan);
   void linearise_here();
   bool settle_first(const WindowScan& scan, const Workers& workers);
@@ -127,6 +136,9 @@ class WindowEstimator {
   void learn_roughness(const PlaneQuality& planes);
   void learn_cell_variance();
   void walk_field();
+
+  // window_calibration.cpp
+  void check_calibration(std::size_t faces) const;
 
   // window_uses.cpp
   void motion_between(double source_s, WindowMotion& motion) const;
@@ -167,6 +179,7 @@ class WindowEstimator {
   } first_;        ///< the first scan in the map
   int scans_ = 0;  ///< in the map
   int scans_ever_ = 0;
+  bool is_calibrated_ = false;
 };
 
 }  // namespace dynamic_icp::window

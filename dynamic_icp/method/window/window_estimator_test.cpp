@@ -12,6 +12,8 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/method/base/error.hpp"
+
 #include "testing/swept_room.hpp"
 
 namespace dynamic_icp::window {
@@ -118,9 +120,13 @@ Step step_of(const WindowMotion& motion, const WindowEstimator& estimator, int k
   return step;
 }
 
-DriveRun drive(const Drive& drive, int scans, const WindowConfig& config = {}, int threads = 1) {
+DriveRun drive(const Drive& drive, int scans, const WindowConfig& config = {}, int threads = 1,
+               const std::optional<SensorCalibration>& calibration = {}) {
   const Workers workers(threads);
   DriveRun run{WindowEstimator(config, kMapMemory), {}, {}};
+  if (calibration) {
+    run.estimator.set_calibration(*calibration);
+  }
   mapping::PlaneMap map({});
   const Scan nothing;
   Scan first_points;
@@ -289,6 +295,52 @@ TEST(WindowEstimator, BeginsAnewWithWhatItLearned) {
   EXPECT_LT((run.estimator.theta() - before).norm(), 0.1 * before.norm());
   EXPECT_LT((run.estimator.trajectory().pose(1.0).translation() - path(1.0).translation()).norm(), 1e-4);
   EXPECT_LT((run.estimator.trajectory().at(1.0).velocity - twist(1.0).tail<3>()).norm(), 0.05);
+}
+
+TEST(WindowEstimator, ACalibrationTellsErrorsFromMotion) {
+  // Without planes nothing tells the velocity-like part of an error from a motion, unless it is known from elsewhere.
+  Drive drifting;
+  drifting.error_mps = [](double azimuth) { return 0.15 * std::sin(azimuth); };
+  const std::optional<SensorCalibration> learned = drive(drifting, 14).estimator.calibration();
+  ASSERT_TRUE(learned);
+  drifting.has_planes = false;
+  const DriveRun unknown = drive(drifting, 5);
+  const DriveRun known = drive(drifting, 5, {}, 1, learned);
+  expect_finite(known);
+  EXPECT_GT(unknown.steps.back().twist_error.tail<3>().norm(), 0.04);
+  EXPECT_LT(known.steps.back().twist_error.tail<3>().norm(), 0.02);
+}
+
+TEST(WindowEstimator, WhatIsLearnedIsLearnedOnce) {
+  // Handed on without a new scan but the first, a calibration says the same and not more.
+  Drive exact;
+  const std::optional<SensorCalibration> learned = drive(exact, 6).estimator.calibration();
+  ASSERT_TRUE(learned);
+  EXPECT_FALSE(WindowEstimator({}, kMapMemory).calibration()) << "before the first scan";
+  const std::optional<SensorCalibration> again = drive(exact, 1, {}, 1, learned).estimator.calibration();
+  ASSERT_TRUE(again);
+  for (std::size_t k = 0; k < learned->information.size(); ++k) {
+    const double before = learned->information[k][k];
+    const double after = again->information[k][k];
+    EXPECT_GE(after, 0.99 * before) << k;
+    EXPECT_LT(after, 1.6 * before + 2e5) << k << ": one scan more";
+  }
+}
+
+TEST(WindowEstimator, RefusesTheCalibrationOfAnotherSensor) {
+  SensorCalibration learned = *drive({}, 3).estimator.calibration();
+  SensorCalibration narrow = learned;
+  narrow.shape.views[0].azimuth_span = 1.0;
+  EXPECT_THROW(drive({}, 1, {}, 1, narrow), UsageError);
+  SensorCalibration rig = learned;
+  rig.shape.views.push_back(rig.shape.views[0]);
+  EXPECT_THROW(drive({}, 1, {}, 1, rig), UsageError) << "its parts are those of one sensor";
+  SensorCalibration torn = learned;
+  torn.information.pop_back();
+  EXPECT_THROW(drive({}, 1, {}, 1, torn), UsageError);
+  WindowConfig without;
+  without.learn_field = false;
+  EXPECT_THROW(drive({}, 1, without, 1, learned), UsageError);
 }
 
 TEST(WindowEstimator, DoesNotDependOnTheThreads) {

@@ -37,6 +37,11 @@ void WindowQuadratic::set(const Eigen::MatrixXd& Q, Eigen::VectorXd g) {
   g_ = std::move(g);
 }
 
+void WindowQuadratic::set_field(const Eigen::MatrixXd& Q, const Eigen::VectorXd& g) {
+  Q_.topLeftCorner(layout_.field, layout_.field) = Q;
+  g_.head(layout_.field) = g;
+}
+
 void WindowQuadratic::append_coefficients(std::size_t count) {
   const Eigen::Index begin = layout_.coefficient(0);
   const Eigen::Index before = 6 * layout_.coefficients;

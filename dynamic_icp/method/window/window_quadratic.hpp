@@ -26,6 +26,9 @@ class WindowQuadratic {
   /// Replaces the quadratic; the layout stays.
   void set(const Eigen::MatrixXd& Q, Eigen::VectorXd g);
 
+  /// What is known of theta, where nothing else is.
+  void set_field(const Eigen::MatrixXd& Q, const Eigen::VectorXd& g);
+
   /// Coefficients of which nothing is known are appended.
   void append_coefficients(std::size_t count);
 

@@ -43,7 +43,7 @@ std::string map_in(const fs::path& run_json) {
 
 std::vector<std::string> run_files(const fs::path& folder) {
   std::vector<std::string> files = {"run.json",      "summary.json", "trajectory.tum", "frames.jsonl",
-                                    "objects.jsonl", "labels/#.bin", "report.html"};
+                                    "objects.jsonl", "labels/#.bin", "report.html",    "calibration.yaml"};
   for (const std::string picture : kPictures) {
     files.push_back("plots/" + picture + ".svg");
     files.push_back("plots/" + picture + ".png");

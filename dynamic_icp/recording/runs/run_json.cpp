@@ -85,6 +85,10 @@ std::string run_json(const Recording& recording, const RunSettings& settings, co
   if (settings.max_frames) {
     json["max_frames"] = *settings.max_frames;
   }
+  json["calibration"] = nullptr;
+  if (settings.calibration) {
+    json["calibration"] = fs::absolute(*settings.calibration).string();
+  }
   json["ground_truth"] = nullptr;
   if (!ground_truth.empty()) {
     json["ground_truth"] = fs::absolute(ground_truth).string();

@@ -13,6 +13,7 @@
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/runs/calibration_file.hpp"
 #include "dynamic_icp/recording/runs/map_writer.hpp"
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 #include "dynamic_icp/recording/runs/run_folder.hpp"
@@ -35,6 +36,10 @@ std::optional<MapWriter> make_map(const RunSettings& settings) {
                                  settings.method));
   }
   return MapWriter(settings.map_voxel_m);
+}
+
+std::optional<window::SensorCalibration> calibration_of(const RunSettings& settings) {
+  return settings.calibration ? std::optional(read_calibration(*settings.calibration)) : std::nullopt;
 }
 
 /// What the configuration says of sweeps; nothing where the method does not look at it.
@@ -91,6 +96,7 @@ class Run {
         settings_(settings),
         callbacks_(callbacks),
         map_(make_map(settings)),
+        calibration_(calibration_of(settings)),
         dataset_(datasets::open_input(recording.path, recording.settings)),
         scans_(datasets::select_scans(*dataset_, settings.start, settings.max_frames)),
         truth_file_(settings.ground_truth.empty() ? dataset_->ground_truth_file() : settings.ground_truth),
@@ -109,6 +115,9 @@ class Run {
   /// Whether it came to its end.
   bool write() {
     std::vector<fs::path> inputs = {recording_.path, dataset_->scan_file(scans_.begin), truth_file_};
+    if (settings_.calibration) {
+      inputs.push_back(*settings_.calibration);
+    }
     inputs.insert(inputs.end(), settings_.inputs.begin(), settings_.inputs.end());
     formats::OutputFolder output(settings_.output, run_result(), settings_.replace, inputs);
     if (!output.fill([&] { return write_files(output); })) {
@@ -140,7 +149,7 @@ class Run {
     const fs::path map_in_run =
         formats::lies_in(map_file, output.path()) ? map_file.lexically_relative(output.path()) : "";
     const std::unique_ptr<odometry::Odometry> odometry = odometry::make_odometry(
-        settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind()}, settings_.threads);
+        settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind(), calibration_}, settings_.threads);
     std::vector<std::string> assumptions = dataset_->assumptions();
     for (const std::string& assumption : odometry->assumptions()) {
       assumptions.push_back(assumption);
@@ -156,6 +165,9 @@ class Run {
     RunWriter writer(output.path(), settings_.save_labels);
     if (!process_scans(*odometry, writer)) {
       return false;
+    }
+    if (const std::optional<window::SensorCalibration> learned = odometry->calibration()) {
+      formats::write_whole_file(output.path() / "calibration.yaml", calibration_text(*learned));
     }
     result_.map_points = map_ ? std::optional(map_->size()) : std::nullopt;
     result_.summary = writer.finish(settings_.method, truth_, assumptions);
@@ -242,6 +254,7 @@ class Run {
   RunSettings settings_;  ///< with the sweep that was found
   const RunCallbacks& callbacks_;
   std::optional<MapWriter> map_;
+  std::optional<window::SensorCalibration> calibration_;
   std::unique_ptr<datasets::Dataset> dataset_;
   datasets::ScanRange scans_;
   fs::path truth_file_;

@@ -37,8 +37,9 @@ struct RunSettings {
   bool save_labels = false;
   std::optional<std::filesystem::path> map_file;  ///< static points of all scans, .ply or .pcd; dynamic-icp only
   double map_voxel_m = 0.1;
-  std::vector<std::filesystem::path> inputs;  ///< further files that were read and must not be replaced
-  std::string command;                        ///< how the run was asked for, for run.json
+  std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of another run with this sensor
+  std::vector<std::filesystem::path> inputs;         ///< further files that were read and must not be replaced
+  std::string command;                               ///< how the run was asked for, for run.json
 };
 
 /// What the caller of a run may want to hear and do while it continues. All are called by the calling thread; each may
