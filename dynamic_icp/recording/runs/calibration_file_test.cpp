@@ -72,7 +72,7 @@ TEST_F(CalibrationFile, ReadsBackTheSameNumbers) {
 }
 
 TEST_F(CalibrationFile, RefusesWhatDoesNotFit) {
-  EXPECT_NE(refused("version: 1", "version: 2").find("calibration.yaml: line 4"), std::string::npos);
+  EXPECT_NE(refused("version: 1", "version: 2").find("calibration.yaml: line 3"), std::string::npos);
   EXPECT_NE(refused("scale_mps: 0.11", "scale_mps: -0.11").find("scale_mps"), std::string::npos);
   EXPECT_NE(refused("deviation_mps: [0.05]", "deviation_mps: [0.05, 1]").find("deviation_mps"), std::string::npos);
   EXPECT_NE(refused("[0.1, 0.2, 100000]", "[0.1, 0.2]").find("row"), std::string::npos);
