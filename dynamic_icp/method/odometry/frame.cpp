@@ -18,6 +18,8 @@ std::string_view to_string(FrameStatus status) {
       return "too_few_correspondences";
     case FrameStatus::kDegenerate:
       return "degenerate";
+    case FrameStatus::kAmbiguous:
+      return "ambiguous";
     case FrameStatus::kTooFewPoints:
       return "too_few_points";
     case FrameStatus::kTimeGap:
@@ -39,6 +41,7 @@ std::string_view verdict(FrameStatus status) {
     case FrameStatus::kIterationLimit:
       return "ok";
     case FrameStatus::kDegenerate:
+    case FrameStatus::kAmbiguous:
       return "degenerate";
     case FrameStatus::kNotRun:
     case FrameStatus::kTooFewCorrespondences:

@@ -29,6 +29,7 @@ enum class FrameStatus {
   /// Some directions are not known, see Alignment::degenerate. Methods from scan to scan keep the predicted motion
   /// then; with a local map the pose is still the most likely one.
   kDegenerate,
+  kAmbiguous,  ///< aligned, but in the last scans two motions explained the Doppler equally well: may be the wrong one
   kTooFewPoints,  ///< not aligned: (almost) empty scan, the predicted motion is kept
   kTimeGap,       ///< not aligned: too long after the last scan, the predicted motion is kept
   kTooSoon,       ///< not aligned: less than kMinScanInterval_s after the last usable scan, which stays the reference

@@ -36,6 +36,11 @@ constexpr double kNoBias_mps = 1e-3;
 // No sensor sweeps for longer.
 constexpr double kMaxSweep_s = 0.5;
 
+// Traffic that most of a scan shows is followed as if it stood, and then prefers itself: so many scans must be clear
+// before a motion counts as that of the sensor. Till then it may be that of the traffic, m/s.
+constexpr int kClearScans = 5;
+constexpr double kTraffic_mps = 3.0;
+
 // How far the second scan may be from where the first velocity leads.
 constexpr double kSecondPosition_m = 0.05;
 
@@ -52,7 +57,8 @@ WindowOdometry::WindowOdometry(const WindowOdometryConfig& config, const SensorC
       map_(config.mapping),
       estimator_(config.window, config.mapping.memory_scans),
       tracker_(config.tracking),
-      stream_(config.stream) {
+      stream_(config.stream),
+      clear_scans_(kClearScans) {
   if (context.calibration) {
     estimator_.set_calibration(*context.calibration);
   }
@@ -158,6 +164,7 @@ void WindowOdometry::separate_static_points() {
   const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
   ego_ = is_relative ? ego_motion::estimate_velocity(memory_.rows, ego_prior(), config_.ego_motion.consensus, workers_)
                      : unknown_velocity();
+  clear_scans_ = ego_.status == ego_motion::EgoVelocityStatus::kAmbiguous ? 0 : std::min(kClearScans, clear_scans_ + 1);
   const ego_motion::EgoVelocity in_doppler = is_relative ? ego_ : static_frame(whole);
   ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(in_doppler), workers_, memory_.is_moving);
@@ -237,11 +244,11 @@ void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
   }
   usual_match_ = is_second ? match(motion) : usual_match_ + kUsualMatchGain * (match(motion) - usual_match_);
   first_points_ = {};
-  describe(motion, frame);
+  describe(motion, dt_s, frame);
 }
 
 /// What the frame says of a motion.
-void WindowOdometry::describe(const window::WindowMotion& motion, Frame& frame) const {
+void WindowOdometry::describe(const window::WindowMotion& motion, double dt_s, Frame& frame) const {
   registration::Alignment& alignment = frame.alignment;
   const double length_m = registration::typical_distance(static_points_);
   alignment.iterations = motion.iterations;
@@ -257,6 +264,11 @@ void WindowOdometry::describe(const window::WindowMotion& motion, Frame& frame) 
   alignment.status =
       motion.converged ? registration::AlignStatus::kConverged : registration::AlignStatus::kIterationLimit;
   FrameStatus status = FrameStatus::kConverged;
+  if (clear_scans_ < kClearScans) {
+    status = FrameStatus::kAmbiguous;
+    const double sigma_m = kTraffic_mps * dt_s;
+    alignment.covariance->bottomRightCorner<3, 3>().diagonal().array() += sigma_m * sigma_m;
+  }
   if (!alignment.degenerate.empty()) {
     alignment.status = registration::AlignStatus::kDegenerate;
     status = FrameStatus::kDegenerate;

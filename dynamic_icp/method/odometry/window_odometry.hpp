@@ -61,7 +61,7 @@ class WindowOdometry final : public Odometry {
              const std::optional<Eigen::Vector3d>& omega);
   void update(const window::WindowScan& now, Frame& frame);
   [[nodiscard]] std::optional<Eigen::Isometry3d> search_second(const window::WindowScan& now) const;
-  void describe(const window::WindowMotion& motion, Frame& frame) const;
+  void describe(const window::WindowMotion& motion, double dt_s, Frame& frame) const;
   void predict_only(double stamp_s, FrameStatus status, Frame& frame) const;
   void judge_points(const window::WindowScan& now);
   void track_objects(const window::WindowScan& now, Frame& frame);
@@ -81,6 +81,7 @@ class WindowOdometry final : public Odometry {
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   double stamp_s_ = 0.0;
   double usual_match_ = 0.0;
+  int clear_scans_;  ///< since two motions explained the Doppler equally well
 };
 
 }  // namespace dynamic_icp::odometry

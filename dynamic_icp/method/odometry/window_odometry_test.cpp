@@ -1,0 +1,49 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/odometry/window_odometry.hpp"
+
+#include <gtest/gtest.h>
+
+#include "testing/synthetic_drive.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+using namespace synthetic;
+
+/// In the first `divided` scans everything on the left moves by 2 m/s against everything on the right: a column of
+/// traffic that fills half of the view, or a wall.
+std::vector<Frame> run_divided(int divided, int scans) {
+  const Drive drive{street(), circle(8.0, 0.0), {}};
+  WindowOdometry odometry({}, {}, 1);
+  std::vector<Frame> frames;
+  for (int k = 0; k < scans; ++k) {
+    RawScan scan = drive.scan(k);
+    for (std::size_t i = 0; i < scan.points.size() && k < divided; ++i) {
+      const Vector3d u = scan.points[i].normalized();
+      scan.doppler[i] += u.y() > 0.0 ? 2.0 * u.x() : 0.0;
+    }
+    frames.push_back(odometry.process(scan));
+  }
+  return frames;
+}
+
+TEST(WindowOdometry, SaysThatItMayFollowTheTraffic) {
+  const std::vector<Frame> frames = run_divided(1, 9);
+  EXPECT_EQ(frames[0].ego.status, ego_motion::EgoVelocityStatus::kAmbiguous);
+  for (std::size_t k = 1; k <= 4; ++k) {
+    EXPECT_EQ(frames[k].status, FrameStatus::kAmbiguous) << k;
+    EXPECT_EQ(verdict(frames[k].status), "degenerate");
+    ASSERT_TRUE(frames[k].alignment.covariance);
+    EXPECT_GT((*frames[k].alignment.covariance)(3, 3), 0.2 * 0.2) << "2 m/s for 0.1 s";
+  }
+  for (std::size_t k = 5; k < frames.size(); ++k) {
+    EXPECT_EQ(frames[k].status, FrameStatus::kConverged) << k;
+  }
+  for (const Frame& frame : run_divided(0, 4)) {
+    EXPECT_EQ(verdict(frame.status), "ok") << "one motion alone";
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::odometry
