@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
@@ -13,6 +14,11 @@ namespace {
 
 // The first scan of a recording does not show all directions.
 constexpr double kSameView_rad = 0.15;
+
+// More is no sensor; a field for them would fill the memory.
+constexpr std::size_t kMostSensors = 64;
+constexpr std::size_t kMostLines = 1024;
+constexpr std::size_t kMostFaces = 256;
 
 std::string text_of(const FieldShape& shape, std::size_t sensor) {
   const FieldShape::View& view = shape.views[sensor];
@@ -33,32 +39,47 @@ bool may_show(const FieldShape& whole, const FieldShape& seen, std::size_t senso
          within(a.elevation_first, a.elevation_span, b.elevation_first, b.elevation_span);
 }
 
+/// Whether there is a number for each unknown of the field.
+bool fits(const SensorCalibration& calibration, const DopplerErrorField& field) {
+  bool result = calibration.parts.size() == field.groups().size() && calibration.information.size() == field.size() &&
+                calibration.gradient.size() == field.size() && calibration.stamp_sigma_s > 0.0 &&
+                calibration.stamp_sigma_s < 1.0 && calibration.scan_error_mps > 0.0 &&
+                calibration.scan_error_mps < 10.0;
+  for (std::size_t k = 0; result && k < field.groups().size(); ++k) {
+    const SensorCalibration::Part& part = calibration.parts[k];
+    result = part.error_mps.size() == field.groups()[k].size() && part.name == field.groups()[k].name &&
+             part.scale_mps > 0.0;
+  }
+  for (std::size_t k = 0; result && k < field.size(); ++k) {
+    result = calibration.information[k].size() == k + 1;
+  }
+  return result;
+}
+
 }  // namespace
 
 void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
   if (!config_.learn_field) {
     throw UsageError("a calibration of the sensor has no effect where the error of the Doppler is not learned");
   }
-  DopplerErrorField field(calibration.shape);
+  const FieldShape& shape = calibration.shape;
+  if (shape.views.empty() || shape.views.size() > kMostSensors || shape.lines > kMostLines || shape.faces == 0 ||
+      shape.faces > kMostFaces) {
+    throw UsageError(
+        fmt::format("a calibration of {} sensors, {} lines and {} faces; expected 1 to {}, 0 to {} and 1 to {}",
+                    shape.views.size(), shape.lines, shape.faces, kMostSensors, kMostLines, kMostFaces));
+  }
+  DopplerErrorField field(shape);
   const auto n = static_cast<Eigen::Index>(field.size());
-  bool fits = calibration.parts.size() == field.groups().size() && calibration.information.size() == field.size() &&
-              calibration.gradient.size() == field.size();
-  for (std::size_t k = 0; fits && k < field.groups().size(); ++k) {
-    fits = calibration.parts[k].error_mps.size() == field.groups()[k].size() &&
-           calibration.parts[k].name == field.groups()[k].name && calibration.parts[k].scale_mps > 0.0;
-  }
-  for (std::size_t k = 0; fits && k < field.size(); ++k) {
-    fits = calibration.information[k].size() == k + 1;
-  }
-  if (!fits) {
+  if (!fits(calibration, field)) {
     throw UsageError("the parts of the calibration do not fit its sensors, lines and faces");
   }
-  theta_.resize(n);
+  Eigen::VectorXd theta(n);
   for (std::size_t k = 0; k < field.groups().size(); ++k) {
     DopplerErrorField::Group& group = field.groups()[k];
     group.tau = calibration.parts[k].scale_mps;
     for (std::size_t i = 0; i < group.size(); ++i) {
-      theta_[static_cast<Eigen::Index>(group.begin + i)] = calibration.parts[k].error_mps[i];
+      theta[static_cast<Eigen::Index>(group.begin + i)] = calibration.parts[k].error_mps[i];
     }
   }
   Eigen::MatrixXd Q(n, n);
@@ -69,7 +90,14 @@ void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
       Q(i, j) = Q(j, i) = calibration.information[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
     }
   }
+  Eigen::MatrixXd with_prior = Q;
+  Eigen::VectorXd unused = g;
+  field.add_prior(theta, with_prior, unused);
+  if (!with_prior.allFinite() || !unused.allFinite() || with_prior.llt().info() != Eigen::Success) {
+    throw UsageError("the information of the calibration is no positive definite matrix of finite numbers");
+  }
   field_ = std::move(field);
+  theta_ = theta;
   quadratic_.emplace(n, 0, config_.learn_vibration);
   quadratic_->set_field(Q, g);
   stamp_variance_ = LearnedVariance(stamp_prior(calibration.stamp_sigma_s));

@@ -338,6 +338,14 @@ TEST(WindowEstimator, RefusesTheCalibrationOfAnotherSensor) {
   SensorCalibration torn = learned;
   torn.information.pop_back();
   EXPECT_THROW(drive({}, 1, {}, 1, torn), UsageError);
+  SensorCalibration impossible = learned;
+  impossible.information[2][2] = -1e9;
+  EXPECT_THROW(drive({}, 1, {}, 1, impossible), UsageError);
+  impossible.information[2][2] = std::nan("");
+  EXPECT_THROW(drive({}, 1, {}, 1, impossible), UsageError);
+  SensorCalibration huge = learned;
+  huge.shape.lines = 1000000;
+  EXPECT_THROW(drive({}, 1, {}, 1, huge), UsageError);
   WindowConfig without;
   without.learn_field = false;
   EXPECT_THROW(drive({}, 1, without, 1, learned), UsageError);

@@ -21,8 +21,7 @@ constexpr formats::Limits kAzimuth_rad{-2.0 * std::numbers::pi, 2.0 * std::numbe
 constexpr formats::Limits kSpan_rad{0.01, 2.0 * std::numbers::pi + 0.1};
 constexpr formats::Limits kError_mps{-100.0, 100.0};
 constexpr formats::Limits kScale_mps{1e-6, 10.0};
-constexpr formats::Limits kSigma_s{1e-9, 1.0};
-constexpr double kMostUnknowns = 10000;
+constexpr formats::Limits kSigma_s{1e-6, 0.1};
 
 // A text that reads back as the same numbers.
 std::string list_of(const std::vector<double>& values) { return fmt::format("[{}]", fmt::join(values, ", ")); }
@@ -61,7 +60,7 @@ SensorCalibration read_calibration(const std::filesystem::path& path) {
   SensorCalibration result;
   static_cast<void>(map.whole_number("version", {1, 1}));
   FieldShape& shape = result.shape;
-  shape.lines = static_cast<std::size_t>(map.whole_number("lines", {0, kMostUnknowns}));
+  shape.lines = static_cast<std::size_t>(map.whole_number("lines", {0, 1024}));
   shape.faces = static_cast<std::size_t>(map.whole_number("faces", {1, 256}));
   shape.intensity_mean = map.number("intensity_mean", kAny);
   shape.intensity_scale = map.number("intensity_scale", kNotNegative);
