@@ -13,6 +13,10 @@
 namespace dynamic_icp::tests {
 namespace {
 
+constexpr const char* kVibration =
+    "--set vibration.wheel.low_hz=7 --set vibration.wheel.high_hz=13 --set vibration.wheel.amplitude_mm=1.5 "
+    "--set vibration.wheel.amplitude_deg=0.03";
+
 /// Root mean square errors from scan to scan.
 struct Errors {
   double rte_mm = 0.0;
@@ -75,6 +79,16 @@ TEST_F(PresetWindow, FindsStampsThatJitter) {
   EXPECT_LT(window("highway", "--set lidar.timing.stamp_jitter_s=0.001").rte_mm, 18.0);
 }
 
+TEST_F(PresetWindow, FollowsVibration) {
+  const Errors errors = window("city", kVibration);
+  EXPECT_LT(errors.rte_mm, 4.0);
+  EXPECT_LT(errors.rre_deg, 0.05);
+}
+
+TEST_F(PresetWindow, LearnsADirectionalErrorInATunnel) {
+  EXPECT_LT(window("tunnel", "--set lidar.doppler_error.direction_mps=0.15").rte_mm, 12.0);
+}
+
 TEST_F(PresetWindow, UsesWhatItLearnedInAnotherDrive) {
   const std::string error = "--set lidar.doppler_error.direction_mps=0.15";
   window("city", error);
@@ -110,13 +124,7 @@ TEST_F(KnownShortfall, AnErrorOfEachMirrorFace) {
   EXPECT_LT(simulate_and_run("city", "--set lidar.faces=6 --set lidar.doppler_error.face_mps=0.1").rte_mm, 3.0);
 }
 
-TEST_F(KnownShortfall, VibrationOfTheMount) {
-  const Errors errors = simulate_and_run(
-      "city",
-      "--set vibration.wheel.low_hz=7 --set vibration.wheel.high_hz=13 --set vibration.wheel.amplitude_mm=1.5 "
-      "--set vibration.wheel.amplitude_deg=0.03");
-  EXPECT_LT(errors.rte_mm, 4.0);
-}
+TEST_F(KnownShortfall, VibrationOfTheMount) { EXPECT_LT(simulate_and_run("city", kVibration).rte_mm, 4.0); }
 
 TEST_F(KnownShortfall, StampsThatJitter) {
   EXPECT_LT(simulate_and_run("highway", "--set lidar.timing.stamp_jitter_s=0.001").rte_mm, 3.0);
