@@ -16,9 +16,9 @@ namespace {
 constexpr double kSameView_rad = 0.15;
 
 // More is no sensor; a field for them would fill the memory.
-constexpr std::size_t kMostSensors = 64;
-constexpr std::size_t kMostLines = 1024;
-constexpr std::size_t kMostFaces = 256;
+constexpr std::size_t kMaxSensors = 64;
+constexpr std::size_t kMaxLines = 1024;
+constexpr std::size_t kMaxFaces = 256;
 
 std::string text_of(const FieldShape& shape, std::size_t sensor) {
   const FieldShape::View& view = shape.views[sensor];
@@ -63,11 +63,11 @@ void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
     throw UsageError("a calibration of the sensor has no effect where the error of the Doppler is not learned");
   }
   const FieldShape& shape = calibration.shape;
-  if (shape.views.empty() || shape.views.size() > kMostSensors || shape.lines > kMostLines || shape.faces == 0 ||
-      shape.faces > kMostFaces) {
+  if (shape.views.empty() || shape.views.size() > kMaxSensors || shape.lines > kMaxLines || shape.faces == 0 ||
+      shape.faces > kMaxFaces) {
     throw UsageError(
         fmt::format("a calibration of {} sensors, {} lines and {} faces; expected 1 to {}, 0 to {} and 1 to {}",
-                    shape.views.size(), shape.lines, shape.faces, kMostSensors, kMostLines, kMostFaces));
+                    shape.views.size(), shape.lines, shape.faces, kMaxSensors, kMaxLines, kMaxFaces));
   }
   DopplerErrorField field(shape);
   const auto n = static_cast<Eigen::Index>(field.size());
@@ -134,7 +134,7 @@ std::optional<SensorCalibration> WindowEstimator::calibration() const {
     for (std::size_t i = 0; i < group.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(group.begin + i);
       part.error_mps.push_back(theta_[at]);
-      part.deviation_mps.push_back(std::sqrt(std::max(0.0, field_covariance_(at, at))));
+      part.sigma_mps.push_back(std::sqrt(std::max(0.0, field_covariance_(at, at))));
     }
     result.parts.push_back(std::move(part));
   }

@@ -51,9 +51,9 @@ struct SensorCalibration {
   FieldShape shape;
   struct Part {
     std::string name;
-    double scale_mps = 0.0;             ///< standard deviation of its errors
-    std::vector<double> error_mps;      ///< estimates
-    std::vector<double> deviation_mps;  ///< their standard deviations
+    double scale_mps = 0.0;         ///< standard deviation of its errors
+    std::vector<double> error_mps;  ///< estimates
+    std::vector<double> sigma_mps;  ///< their standard deviations
   };
   std::vector<Part> parts;  ///< the groups of the error field
   std::vector<std::vector<double>>

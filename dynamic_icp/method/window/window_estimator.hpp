@@ -53,7 +53,7 @@ struct WindowMotion {
 ///
 /// With z = [theta; map error; stamp errors; coefficients; vibration] a scan minimises
 ///   sum_cells rho (s + u . v(t) - Phi theta)^2 / sigma^2  +  sum_points rho (plane residual)^2 / sigma^2
-///   + sum_intervals jerk^2 / q  +  theta^T (tau^2 K)^-1 theta  +  past scans
+///   + sum_knots (jerk^2 / q + vibration drive^2 / r)  +  theta^T (tau^2 K)^-1 theta  +  past scans
 /// by Gauss and Newton; then it joins the past.
 class WindowEstimator {
  public:

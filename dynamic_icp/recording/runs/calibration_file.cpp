@@ -45,8 +45,8 @@ std::string calibration_text(const SensorCalibration& calibration) {
   }
   text += "parts:\n";
   for (const SensorCalibration::Part& part : calibration.parts) {
-    text += fmt::format("  - name: {}\n    scale_mps: {}\n    error_mps: {}\n    deviation_mps: {}\n", part.name,
-                        part.scale_mps, list_of(part.error_mps), list_of(part.deviation_mps));
+    text += fmt::format("  - name: {}\n    scale_mps: {}\n    error_mps: {}\n    sigma_mps: {}\n", part.name,
+                        part.scale_mps, list_of(part.error_mps), list_of(part.sigma_mps));
   }
   text += fmt::format("gradient: {}\ninformation:  # (s/m)^2, lower triangle\n", list_of(calibration.gradient));
   for (const std::vector<double>& row : calibration.information) {
@@ -76,7 +76,7 @@ SensorCalibration read_calibration(const std::filesystem::path& path) {
   for (const formats::YamlMap& part : map.list("parts")) {
     SensorCalibration::Part read{
         part.text("name"), part.number("scale_mps", kScale_mps), part.numbers("error_mps", 0, kError_mps), {}};
-    read.deviation_mps = part.numbers("deviation_mps", read.error_mps.size(), kNotNegative);
+    read.sigma_mps = part.numbers("sigma_mps", read.error_mps.size(), kNotNegative);
     result.parts.push_back(std::move(read));
   }
   result.gradient = map.numbers("gradient", 0, kAny);

@@ -63,7 +63,7 @@ TEST_F(CalibrationFile, ReadsBackTheSameNumbers) {
     EXPECT_EQ(read.parts[k].name, written.parts[k].name);
     EXPECT_EQ(read.parts[k].scale_mps, written.parts[k].scale_mps);
     EXPECT_EQ(read.parts[k].error_mps, written.parts[k].error_mps);
-    EXPECT_EQ(read.parts[k].deviation_mps, written.parts[k].deviation_mps);
+    EXPECT_EQ(read.parts[k].sigma_mps, written.parts[k].sigma_mps);
   }
   EXPECT_EQ(read.information, written.information);
   EXPECT_EQ(read.gradient, written.gradient);
@@ -74,7 +74,7 @@ TEST_F(CalibrationFile, ReadsBackTheSameNumbers) {
 TEST_F(CalibrationFile, RefusesWhatDoesNotFit) {
   EXPECT_NE(refused("version: 1", "version: 2").find("calibration.yaml: line 3"), std::string::npos);
   EXPECT_NE(refused("scale_mps: 0.11", "scale_mps: -0.11").find("scale_mps"), std::string::npos);
-  EXPECT_NE(refused("deviation_mps: [0.05]", "deviation_mps: [0.05, 1]").find("deviation_mps"), std::string::npos);
+  EXPECT_NE(refused("sigma_mps: [0.05]", "sigma_mps: [0.05, 1]").find("sigma_mps"), std::string::npos);
   EXPECT_NE(refused("[0.1, 0.2, 100000]", "[0.1, 0.2]").find("row"), std::string::npos);
   EXPECT_NE(refused("[0.1, -0.2]", "[0.1, .nan]").find("error_mps"), std::string::npos);
   EXPECT_NE(refused("lines: 64", "lines: 64\nline: 3").find("'line'"), std::string::npos);
