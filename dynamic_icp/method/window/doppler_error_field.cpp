@@ -6,6 +6,7 @@
 #include <cmath>
 #include <utility>
 
+#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 namespace dynamic_icp::window {
@@ -71,8 +72,9 @@ std::pair<std::size_t, double> between_nodes(double share, std::size_t count) {
 }  // namespace
 
 std::size_t DopplerErrorField::add_group(std::string_view name, Eigen::MatrixXd K, double tau, bool is_learned) {
-  Group group{name, size_, std::move(K), {}, tau, is_learned};
+  Group group{name, size_, std::move(K), {}, {}, tau, is_learned};
   group.inverse = group.K.inverse();
+  group.inverse_root = group.inverse.llt().matrixL();
   size_ += group.size();
   groups_.push_back(std::move(group));
   return groups_.back().begin;
@@ -171,18 +173,23 @@ double DopplerErrorField::at(const DopplerCell& cell, const Eigen::VectorXd& the
   return b;
 }
 
-void DopplerErrorField::add_prior(const Eigen::VectorXd& theta, Eigen::Ref<Eigen::MatrixXd> H,
-                                  Eigen::Ref<Eigen::VectorXd> g) const {
+void DopplerErrorField::add_prior_information(Eigen::Ref<Eigen::MatrixXd> H) const {
   for (const Group& group : groups_) {
     const auto begin = static_cast<Eigen::Index>(group.begin);
     const Eigen::Index n = group.K.rows();
-    const double scale = 1.0 / (group.tau * group.tau);
-    H.block(begin, begin, n, n) += scale * group.inverse;
-    g.segment(begin, n) += scale * (group.inverse * theta.segment(begin, n));
+    H.block(begin, begin, n, n) += group.inverse / (group.tau * group.tau);
   }
 }
 
-void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance) {
+void DopplerErrorField::add_prior_gradient(const Eigen::VectorXd& theta, Eigen::Ref<Eigen::VectorXd> g) const {
+  for (const Group& group : groups_) {
+    const auto begin = static_cast<Eigen::Index>(group.begin);
+    const Eigen::Index n = group.K.rows();
+    g.segment(begin, n) += (group.inverse * theta.segment(begin, n)) / (group.tau * group.tau);
+  }
+}
+
+void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance_root) {
   double largest = 0.0;
   for (Group& group : groups_) {
     if (!group.is_learned) {
@@ -192,8 +199,10 @@ void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::
     const Eigen::Index n = group.K.rows();
     const auto part = theta.segment(begin, n);
     const double squares = part.dot(group.inverse * part);
-    const double unknown =
-        group.inverse.cwiseProduct(covariance.block(begin, begin, n, n)).sum() / (group.tau * group.tau);
+    // tr(K^-1 M M^T) = |root^T M|^2 with K^-1 = root root^T
+    const auto M = covariance_root.middleRows(begin, n);
+    const double trace = group.K.isIdentity() ? M.squaredNorm() : (group.inverse_root.transpose() * M).squaredNorm();
+    const double unknown = trace / (group.tau * group.tau);
     const double known = std::clamp(static_cast<double>(n) - unknown, 0.0, static_cast<double>(n));
     group.tau = std::clamp(std::sqrt((squares + kPriorTau * kPriorTau) / (known + 1.0)), kMinTau, kMaxTau);
     if (group.name == "azimuth" || group.name == "cross") {

@@ -54,18 +54,22 @@ class DopplerErrorField {
   [[nodiscard]] FieldColumns columns(const DopplerCell& cell) const;
   [[nodiscard]] double at(const DopplerCell& cell, const Eigen::VectorXd& theta) const;
 
-  /// Adds the information of the prior to the first rows and columns of H, and its gradient at theta.
-  void add_prior(const Eigen::VectorXd& theta, Eigen::Ref<Eigen::MatrixXd> H, Eigen::Ref<Eigen::VectorXd> g) const;
+  /// Adds the information of the prior to the first rows and columns of H.
+  void add_prior_information(Eigen::Ref<Eigen::MatrixXd> H) const;
 
-  /// Learns the scales from an estimate and its covariance, by MacKay's fixed point
+  /// Adds its gradient at theta to the first rows of g.
+  void add_prior_gradient(const Eigen::VectorXd& theta, Eigen::Ref<Eigen::VectorXd> g) const;
+
+  /// Learns the scales from an estimate and its covariance P = M M^T, by MacKay's fixed point
   /// tau^2 = theta^T K^-1 theta / (n - tr(K^-1 P) / tau^2).
-  void learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance);
+  void learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance_root);
 
   struct Group {
     std::string_view name;
     std::size_t begin = 0;
     Eigen::MatrixXd K;        ///< correlation
     Eigen::MatrixXd inverse;  ///< of it
+    Eigen::MatrixXd inverse_root;  ///< L with the inverse L L^T
     double tau = 0.05;        ///< m/s
     bool is_learned = true;
     [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(K.rows()); }

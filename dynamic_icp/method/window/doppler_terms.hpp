@@ -45,18 +45,20 @@ class DopplerTerms {
                const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double stamp_s, double cell_variance,
                bool has_lever_arms);
 
-  /// Adds the terms, linearised at a trajectory and theta. All Doppler values of the scan have one more error in
-  /// common, N(0, `scan_variance`) (m/s)^2, which is eliminated.
-  void add(const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, const Layout& layout, double scan_variance,
-           Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
-
-  /// That error at the state of the last `add`, m/s, and its variance given the rest, (m/s)^2.
+  /// The error that all Doppler values of the scan have in common, N(0, `scan_variance`) (m/s)^2: it is eliminated.
   struct ScanError {
-    double value = 0.0;
-    double variance = 0.0;
+    double value = 0.0;           ///< m/s
+    double variance = 0.0;        ///< given the rest, (m/s)^2
     Eigen::VectorXd by_unknowns;  ///< d value / d unknowns of the window, negative
   };
-  [[nodiscard]] const ScanError& scan_error() const { return scan_error_; }
+
+  /// Adds the information of the terms, linearised at a trajectory; they are linear in theta.
+  void add_information(const SplineTrajectory& trajectory, const Layout& layout, double scan_variance,
+                       Eigen::MatrixXd& H) const;
+
+  /// And their gradient.
+  ScanError add_gradient(const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, const Layout& layout,
+                         double scan_variance, Eigen::VectorXd& g) const;
 
   /// Variance that cells show beyond the noise of their points, (m/s)^2, robust; at the given state.
   [[nodiscard]] double unexplained_variance(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
@@ -72,9 +74,17 @@ class DopplerTerms {
     Eigen::VectorXd N_scan;  ///< nodes x error of the scan
   };
 
+  struct Nodes {
+    Eigen::Index first = 0;  ///< of the coefficients that they depend on
+    Eigen::VectorXd motion;
+    Eigen::MatrixXd by_coefficients;
+  };
+
   void weigh(const std::vector<DopplerCell>& cells, const DopplerErrorField& field, const SplineTrajectory& trajectory,
              const Eigen::VectorXd& theta, double cell_variance);
   void add_cell(const DopplerCell& cell, double w, const DopplerErrorField& field, const SplineTrajectory& trajectory);
+  [[nodiscard]] Nodes nodes_of(const Interval& interval, const SplineTrajectory& trajectory,
+                               const Layout& layout) const;
   [[nodiscard]] double residual(const DopplerCell& cell, const DopplerErrorField& field,
                                 const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const;
 
@@ -87,7 +97,6 @@ class DopplerTerms {
   Eigen::VectorXd N_theta_scan_;  ///< theta x error of the scan
   double N_scan_ = 0.0;
   double b_scan_ = 0.0;
-  mutable ScanError scan_error_;
 };
 
 }  // namespace dynamic_icp::window

@@ -147,7 +147,8 @@ struct Sums {
 Sums sums_of(const Problem& problem, const DopplerTerms& terms) {
   const Layout at = problem.layout();
   Sums sums{MatrixXd::Zero(at.size(), at.size()), VectorXd::Zero(at.size())};
-  terms.add(problem.trajectory, problem.theta, at, kScanVariance, sums.H, sums.g);
+  terms.add_information(problem.trajectory, at, kScanVariance, sums.H);
+  terms.add_gradient(problem.trajectory, problem.theta, at, kScanVariance, sums.g);
   return sums;
 }
 

@@ -91,9 +91,8 @@ void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
     }
   }
   Eigen::MatrixXd with_prior = Q;
-  Eigen::VectorXd unused = g;
-  field.add_prior(theta, with_prior, unused);
-  if (!with_prior.allFinite() || !unused.allFinite() || with_prior.llt().info() != Eigen::Success) {
+  field.add_prior_information(with_prior);
+  if (!with_prior.allFinite() || !g.allFinite() || !theta.allFinite() || with_prior.llt().info() != Eigen::Success) {
     throw UsageError("the information of the calibration is no positive definite matrix of finite numbers");
   }
   field_ = std::move(field);
@@ -134,7 +133,7 @@ std::optional<SensorCalibration> WindowEstimator::calibration() const {
     for (std::size_t i = 0; i < group.size(); ++i) {
       const auto at = static_cast<Eigen::Index>(group.begin + i);
       part.error_mps.push_back(theta_[at]);
-      part.sigma_mps.push_back(std::sqrt(std::max(0.0, field_covariance_(at, at))));
+      part.sigma_mps.push_back(field_covariance_root_.row(at).norm());
     }
     result.parts.push_back(std::move(part));
   }

@@ -7,7 +7,6 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/Cholesky>
 #include <Eigen/LU>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
@@ -115,9 +114,7 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
     linearise_here();
     settle_first(scan, workers);
   }
-  Problem all = assemble(nullptr, 0);
-  add_start(scan, all);
-  join(std::move(all));
+  join(start_terms(scan));
   find_twist();
   ++scans_ever_;
 }
@@ -128,14 +125,12 @@ bool WindowEstimator::settle_first(const WindowScan& scan, const Workers& worker
     if (pass < kFirstPasses) {
       average_doppler(scan, pass == 0, workers);
     }
-    Problem all = assemble(nullptr, 0);
-    add_start(scan, all);
-    if (!(solve(all) < kMaxCoordinate_m)) {
+    linearise();
+    if (!(solve(start_terms(scan)) < kMaxCoordinate_m)) {
       return false;
     }
-    all = assemble(nullptr, 0);
-    add_start(scan, all);
-    learn_field(std::move(all));
+    find_covariance();
+    learn_field();
     if (scans_ever_ == 0 && pass >= kFirstPasses) {
       learn_motion(stamp_s() + begin_s_, stamp_s() + end_s_);
     }
@@ -161,7 +156,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
     if (motion.diverged) {
       return motion;
     }
-    learn_field(whole_problem(planes, first_new));
+    find_covariance();
     if (std::max(learn_stamps(), learn_scan_errors()) < kMuchNoise) {
       break;
     }
@@ -172,7 +167,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   motion_prior_.keep();
   compare_with_planes(false, *planes);
   motion.planes = planes->quality();
-  join(whole_problem(planes, first_new));
+  join(scan_terms(planes, first_new));
   learn_roughness(motion.planes);
   motion_between(last_s, motion);
   find_twist();
@@ -228,6 +223,9 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
     if (motion.iterations < passes) {
       average_doppler(scan, scans_ever_ < kFirstScans, workers);
     }
+    if (k == 0 || motion.iterations < passes) {
+      linearise();
+    }
     if (is_second && motion.iterations > 0) {
       lay_first_again(first_points, map, workers);
     }
@@ -235,7 +233,7 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
       planes.emplace(*scan.static_points, map, stamp_s(), config_.knot_spacing_s / kSlices, workers);
     }
     compare_with_planes(true, *planes);
-    const double step = solve(whole_problem(planes, first_new));
+    const double step = solve(scan_terms(planes, first_new));
     if (!(step < kMaxCoordinate_m)) {
       motion.diverged = true;
       return;
@@ -249,16 +247,6 @@ void WindowEstimator::compare_with_planes(bool adapt, PlaneTerms& planes) const 
   planes.associate(
       trajectory_, map_error_,
       {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel, config_.max_noise_share}, adapt);
-}
-
-WindowEstimator::Problem WindowEstimator::whole_problem(const std::optional<PlaneTerms>& planes,
-                                                        std::size_t first_new) const {
-  Problem all = assemble(config_.use_planes && planes ? &*planes : nullptr, first_new);
-  add_stamp(stamp_variance_.value(), all);
-  if (scans_ == 1) {
-    tie_map_to_first_sweep(all);
-  }
-  return all;
 }
 
 /// Weights around the trajectory of the moment.
@@ -275,45 +263,48 @@ void WindowEstimator::average_doppler(const WindowScan& scan, bool is_first_pass
   }
 }
 
-/// One step. Theta, on which everything depends linearly, is eliminated.
-double WindowEstimator::solve(Problem problem) {
-  const Layout at = layout();
-  const Eigen::Index n = at.size() - at.field;
-  field_->add_prior(theta_, problem.H.topLeftCorner(at.field, at.field), problem.g.head(at.field));
-  const Eigen::LLT<Eigen::MatrixXd> fields(problem.H.topLeftCorner(at.field, at.field));
-  const Eigen::MatrixXd W =
-      fields.matrixL().solve(problem.H.topRightCorner(at.field, n)) * (config_.learn_field ? 1.0 : 0.0);
-  const Eigen::VectorXd w = fields.matrixL().solve(problem.g.head(at.field));
-  Eigen::MatrixXd S = problem.H.bottomRightCorner(n, n);
-  S.noalias() -= W.transpose() * W;
-  S.diagonal().array() += kNothing;
-  const Eigen::LLT<Eigen::MatrixXd> rest(S);
-  const Eigen::VectorXd y = -rest.solve(problem.g.tail(n) - W.transpose() * w);
-  if (fields.info() != Eigen::Success || rest.info() != Eigen::Success || !y.allFinite()) {
+/// One step of all unknowns.
+double WindowEstimator::solve(const Problem& rest) {
+  Eigen::VectorXd gradient = linear_gradient();
+  field_->add_prior_gradient(theta_, gradient.head(theta_.size()));
+  factor(rest);
+  const Eigen::VectorXd y = -rest_factor_.solve(elimination_.rest_gradient(gradient) + rest.g);
+  if (!elimination_.is_solvable() || rest_factor_.info() != Eigen::Success || !y.allFinite()) {
     return std::numeric_limits<double>::infinity();
   }
-  if (config_.learn_field) {
-    theta_ -= fields.matrixU().solve(w + W * y);
-  }
+  theta_ += elimination_.step(gradient, y);
+  const Layout at = rest_layout();
   map_error_ += y.head(Layout::kMapError);
   stamp_errors_ += y.segment<2>(Layout::kMapError);
   double largest = 0.0;
   for (std::size_t k = 0; k < trajectory_.coefficients().size(); ++k) {
-    const auto step = y.segment<6>(Layout::kBefore + 6 * static_cast<Eigen::Index>(k));
+    const auto step = y.segment<6>(at.coefficient(k));
     trajectory_.coefficients()[k] += step;
     largest = std::max(largest, step.cwiseAbs().maxCoeff());
     if (at.vibrates) {
-      trajectory_.vibration()[k] += y.segment<6>(at.vibration(k) - at.field);
+      trajectory_.vibration()[k] += y.segment<6>(at.vibration(k));
     }
   }
   return largest;
 }
 
+/// The information of all unknowns but theta.
+void WindowEstimator::factor(const Problem& rest) {
+  Eigen::MatrixXd S = elimination_.rest() + rest.H;
+  S.diagonal().array() += kNothing;
+  rest_factor_.compute(S);
+}
+
 /// The scan becomes part of the past; the prior of the field stays apart, so that its scale can still be learned.
-void WindowEstimator::join(Problem problem) {
-  quadratic_->set(problem.H, problem.g);
+void WindowEstimator::join(const Problem& rest) {
+  Eigen::VectorXd g = linear_gradient();
+  g.tail(rest.g.size()) += rest.g;
+  linear_H_.bottomRightCorner(rest.g.size(), rest.g.size()) += rest.H;
+  quadratic_->set(linear_H_, std::move(g));
   linearise_here();
-  learn_field(std::move(problem));
+  factor(rest);
+  find_covariance();
+  learn_field();
   learn_cell_variance();
 }
 

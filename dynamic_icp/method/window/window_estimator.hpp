@@ -17,6 +17,7 @@
 #include "dynamic_icp/method/window/doppler_cells.hpp"
 #include "dynamic_icp/method/window/doppler_error_field.hpp"
 #include "dynamic_icp/method/window/doppler_terms.hpp"
+#include "dynamic_icp/method/window/field_elimination.hpp"
 #include "dynamic_icp/method/window/learned_variance.hpp"
 #include "dynamic_icp/method/window/motion_prior.hpp"
 #include "dynamic_icp/method/window/plane_terms.hpp"
@@ -100,6 +101,7 @@ class WindowEstimator {
   [[nodiscard]] const Eigen::VectorXd& theta() const { return theta_; }
 
  private:
+  /// Of all unknowns but theta.
   struct Problem {
     Eigen::MatrixXd H;
     Eigen::VectorXd g;
@@ -115,21 +117,25 @@ class WindowEstimator {
                std::optional<PlaneTerms>& planes, WindowMotion& motion, const Workers& workers);
   void average_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers);
   void compare_with_planes(bool adapt, PlaneTerms& planes) const;
-  double solve(Problem problem);
-  void join(Problem problem);
+  double solve(const Problem& rest);
+  void factor(const Problem& rest);
+  void join(const Problem& rest);
   void lay_first_again(const Scan& first_points, mapping::PlaneMap& map, const Workers& workers);
 
   // window_problem.cpp
-  [[nodiscard]] Problem assemble(const PlaneTerms* planes, std::size_t first_new) const;
-  [[nodiscard]] Problem whole_problem(const std::optional<PlaneTerms>& planes, std::size_t first_new) const;
-  void add_stamp(double variance, Problem& problem) const;
-  void add_start(const WindowScan& scan, Problem& problem) const;
+  void linearise();
+  [[nodiscard]] Eigen::VectorXd linear_gradient();
+  [[nodiscard]] double scan_error_variance() const;
+  [[nodiscard]] Problem terms_of_rest(const PlaneTerms* planes, std::size_t first_new, double stamp_variance) const;
+  [[nodiscard]] Problem start_terms(const WindowScan& scan) const;
+  [[nodiscard]] Problem scan_terms(const std::optional<PlaneTerms>& planes, std::size_t first_new) const;
   void tie_map_to_first_sweep(Problem& problem) const;
   [[nodiscard]] Eigen::MatrixXd displacement_rows(double time_s, const Layout& layout) const;
   [[nodiscard]] Eigen::MatrixXd sweep_rows(const Layout& layout) const;
 
   // window_learning.cpp
-  void learn_field(Problem problem);
+  void find_covariance();
+  void learn_field();
   void learn_motion(double from_s, double to_s);
   double learn_stamps();
   double learn_scan_errors();
@@ -143,7 +149,8 @@ class WindowEstimator {
   // window_uses.cpp
   void motion_between(double source_s, WindowMotion& motion) const;
   void find_twist();
-  [[nodiscard]] Layout layout() const { return quadratic_->layout(); }
+  [[nodiscard]] const Layout& layout() const { return quadratic_->layout(); }
+  [[nodiscard]] Layout rest_layout() const { return {0, layout().coefficients, layout().vibrates}; }
 
   WindowConfig config_;
   double map_memory_scans_;
@@ -161,9 +168,14 @@ class WindowEstimator {
   DopplerCells cells_;
   std::optional<DopplerTerms> doppler_;
   std::vector<double> predicted_;
+  Eigen::MatrixXd linear_H_;  ///< of the past and the Doppler, at the state where it was last linearised
+  FieldElimination elimination_;
+  DopplerTerms::ScanError scan_error_;
+  Eigen::LLT<Eigen::MatrixXd> rest_factor_;
+  Eigen::MatrixXd rest_root_;  ///< of the covariance
   Eigen::MatrixXd covariance_;  ///< of [map error; stamp errors; coefficients; vibration] after the last scan
   motion::Twist twist_;
-  Eigen::MatrixXd field_covariance_;  ///< of theta, where it was asked for
+  Eigen::MatrixXd field_covariance_root_;
   MotionPrior motion_prior_;
   LearnedVariance stamp_variance_;       ///< s^2
   LearnedVariance scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common

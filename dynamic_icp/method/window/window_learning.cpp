@@ -4,16 +4,11 @@
 #include <cmath>
 #include <utility>
 
-#include <Eigen/Cholesky>
-
 #include "dynamic_icp/method/window/window_estimator.hpp"
 
 // What a scan tells of its noise and of the error of its sensor.
 namespace dynamic_icp::window {
 namespace {
-
-// 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
-constexpr double kNothing = 1e-9;
 
 // Of the newest scan in a mean over the last scans.
 constexpr double kGain = 0.2;
@@ -28,29 +23,26 @@ constexpr double kVelocityWalk_mps = 0.002;
 
 }  // namespace
 
-/// The covariance of the window, and from it the scales of the error field.
-void WindowEstimator::learn_field(Problem problem) {
-  const Layout at = layout();
-  const Eigen::Index n = at.size() - at.field;
-  field_->add_prior(theta_, problem.H.topLeftCorner(at.field, at.field), problem.g.head(at.field));
-  const Eigen::LLT<Eigen::MatrixXd> fields(problem.H.topLeftCorner(at.field, at.field));
-  const Eigen::MatrixXd W =
-      fields.matrixL().solve(problem.H.topRightCorner(at.field, n)) * (config_.learn_field ? 1.0 : 0.0);
-  Eigen::MatrixXd S = problem.H.bottomRightCorner(n, n);
-  S.noalias() -= W.transpose() * W;
-  S.diagonal().array() += kNothing;
-  covariance_ = S.ldlt().solve(Eigen::MatrixXd::Identity(n, n));
+/// The covariance of the window at the last factor of the rest.
+void WindowEstimator::find_covariance() {
+  const Eigen::Index n = rest_factor_.rows();
+  rest_root_ = rest_factor_.matrixU().solve(Eigen::MatrixXd::Identity(n, n));
+  covariance_ = Eigen::MatrixXd::Zero(n, n);
+  covariance_.selfadjointView<Eigen::Lower>().rankUpdate(rest_root_);
+  covariance_.triangularView<Eigen::StrictlyUpper>() = covariance_.transpose();
+}
+
+/// The scales of the error field, from the covariance of the window.
+void WindowEstimator::learn_field() {
   if (config_.learn_field) {
-    const Eigen::MatrixXd Z = fields.matrixU().solve(W);
-    field_covariance_ = fields.solve(Eigen::MatrixXd::Identity(at.field, at.field));
-    field_covariance_.noalias() += Z * covariance_ * Z.transpose();
-    field_->learn_scales(theta_, field_covariance_);
+    field_covariance_root_ = elimination_.covariance_root(rest_root_);
+    field_->learn_scales(theta_, field_covariance_root_);
   }
 }
 
 /// How the sensor moves between two times.
 void WindowEstimator::learn_motion(double from_s, double to_s) {
-  motion_prior_.learn(trajectory_, trajectory_.interval(from_s), trajectory_.interval(to_s), layout(), covariance_);
+  motion_prior_.learn(trajectory_, trajectory_.interval(from_s), trajectory_.interval(to_s), rest_layout(), covariance_);
 }
 
 /// How far stamps are off; by which share their variance grew.
@@ -64,11 +56,9 @@ double WindowEstimator::learn_scan_errors() {
   if (!doppler_) {
     return 0.0;
   }
-  const DopplerTerms::ScanError& error = doppler_->scan_error();
-  const Eigen::Index n = covariance_.rows();
-  const Eigen::VectorXd by_rest = error.by_unknowns.tail(n);
-  const double variance = error.variance + by_rest.dot(covariance_ * by_rest);
-  return scan_error_variance_.propose(error.value, variance);
+  const Eigen::VectorXd by_rest = scan_error_.by_unknowns.tail(covariance_.rows());
+  const double variance = scan_error_.variance + by_rest.dot(covariance_ * by_rest);
+  return scan_error_variance_.propose(scan_error_.value, variance);
 }
 
 /// How rough the surfaces are.

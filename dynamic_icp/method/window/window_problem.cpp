@@ -28,7 +28,20 @@ const Vector6d kMapInformation{{100.0, 100.0, 100.0, 1.0, 1.0, 1.0}};
 
 }  // namespace
 
-WindowEstimator::Problem WindowEstimator::assemble(const PlaneTerms* planes, std::size_t first_new) const {
+/// The past and the Doppler, on which theta acts, linearised at the state of the moment; theta is eliminated from them.
+void WindowEstimator::linearise() {
+  const Layout at = layout();
+  linear_H_ = quadratic_->Q();
+  if (doppler_ && config_.use_doppler) {
+    doppler_->add_information(trajectory_, at, scan_error_variance(), linear_H_);
+  }
+  Eigen::MatrixXd F = linear_H_.topLeftCorner(at.field, at.field);
+  field_->add_prior_information(F);
+  elimination_ = FieldElimination(F, linear_H_, config_.learn_field);
+}
+
+/// Their gradient, without the prior of theta.
+Eigen::VectorXd WindowEstimator::linear_gradient() {
   const Layout at = layout();
   Eigen::VectorXd d(at.size());
   d.head(at.field) = theta_ - theta_0_;
@@ -40,11 +53,23 @@ WindowEstimator::Problem WindowEstimator::assemble(const PlaneTerms* planes, std
       d.segment<6>(at.vibration(k)) = trajectory_.vibration()[k] - vibration_0_[k];
     }
   }
-  Problem problem{quadratic_->Q(), quadratic_->g() + quadratic_->Q() * d};
+  Eigen::VectorXd g = quadratic_->g();
+  g.noalias() += quadratic_->Q() * d;
   if (doppler_ && config_.use_doppler) {
-    doppler_->add(trajectory_, theta_, at, config_.learn_field ? scan_error_variance_.value() : kNoError, problem.H,
-                  problem.g);
+    scan_error_ = doppler_->add_gradient(trajectory_, theta_, at, scan_error_variance(), g);
   }
+  return g;
+}
+
+double WindowEstimator::scan_error_variance() const {
+  return config_.learn_field ? scan_error_variance_.value() : kNoError;
+}
+
+/// What has nothing to do with theta: planes, the map's error, how the sensor moves, stamps.
+WindowEstimator::Problem WindowEstimator::terms_of_rest(const PlaneTerms* planes, std::size_t first_new,
+                                                        double stamp_variance) const {
+  const Layout at = rest_layout();
+  Problem problem{Eigen::MatrixXd::Zero(at.size(), at.size()), Eigen::VectorXd::Zero(at.size())};
   if (planes != nullptr) {
     planes->add(at, problem.H, problem.g);
   }
@@ -54,17 +79,14 @@ WindowEstimator::Problem WindowEstimator::assemble(const PlaneTerms* planes, std
   problem.H.diagonal().segment<Layout::kMapError>(at.map_error()) += information;
   problem.g.segment<Layout::kMapError>(at.map_error()) += information.cwiseProduct(map_error_);
   motion_prior_.add(trajectory_, first_new, at, problem.H, problem.g);
+  problem.H(at.stamp(), at.stamp()) += 1.0 / stamp_variance;
+  problem.g[at.stamp()] += stamp_errors_[1] / stamp_variance;
   return problem;
 }
 
-/// What is known of the stamp at hand.
-void WindowEstimator::add_stamp(double variance, Problem& problem) const {
-  const Eigen::Index stamp = layout().stamp();
-  problem.H(stamp, stamp) += 1.0 / variance;
-  problem.g[stamp] += stamp_errors_[1] / variance;
-}
-
-void WindowEstimator::add_start(const WindowScan& scan, Problem& problem) const {
+/// The terms of the first scan: where and when it is, and what is known of its motion.
+WindowEstimator::Problem WindowEstimator::start_terms(const WindowScan& scan) const {
+  Problem problem = terms_of_rest(nullptr, 0, kStartStamp_s * kStartStamp_s);
   const TrajectoryPoint point = trajectory_.at(scan.stamp_s);
   const double h = trajectory_.knot_spacing();
   const double x = (scan.stamp_s - trajectory_.interval_begin(point.first)) / h;
@@ -75,7 +97,7 @@ void WindowEstimator::add_start(const WindowScan& scan, Problem& problem) const 
     sigma << Eigen::Vector3d::Constant(rotation), Eigen::Vector3d::Constant(position);
     return sigma;
   };
-  const Layout at = layout();
+  const Layout at = rest_layout();
   const auto add = [&](const std::array<double, 4>& w, const Vector6d& sigma, const std::vector<Vector6d>& prior) {
     const Vector6d information = sigma.cwiseAbs2().cwiseInverse();
     Vector6d e = Vector6d::Zero();
@@ -90,10 +112,20 @@ void WindowEstimator::add_start(const WindowScan& scan, Problem& problem) const 
       }
     }
   };
-  add_stamp(kStartStamp_s * kStartStamp_s, problem);
   add(point.weight, sigmas(kStartRotation, kStartPosition_m), coefficients_0_);
   add(point.slope, sigmas(config_.start_omega_rad_s, kStartVelocity_mps), coefficients_0_);
   add(curvature, sigmas(kStartAlpha_rad_s2, kStartAcceleration_mps2), coefficients_0_);
+  return problem;
+}
+
+WindowEstimator::Problem WindowEstimator::scan_terms(const std::optional<PlaneTerms>& planes,
+                                                     std::size_t first_new) const {
+  Problem problem =
+      terms_of_rest(config_.use_planes && planes ? &*planes : nullptr, first_new, stamp_variance_.value());
+  if (scans_ == 1) {
+    tie_map_to_first_sweep(problem);
+  }
+  return problem;
 }
 
 /// Rows of the rigid displacement, about the origin of the reference, of what is seen at a time; per coefficient.
@@ -118,7 +150,7 @@ Eigen::MatrixXd WindowEstimator::sweep_rows(const Layout& layout) const {
 }
 
 void WindowEstimator::tie_map_to_first_sweep(Problem& problem) const {
-  const Layout at = layout();
+  const Layout at = rest_layout();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(Layout::kMapError, at.size());
   rows.block(0, at.coefficient(0), 6, 6 * at.coefficients) = -displacement_rows(first_.stamp_s + first_.begin_s, at);
   rows.block(6, at.coefficient(0), 6, 6 * at.coefficients) = -displacement_rows(first_.stamp_s + first_.end_s, at);
