@@ -125,6 +125,7 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
     assign(timed, config_.preprocess, workers_, whole, frame);
   }
   memory_.measured = whole.doppler();
+  estimator_.sort(whole, workers_);
   estimator_.field_errors(whole, workers_, memory_.errors);
   for (std::size_t i = 0; i < whole.size(); ++i) {
     whole.shift_doppler(i, -memory_.errors[i]);

@@ -14,7 +14,7 @@ namespace dynamic_icp::window {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
-constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+constexpr std::size_t kCellBlock = 128;
 
 constexpr std::size_t kAzimuths = 300;   // 1.2 degrees
 constexpr std::size_t kElevations = 64;  // where the scan has no lines
@@ -72,9 +72,8 @@ std::uint16_t DopplerCells::line_of(const Eigen::Vector3d& u) {
   return static_cast<std::uint16_t>(elevation_step(u.z()));
 }
 
-/// Rows of one cell have the same sensor, line (or elevation), azimuth and time to the length of an interval.
-void DopplerCells::sort(const Scan& scan, const std::vector<std::uint8_t>& is_moving, double interval_s,
-                        const Workers& workers) {
+/// Points of one cell have the same sensor, line (or elevation), azimuth and time to the length of an interval.
+void DopplerCells::sort(const Scan& scan, double interval_s, const Workers& workers) {
   const Channels& channels = scan.channels();
   const motion::TimeSpan span = motion::time_span(scan);
   const auto intervals = static_cast<std::size_t>((span.last - span.first) / interval_s) + 1;
@@ -82,13 +81,10 @@ void DopplerCells::sort(const Scan& scan, const std::vector<std::uint8_t>& is_mo
       channels.line.empty()
           ? kElevations
           : static_cast<std::size_t>(*std::max_element(channels.line.begin(), channels.line.end())) + 1;
-  key_.resize(scan.size());
+  order_.keys.resize(scan.size());
   range_.resize(scan.size());
   workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
     range_[i] = scan.points()[i].norm();
-    if (is_moving[i] != 0) {
-      return;
-    }
     const Eigen::Vector3d& u = scan.directions()[i];
     const std::size_t line = channels.line.empty() ? elevation_step(u.z()) : channels.line[i];
     const std::size_t sensor = channels.sensor.empty() ? 0 : channels.sensor[i];
@@ -96,18 +92,17 @@ void DopplerCells::sort(const Scan& scan, const std::vector<std::uint8_t>& is_mo
         scan.has_times()
             ? std::min(intervals - 1, static_cast<std::size_t>((scan.times()[i] - span.first) / interval_s))
             : 0;
-    key_[i] = ((sensor * intervals + interval) * lines + line) * kAzimuths + azimuth_sector(u.x(), u.y());
+    order_.keys[i] = ((sensor * intervals + interval) * lines + line) * kAzimuths + azimuth_sector(u.x(), u.y());
   });
-  numbers_.clear();
-  cell_.resize(scan.size());
+  order_.sort();
+  points_.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    cell_[i] = is_moving[i] != 0 ? kNone : numbers_.number_of(key_[i]);
+    points_[order_.place(i)] = static_cast<std::uint32_t>(i);
   }
-  cell_count_ = numbers_.count();
 }
 
 /// From how points scatter within their cells: any motion and any smooth error is the same for all of a cell.
-void DopplerCells::learn_noise(const Scan& scan, const std::vector<double>& deviation) {
+void DopplerCells::learn_noise(const Scan& scan) {
   const std::vector<float>& intensity = scan.channels().intensity;
   if (noise_.range_edges_m.empty()) {
     noise_.range_edges_m = edges(range_, DopplerNoise::kRanges);
@@ -118,9 +113,9 @@ void DopplerCells::learn_noise(const Scan& scan, const std::vector<double>& devi
   std::vector<std::vector<double>> samples(DopplerNoise::kRanges * DopplerNoise::kIntensities);
   const std::size_t stride = std::max<std::size_t>(1, scan.size() / 16384);
   for (std::size_t i = 0; i < scan.size(); i += stride) {
-    if (cell_[i] != kNone && counts_[cell_[i]] >= kInformativeCell && std::isfinite(deviation[i])) {
+    if (std::isfinite(residual_[i]) && counts_[order_.cell[i]] >= kInformativeCell) {
       samples[noise_.bin(range_[i], intensity.empty() ? 0.0 : static_cast<double>(intensity[i]))].push_back(
-          std::abs(deviation[i]));
+          std::abs(residual_[i]));
     }
   }
   std::vector<double> all;
@@ -140,28 +135,37 @@ void DopplerCells::learn_noise(const Scan& scan, const std::vector<double>& devi
   }
 }
 
-const std::vector<DopplerCell>& DopplerCells::average(const Scan& scan, const std::vector<double>& measured,
-                                                      const std::vector<double>& predicted, double gate_mps) {
-  const Channels& channels = scan.channels();
-  sums_.assign(cell_count_, 0.0);
-  counts_.assign(cell_count_, 0.0);
+const std::vector<DopplerCell>& DopplerCells::average(const Scan& scan, const std::vector<std::uint8_t>& is_moving,
+                                                      const std::vector<double>& measured,
+                                                      const std::vector<double>& predicted, double gate_mps,
+                                                      const Workers& workers) {
+  counts_.assign(count(), 0.0);
   residual_.assign(scan.size(), std::numeric_limits<double>::quiet_NaN());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    const double e = measured[i] - predicted[i];
-    if (cell_[i] != kNone && std::abs(e) < gate_mps) {
-      residual_[i] = e;
-      sums_[cell_[i]] += e;
-      counts_[cell_[i]] += 1.0;
+  workers.for_each(count(), kCellBlock, [&](std::size_t cell) {
+    double sum = 0.0;
+    for (const std::uint32_t i : points(cell)) {
+      const double e = measured[i] - predicted[i];
+      if (is_moving[i] == 0 && std::abs(e) < gate_mps) {
+        residual_[i] = e;
+        sum += e;
+        counts_[cell] += 1.0;
+      }
     }
-  }
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (std::isfinite(residual_[i])) {
-      residual_[i] -= sums_[cell_[i]] / counts_[cell_[i]];
+    for (const std::uint32_t i : points(cell)) {
+      residual_[i] -= sum / counts_[cell];
     }
-  }
-  learn_noise(scan, residual_);
-  cells_.assign(cell_count_, {});
-  for (std::size_t i = 0; i < scan.size(); ++i) {
+  });
+  learn_noise(scan);
+  cells_.resize(count());
+  workers.for_each(count(), kCellBlock, [&](std::size_t cell) { cells_[cell] = mean_of(cell, scan, measured); });
+  std::erase_if(cells_, [](const DopplerCell& cell) { return cell.points < 0.5; });
+  return cells_;
+}
+
+DopplerCell DopplerCells::mean_of(std::size_t cell, const Scan& scan, const std::vector<double>& measured) const {
+  const Channels& channels = scan.channels();
+  DopplerCell mean;
+  for (const std::uint32_t i : points(cell)) {
     if (!std::isfinite(residual_[i])) {
       continue;
     }
@@ -173,36 +177,30 @@ const std::vector<DopplerCell>& DopplerCells::average(const Scan& scan, const st
     }
     const double robust = inside * inside;
     const double w = robust / variance;
-    DopplerCell& cell = cells_[cell_[i]];
     const Eigen::Vector3d& u = scan.directions()[i];
-    cell.u += w * u;
-    cell.s += w * measured[i];
-    cell.time_s += w * (scan.has_times() ? scan.times()[i] : 0.0);
-    cell.range_m += w * range_[i];
-    cell.intensity += w * intensity;
-    cell.weight += w;
-    cell.points += robust;
-    if (!channels.line.empty()) {
-      cell.line = channels.line[i];
-    } else {
-      cell.line = line_of(u);
-    }
-    cell.face = channels.face.empty() ? std::uint8_t{0} : channels.face[i];
-    cell.sensor = channels.sensor.empty() ? std::uint8_t{0} : channels.sensor[i];
+    mean.u += w * u;
+    mean.s += w * measured[i];
+    mean.time_s += w * (scan.has_times() ? scan.times()[i] : 0.0);
+    mean.range_m += w * range_[i];
+    mean.intensity += w * intensity;
+    mean.weight += w;
+    mean.points += robust;
+    mean.line = channels.line.empty() ? line_of(u) : channels.line[i];
+    mean.face = channels.face.empty() ? std::uint8_t{0} : channels.face[i];
+    mean.sensor = channels.sensor.empty() ? std::uint8_t{0} : channels.sensor[i];
   }
-  std::erase_if(cells_, [](const DopplerCell& cell) { return cell.points < 0.5; });
-  for (DopplerCell& cell : cells_) {
-    const double scale = 1.0 / cell.weight;
-    cell.u *= scale;
-    cell.s *= scale;
-    cell.time_s *= scale;
-    cell.range_m *= scale;
-    cell.intensity *= scale;
+  if (mean.weight > 0.0) {
+    const double scale = 1.0 / mean.weight;
+    mean.u *= scale;
+    mean.s *= scale;
+    mean.time_s *= scale;
+    mean.range_m *= scale;
+    mean.intensity *= scale;
     if (scan.is_of_rig()) {
-      cell.lxu = scan.mountings()[cell.sensor].translation().cross(cell.u);
+      mean.lxu = scan.mountings()[mean.sensor].translation().cross(mean.u);
     }
   }
-  return cells_;
+  return mean;
 }
 
 }  // namespace dynamic_icp::window

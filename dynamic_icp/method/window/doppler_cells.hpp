@@ -4,13 +4,14 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
-#include "dynamic_icp/method/spatial/key_numbers.hpp"
+#include "dynamic_icp/method/spatial/cell_order.hpp"
 
 namespace dynamic_icp::window {
 
@@ -44,14 +45,21 @@ struct DopplerNoise {
 /// Sorts the Doppler of static points into cells and weighs it.
 class DopplerCells {
  public:
-  /// Numbers the cells of the rows of `scan` with `is_moving` 0; `interval_s` is the longest time that may pass within
-  /// one.
-  void sort(const Scan& scan, const std::vector<std::uint8_t>& is_moving, double interval_s, const Workers& workers);
+  /// Finds the cells of all points of a scan; `interval_s` is the longest time that may pass within one.
+  void sort(const Scan& scan, double interval_s, const Workers& workers);
 
-  /// The means over the cells of `measured` Doppler (m/s). Weights come from the scatter around the `predicted` one
-  /// within each cell; rows beyond `gate_mps` of it have none. Learns the noise of points, too.
-  const std::vector<DopplerCell>& average(const Scan& scan, const std::vector<double>& measured,
-                                          const std::vector<double>& predicted, double gate_mps);
+  /// The means over the cells of the `measured` Doppler (m/s) of points with `is_moving` 0. Weights come from the
+  /// scatter around the `predicted` one within each cell; points beyond `gate_mps` of it have none. Learns the noise of
+  /// points, too.
+  const std::vector<DopplerCell>& average(const Scan& scan, const std::vector<std::uint8_t>& is_moving,
+                                          const std::vector<double>& measured, const std::vector<double>& predicted,
+                                          double gate_mps, const Workers& workers);
+
+  /// The points of each cell of the scan that was sorted.
+  [[nodiscard]] std::size_t count() const { return order_.cells(); }
+  [[nodiscard]] std::span<const std::uint32_t> points(std::size_t cell) const {
+    return std::span(points_).subspan(order_.first[cell], order_.first[cell + 1] - order_.first[cell]);
+  }
 
   [[nodiscard]] const std::vector<DopplerCell>& cells() const { return cells_; }
 
@@ -61,17 +69,15 @@ class DopplerCells {
   [[nodiscard]] const DopplerNoise& noise() const { return noise_; }
 
  private:
-  void learn_noise(const Scan& scan, const std::vector<double>& deviation);
+  void learn_noise(const Scan& scan);
+  [[nodiscard]] DopplerCell mean_of(std::size_t cell, const Scan& scan, const std::vector<double>& measured) const;
 
-  std::vector<std::uint64_t> key_;   ///< of each row
-  spatial::KeyNumbers numbers_;      ///< of each key
-  std::vector<std::uint32_t> cell_;  ///< of each row
-  std::vector<double> range_;        ///< m, of each row
-  std::vector<double> residual_;     ///< m/s
+  spatial::CellOrder order_;
+  std::vector<std::uint32_t> points_;  ///< cell by cell
+  std::vector<double> range_;          ///< m, of each point
+  std::vector<double> residual_;       ///< m/s, of each point from the mean of its cell; not a number: has no weight
+  std::vector<double> counts_;         ///< of the points in a cell that have one
   std::vector<DopplerCell> cells_;
-  std::vector<double> sums_;
-  std::vector<double> counts_;
-  std::size_t cell_count_ = 0;
   DopplerNoise noise_;
 };
 

@@ -134,6 +134,12 @@ DopplerErrorField::DopplerErrorField(const FieldShape& shape) : shape_(shape) {
 }
 
 FieldColumns DopplerErrorField::columns(const DopplerCell& cell) const {
+  FieldColumns result = shared_columns(cell);
+  add_own_columns(cell, result);
+  return result;
+}
+
+FieldColumns DopplerErrorField::shared_columns(const DopplerCell& cell) const {
   FieldColumns result;
   const std::size_t sensor = std::min<std::size_t>(cell.sensor, sensors_.size() - 1);
   const SensorColumns& c = sensors_[sensor];
@@ -155,22 +161,17 @@ FieldColumns DopplerErrorField::columns(const DopplerCell& cell) const {
     }
     result.add(c.face + std::min<std::size_t>(cell.face, shape_.faces - 1), 1.0);
   }
-  result.add(c.range, cell.range_m / kRangeScale_m - kRangeMean);
-  result.add(c.range + 1, std::exp(-cell.range_m / kNear_m));
-  result.add(c.range + 2, std::clamp(shape_.intensity_scale * (cell.intensity - shape_.intensity_mean), -3.0, 3.0));
-  for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    result.add(c.velocity + static_cast<std::size_t>(axis), -cell.u[axis]);
-  }
   return result;
 }
 
-double DopplerErrorField::at(const DopplerCell& cell, const Eigen::VectorXd& theta) const {
-  const FieldColumns c = columns(cell);
-  double b = 0.0;
-  for (std::size_t k = 0; k < c.size; ++k) {
-    b += c.value[k] * theta[c.index[k]];
+void DopplerErrorField::add_own_columns(const DopplerCell& cell, FieldColumns& columns) const {
+  const SensorColumns& c = sensors_[std::min<std::size_t>(cell.sensor, sensors_.size() - 1)];
+  columns.add(c.range, cell.range_m / kRangeScale_m - kRangeMean);
+  columns.add(c.range + 1, std::exp(-cell.range_m / kNear_m));
+  columns.add(c.range + 2, std::clamp(shape_.intensity_scale * (cell.intensity - shape_.intensity_mean), -3.0, 3.0));
+  for (Eigen::Index axis = 0; axis < 3; ++axis) {
+    columns.add(c.velocity + static_cast<std::size_t>(axis), -cell.u[axis]);
   }
-  return b;
 }
 
 void DopplerErrorField::add_prior_information(Eigen::Ref<Eigen::MatrixXd> H) const {

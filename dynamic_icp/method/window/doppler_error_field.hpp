@@ -26,6 +26,14 @@ struct FieldColumns {
     index[size] = static_cast<std::uint32_t>(column);
     value[size++] = weight;
   }
+
+  [[nodiscard]] double dot(const Eigen::VectorXd& theta) const {
+    double sum = 0.0;
+    for (std::size_t k = 0; k < size; ++k) {
+      sum += value[k] * theta[index[k]];
+    }
+    return sum;
+  }
 };
 
 /// What a sensor's Doppler errs by, b = Phi(direction, line, face, range, intensity) theta (m/s):
@@ -52,7 +60,14 @@ class DopplerErrorField {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] FieldColumns columns(const DopplerCell& cell) const;
-  [[nodiscard]] double at(const DopplerCell& cell, const Eigen::VectorXd& theta) const;
+
+  /// Those that points seen in nearly the same direction share, and those that each has for itself.
+  [[nodiscard]] FieldColumns shared_columns(const DopplerCell& cell) const;
+  void add_own_columns(const DopplerCell& cell, FieldColumns& columns) const;
+
+  [[nodiscard]] double at(const DopplerCell& cell, const Eigen::VectorXd& theta) const {
+    return columns(cell).dot(theta);
+  }
 
   /// Adds the information of the prior to the first rows and columns of H.
   void add_prior_information(Eigen::Ref<Eigen::MatrixXd> H) const;

@@ -58,10 +58,10 @@ void DopplerTerms::weigh(const std::vector<DopplerCell>& cells, const DopplerErr
   if (cells.empty()) {
     return;
   }
-  std::vector<double> scaled(cells.size());
+  std::vector<double> scaled = residuals(cells, field, trajectory, theta);
   std::vector<double> size(cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    scaled[k] = residual(cells[k], field, trajectory, theta) / std::sqrt(1.0 / cells[k].weight + cell_variance);
+    scaled[k] /= std::sqrt(1.0 / cells[k].weight + cell_variance);
     size[k] = std::abs(scaled[k]);
   }
   const double reach = kKernel * std::max(1.0, kQuarterToSigma * quantile(size, 0.25));
@@ -183,18 +183,31 @@ DopplerTerms::ScanError DopplerTerms::add_gradient(const SplineTrajectory& traje
   return {-variance * gradient, variance, variance * U};
 }
 
-double DopplerTerms::residual(const DopplerCell& cell, const DopplerErrorField& field,
-                              const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const {
-  const TrajectoryPoint at = trajectory.at(stamp_s_ + cell.time_s);
-  return cell.s + cell.u.dot(at.velocity) + cell.lxu.dot(at.omega) - field.at(cell, theta);
+/// What is not explained of each cell.
+std::vector<double> DopplerTerms::residuals(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const {
+  const auto [first, last] = std::minmax_element(
+      cells.begin(), cells.end(), [](const DopplerCell& a, const DopplerCell& b) { return a.time_s < b.time_s; });
+  const SampledMotion motion(trajectory, stamp_s_ + first->time_s, stamp_s_ + last->time_s);
+  std::vector<double> result(cells.size());
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    const DopplerCell& cell = cells[k];
+    const SampledMotion::Motion at = motion.at(stamp_s_ + cell.time_s);
+    result[k] = cell.s + cell.u.dot(at.velocity) + cell.lxu.dot(at.omega) - field.at(cell, theta);
+  }
+  return result;
 }
 
 double DopplerTerms::unexplained_variance(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
                                           const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const {
+  if (cells.empty()) {
+    return 0.0;
+  }
+  const std::vector<double> unexplained = residuals(cells, field, trajectory, theta);
   double sum = 0.0;
   double weights = 0.0;
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    const double e = residual(cells[k], field, trajectory, theta);
+    const double e = unexplained[k];
     sum += robust_[k] * (e * e - 1.0 / cells[k].weight);
     weights += robust_[k];
   }

@@ -85,8 +85,8 @@ class DopplerTerms {
   void add_cell(const DopplerCell& cell, double w, const DopplerErrorField& field, const SplineTrajectory& trajectory);
   [[nodiscard]] Nodes nodes_of(const Interval& interval, const SplineTrajectory& trajectory,
                                const Layout& layout) const;
-  [[nodiscard]] double residual(const DopplerCell& cell, const DopplerErrorField& field,
-                                const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const;
+  [[nodiscard]] std::vector<double> residuals(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+                                              const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const;
 
   double stamp_s_ = 0.0;
   std::vector<double> robust_;  ///< weight of each cell by the kernel

@@ -79,15 +79,12 @@ void add_row(const Row& row, const Vector6d& information, Eigen::MatrixXd& H, Ei
   }
 }
 
-Vector6d variance_of(const Row& row, Eigen::Index first, const Eigen::MatrixXd& covariance) {
-  Vector6d variance = Vector6d::Zero();
+Vector6d variance_of(const Row& row, Eigen::Index first, const Eigen::MatrixXd& covariance_root) {
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(6, covariance_root.cols());
   for (std::size_t i = 0; i < row.size; ++i) {
-    for (std::size_t j = 0; j < row.size; ++j) {
-      variance +=
-          (row.weight[i] * row.weight[j]) * covariance.block<6, 6>(row.at[i] - first, row.at[j] - first).diagonal();
-    }
+    root += row.weight[i] * covariance_root.middleRows<6>(row.at[i] - first);
   }
-  return variance;
+  return root.rowwise().squaredNorm();
 }
 
 Vector6d values(const std::array<LearnedVariance, 6>& variances) {
@@ -156,7 +153,7 @@ void MotionPrior::add(const SplineTrajectory& trajectory, std::size_t first_new,
 }
 
 void MotionPrior::learn(const SplineTrajectory& trajectory, std::size_t begin, std::size_t end, const Layout& layout,
-                        const Eigen::MatrixXd& covariance) {
+                        const Eigen::MatrixXd& covariance_root) {
   Evidence jerks;
   Evidence vibrations;
   const Vector6d q = jerk_variance();
@@ -164,10 +161,10 @@ void MotionPrior::learn(const SplineTrajectory& trajectory, std::size_t begin, s
   const auto [a1, a2] = resonator_;
   for (std::size_t k = begin; k < end; ++k) {
     const Row jerk = jerk_row(trajectory, k, layout);
-    jerks.add(jerk, q, variance_of(jerk, layout.field, covariance));
+    jerks.add(jerk, q, variance_of(jerk, layout.field, covariance_root));
     if (layout.vibrates) {
       const Row driven = vibration_row(trajectory, k + 3, {1.0, -a1, -a2}, layout);
-      vibrations.add(driven, r, variance_of(driven, layout.field, covariance));
+      vibrations.add(driven, r, variance_of(driven, layout.field, covariance_root));
     }
   }
   double squares = 0.0;

@@ -167,10 +167,10 @@ Learned learned(double amplitude_m) {
         sums.g[at] -= (x + normal(random)) / (kMeasured_m * kMeasured_m);
       }
     }
-    const Eigen::LDLT<MatrixXd> solver(sums.H);
+    const Eigen::LLT<MatrixXd> solver(sums.H);
     motion.add(-solver.solve(sums.g));
     prior.learn(motion.trajectory, 8, 16, motion.layout,
-                solver.solve(MatrixXd::Identity(sums.H.rows(), sums.H.cols())));
+                solver.matrixU().solve(MatrixXd::Identity(sums.H.rows(), sums.H.cols())));
     prior.keep();
   }
   return {std::sqrt(prior.vibration_variance()[3]), std::sqrt(prior.vibration_variance()[0]),

@@ -69,10 +69,8 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, Slice& slice) {
   for (std::size_t k = slice.begin; k < slice.end; ++k) {
     const std::size_t i = order_[k];
     Row& row = rows_[k];
-    const Eigen::Vector3d& x = scan_.points()[i];
-    const double step = scan_.has_times() ? stamp_s_ + scan_.times()[i] - slice.time_s : 0.0;
-    const Eigen::Vector3d moved = x + step * (slice.at.omega.cross(x) + slice.at.velocity);
-    const Eigen::Vector3d in_reference = slice.at.R * moved + slice.at.p;
+    const double step_s = scan_.has_times() ? stamp_s_ + scan_.times()[i] - slice.time_s : 0.0;
+    const Eigen::Vector3d in_reference = slice.at.place(scan_.points()[i], step_s);
     const Eigen::Vector3d in_map = T_map_reference * in_reference;
     const std::uint64_t cell = map_.finest_cell(in_map);
     if (cell != found_in_[k]) {

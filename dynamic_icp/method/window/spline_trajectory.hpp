@@ -22,6 +22,9 @@ struct TrajectoryPoint {
   Eigen::Matrix3d J = Eigen::Matrix3d::Identity();     ///< right Jacobian of SO(3) at phi: R(phi + d) = R exp(J d)
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();  ///< m/s, sensor axes: R^T dp/dt
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();     ///< rad/s, sensor axes: J dphi/dt
+
+  /// Where a point is in the reference frame that was seen at x (sensor axes) a moment later, by a straight step.
+  [[nodiscard]] Eigen::Vector3d place(const Eigen::Vector3d& x, double step_s) const;
 };
 
 /// The motion of the sensor in continuous time: rotation vector and position relative to a reference pose,
@@ -74,6 +77,25 @@ class SplineTrajectory {
   Eigen::Isometry3d T_map_reference_ = Eigen::Isometry3d::Identity();
   std::vector<Vector6d> c_;  ///< [phi (rad); p (m)]
   std::vector<Vector6d> v_;
+};
+
+/// Velocity and angular velocity of a trajectory at even times, and linear between them: for what is asked for each of
+/// many points.
+class SampledMotion {
+ public:
+  SampledMotion(const SplineTrajectory& trajectory, double first_s, double last_s);
+
+  struct Motion {
+    Eigen::Vector3d velocity;  ///< m/s, sensor axes
+    Eigen::Vector3d omega;     ///< rad/s, sensor axes
+  };
+  /// Times outside count as the nearest inside.
+  [[nodiscard]] Motion at(double time_s) const;
+
+ private:
+  double first_s_;
+  double step_s_;
+  std::vector<Motion> samples_;
 };
 
 }  // namespace dynamic_icp::window

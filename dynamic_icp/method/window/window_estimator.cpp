@@ -79,6 +79,10 @@ WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_s
       scan_error_variance_(scan_error_prior(kScanError_mps)),
       model_sigma_m_(config.model_sigma_m) {}
 
+void WindowEstimator::sort(const Scan& whole, const Workers& workers) {
+  cells_.sort(whole, config_.knot_spacing_s, workers);
+}
+
 void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor,
                             const Eigen::Vector3d& velocity, const std::optional<Eigen::Vector3d>& omega,
                             const Workers& workers) {
@@ -256,8 +260,8 @@ void WindowEstimator::average_doppler(const WindowScan& scan, bool is_first_pass
     return;
   }
   static_doppler(*scan.whole, workers, predicted_);
-  cells_.sort(*scan.whole, *scan.is_moving, config_.knot_spacing_s, workers);
-  cells_.average(*scan.whole, *scan.measured, predicted_, is_first_pass ? kFirstGate_mps : kGate_mps);
+  cells_.average(*scan.whole, *scan.is_moving, *scan.measured, predicted_, is_first_pass ? kFirstGate_mps : kGate_mps,
+                 workers);
   if (field_) {
     doppler_.emplace(cells_.cells(), *field_, trajectory_, theta_, stamp_s(), cell_variance_, scan.whole->is_of_rig());
   }

@@ -61,6 +61,9 @@ class WindowEstimator {
   /// `map_memory_scans` as that of the map: each scan takes such a share of its error.
   WindowEstimator(const WindowConfig& config, double map_memory_scans);
 
+  /// Before anything else of a scan: its points that are averaged together. It must stay the same until the next one.
+  void sort(const Scan& whole, const Workers& workers);
+
   /// Before the first scan: what is known of the sensor. Throws UsageError when the parts do not fit each other.
   void set_calibration(const SensorCalibration& calibration);
 
@@ -91,7 +94,8 @@ class WindowEstimator {
   /// Standard deviation of the Doppler of single points, the median over ranges, m/s; nothing before the first scan.
   [[nodiscard]] std::optional<double> point_noise() const;
 
-  /// The error of the Doppler of each point of a scan as learned so far, m/s.
+  /// The error of the Doppler of each point of the scan that was sorted, as learned so far, m/s; points of a cell count
+  /// as seen in one direction.
   void field_errors(const Scan& scan, const Workers& workers, std::vector<double>& errors) const;
 
   /// The Doppler of each point of the scan at hand, had it no error, m/s.
@@ -147,6 +151,7 @@ class WindowEstimator {
   void check_calibration(std::size_t faces) const;
 
   // window_uses.cpp
+  [[nodiscard]] Matrix6d covariance_of(const Eigen::MatrixXd& rows) const;
   void motion_between(double source_s, WindowMotion& motion) const;
   void find_twist();
   [[nodiscard]] const Layout& layout() const { return quadratic_->layout(); }
@@ -172,8 +177,8 @@ class WindowEstimator {
   FieldElimination elimination_;
   DopplerTerms::ScanError scan_error_;
   Eigen::LLT<Eigen::MatrixXd> rest_factor_;
-  Eigen::MatrixXd rest_root_;  ///< of the covariance
-  Eigen::MatrixXd covariance_;  ///< of [map error; stamp errors; coefficients; vibration] after the last scan
+  /// M with M M^T the covariance of [map error; stamp errors; coefficients; vibration] after the last scan.
+  Eigen::MatrixXd covariance_root_;
   motion::Twist twist_;
   Eigen::MatrixXd field_covariance_root_;
   MotionPrior motion_prior_;

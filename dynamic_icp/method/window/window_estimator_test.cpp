@@ -133,6 +133,7 @@ DriveRun drive(const Drive& drive, int scans, const WindowConfig& config = {}, i
   for (int k = 0; k < scans; ++k) {
     run.last_scan = drive.scan(k);
     const Scan& scan = run.last_scan;
+    run.estimator.sort(scan, workers);
     const std::vector<double> measured = scan.doppler();
     const std::vector<std::uint8_t> is_moving(scan.size(), 0);
     WindowScan now;
@@ -292,6 +293,7 @@ TEST(WindowEstimator, BeginsAnewWithWhatItLearned) {
   const std::vector<double> measured = scan.doppler();
   const std::vector<std::uint8_t> is_moving(scan.size(), 0);
   WindowScan now{10.0 * kPeriod_s, 0.0, kPeriod_s, &scan, &measured, &is_moving, &scan};
+  run.estimator.sort(scan, Workers(1));
   run.estimator.begin(now, path(1.0), twist(1.0).tail<3>(), Vector3d(twist(1.0).head<3>()), Workers(1));
   EXPECT_EQ(run.estimator.scans(), 1);
   EXPECT_LT((run.estimator.theta() - before).norm(), 0.1 * before.norm());

@@ -23,32 +23,29 @@ constexpr double kVelocityWalk_mps = 0.002;
 
 }  // namespace
 
-/// The covariance of the window at the last factor of the rest.
+/// A root of the covariance of the window, at the last factor of the rest.
 void WindowEstimator::find_covariance() {
   const Eigen::Index n = rest_factor_.rows();
-  rest_root_ = rest_factor_.matrixU().solve(Eigen::MatrixXd::Identity(n, n));
-  covariance_ = Eigen::MatrixXd::Zero(n, n);
-  covariance_.selfadjointView<Eigen::Lower>().rankUpdate(rest_root_);
-  covariance_.triangularView<Eigen::StrictlyUpper>() = covariance_.transpose();
+  covariance_root_ = rest_factor_.matrixU().solve(Eigen::MatrixXd::Identity(n, n));
 }
 
 /// The scales of the error field, from the covariance of the window.
 void WindowEstimator::learn_field() {
   if (config_.learn_field) {
-    field_covariance_root_ = elimination_.covariance_root(rest_root_);
+    field_covariance_root_ = elimination_.covariance_root(covariance_root_);
     field_->learn_scales(theta_, field_covariance_root_);
   }
 }
 
 /// How the sensor moves between two times.
 void WindowEstimator::learn_motion(double from_s, double to_s) {
-  motion_prior_.learn(trajectory_, trajectory_.interval(from_s), trajectory_.interval(to_s), rest_layout(), covariance_);
+  motion_prior_.learn(trajectory_, trajectory_.interval(from_s), trajectory_.interval(to_s), rest_layout(), covariance_root_);
 }
 
 /// How far stamps are off; by which share their variance grew.
 double WindowEstimator::learn_stamps() {
   const Eigen::Index now = Layout::kMapError + 1;
-  return stamp_variance_.propose(stamp_errors_[1], covariance_(now, now));
+  return stamp_variance_.propose(stamp_errors_[1], covariance_root_.row(now).squaredNorm());
 }
 
 /// And what all Doppler values of a scan have in common.
@@ -56,8 +53,8 @@ double WindowEstimator::learn_scan_errors() {
   if (!doppler_) {
     return 0.0;
   }
-  const Eigen::VectorXd by_rest = scan_error_.by_unknowns.tail(covariance_.rows());
-  const double variance = scan_error_.variance + by_rest.dot(covariance_ * by_rest);
+  const Eigen::VectorXd by_rest = scan_error_.by_unknowns.tail(covariance_root_.rows());
+  const double variance = scan_error_.variance + (covariance_root_.transpose() * by_rest).squaredNorm();
   return scan_error_variance_.propose(scan_error_.value, variance);
 }
 

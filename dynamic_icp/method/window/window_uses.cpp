@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/window/window_estimator.hpp"
 
 // What the estimate of a scan is used for.
@@ -11,10 +12,24 @@ namespace dynamic_icp::window {
 namespace {
 
 constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kCellBlock = 128;
 constexpr std::size_t kPlacingBlock = 512;
 
-// Parts of a knot interval within which the motion changes linearly.
+// Slices of a knot interval whose points share a pose, but for a straight step.
 constexpr double kSlices = 8.0;
+
+/// One point as a cell of its own.
+DopplerCell point_of(const Scan& scan, std::size_t i) {
+  const Channels& channels = scan.channels();
+  DopplerCell point;
+  point.u = scan.directions()[i];
+  point.range_m = scan.points()[i].norm();
+  point.intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
+  point.line = channels.line.empty() ? DopplerCells::line_of(point.u) : channels.line[i];
+  point.face = channels.face.empty() ? std::uint8_t{0} : channels.face[i];
+  point.sensor = channels.sensor.empty() ? std::uint8_t{0} : channels.sensor[i];
+  return point;
+}
 
 }  // namespace
 
@@ -28,15 +43,28 @@ std::vector<Eigen::Vector3d> WindowEstimator::add_to_map(const WindowScan& scan,
   const Eigen::Isometry3d T_map_stamp = trajectory_.pose(stamp_s);
   const Eigen::Isometry3d T_stamp_reference = T_map_stamp.inverse() * trajectory_.reference();
   const double duration_s = scan.end_s - scan.begin_s;
+  const double slice_s = config_.knot_spacing_s / kSlices;
+  std::vector<TrajectoryPoint> slices;
+  for (double tau = scan.begin_s; tau <= scan.end_s + slice_s; tau += slice_s) {
+    slices.push_back(trajectory_.at(stamp_s + tau));
+  }
   workers.for_each(points.size(), kPlacingBlock, [&](std::size_t i) {
     const double tau = points.has_times() ? points.times()[i] : 0.0;
-    const TrajectoryPoint at = trajectory_.at(stamp_s + tau);
-    at_stamp[i] = T_stamp_reference * Eigen::Vector3d(at.R * points.points()[i] + at.p);
+    const auto slice = std::min(slices.size() - 1, static_cast<std::size_t>((tau - scan.begin_s) / slice_s + 0.5));
+    const double step_s = tau - scan.begin_s - static_cast<double>(slice) * slice_s;
+    at_stamp[i] = T_stamp_reference * slices[slice].place(points.points()[i], step_s);
     in_map[i] = T_map_stamp * at_stamp[i];
     phases[i] = duration_s > 0.0 ? std::clamp((tau - scan.begin_s) / duration_s, 0.0, 1.0) : 0.0;
   });
   map.add(in_map, T_map_stamp.translation(), workers, phases);
   return at_stamp;
+}
+
+/// Of six sums of the unknowns but theta.
+Matrix6d WindowEstimator::covariance_of(const Eigen::MatrixXd& rows) const {
+  const Eigen::Matrix<double, 6, Eigen::Dynamic> root = rows * covariance_root_;
+  const Matrix6d covariance = root * root.transpose();
+  return 0.5 * (covariance + covariance.transpose());
 }
 
 void WindowEstimator::motion_between(double source_s, WindowMotion& motion) const {
@@ -47,7 +75,7 @@ void WindowEstimator::motion_between(double source_s, WindowMotion& motion) cons
   motion.T_target_source.translation() = b.R.transpose() * (a.p - b.p);
   // omega = R alpha - beta and rho = R_b^T (dp_a - dp_b) - beta x t - omega x t, with alpha, beta = J dphi.
   const Eigen::Vector3d t = motion.T_target_source.translation();
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, covariance_.rows());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, covariance_root_.rows());
   for (std::size_t k = 0; k < 4; ++k) {
     const auto of_a = Layout::kBefore + static_cast<Eigen::Index>(6 * (a.first + k));
     const auto of_b = Layout::kBefore + static_cast<Eigen::Index>(6 * (b.first + k));
@@ -63,8 +91,7 @@ void WindowEstimator::motion_between(double source_s, WindowMotion& motion) cons
   rows.block<3, 1>(3, Layout::kMapError) = skew(t) * (R * a.omega) + R * a.velocity;
   rows.block<3, 1>(0, Layout::kMapError + 1) = -b.omega;
   rows.block<3, 1>(3, Layout::kMapError + 1) = -b.velocity;
-  motion.covariance = rows * covariance_ * rows.transpose();
-  motion.covariance = (0.5 * (motion.covariance + motion.covariance.transpose())).eval();
+  motion.covariance = covariance_of(rows);
 }
 
 /// How the sensor moves at its stamp: v = R^T dp/dt and omega = J dphi/dt, with dv = R^T d(dp/dt) + [v]x J dphi and
@@ -73,15 +100,14 @@ void WindowEstimator::find_twist() {
   const TrajectoryPoint at = trajectory_.at(stamp_s());
   twist_.angular = at.omega;
   twist_.linear = at.velocity;
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, covariance_.rows());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, covariance_root_.rows());
   for (std::size_t k = 0; k < 4; ++k) {
     const auto column = Layout::kBefore + static_cast<Eigen::Index>(6 * (at.first + k));
     rows.block<3, 3>(0, column) = at.slope[k] * at.J + 0.5 * at.weight[k] * skew(at.omega);
     rows.block<3, 3>(3, column) = at.weight[k] * skew(at.velocity) * at.J;
     rows.block<3, 3>(3, column + 3) = at.slope[k] * at.R.transpose();
   }
-  twist_.covariance = rows * covariance_ * rows.transpose();
-  twist_.covariance = (0.5 * (twist_.covariance + twist_.covariance.transpose())).eval();
+  twist_.covariance = covariance_of(rows);
 }
 
 std::optional<double> WindowEstimator::point_noise() const {
@@ -94,51 +120,28 @@ void WindowEstimator::field_errors(const Scan& scan, const Workers& workers, std
   if (!field_ || !config_.learn_field) {
     return;
   }
-  const Channels& channels = scan.channels();
-  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
-    DopplerCell point;
-    point.u = scan.directions()[i];
-    point.range_m = scan.points()[i].norm();
-    point.intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
-    point.line = channels.line.empty() ? DopplerCells::line_of(point.u) : channels.line[i];
-    point.face = channels.face.empty() ? std::uint8_t{0} : channels.face[i];
-    point.sensor = channels.sensor.empty() ? std::uint8_t{0} : channels.sensor[i];
-    errors[i] = field_->at(point, theta_);
+  workers.for_each(cells_.count(), kCellBlock, [&](std::size_t cell) {
+    const double shared = field_->shared_columns(point_of(scan, cells_.points(cell).front())).dot(theta_);
+    for (const std::uint32_t i : cells_.points(cell)) {
+      FieldColumns own;
+      field_->add_own_columns(point_of(scan, i), own);
+      errors[i] = shared + own.dot(theta_);
+    }
   });
 }
 
 void WindowEstimator::static_doppler(const Scan& scan, const Workers& workers, std::vector<double>& predicted) const {
-  struct Motion {
-    Eigen::Vector3d velocity;
-    Eigen::Vector3d omega;
-  };
-  const double step_s = config_.knot_spacing_s / kSlices;
-  double first_s = 0.0;
-  double last_s = 0.0;
-  if (scan.has_times()) {
-    const auto [low, high] = std::minmax_element(scan.times().begin(), scan.times().end());
-    first_s = *low;
-    last_s = *high;
-  }
-  std::vector<Motion> motions;
-  for (double t = first_s; t <= last_s + step_s; t += step_s) {
-    const TrajectoryPoint at = trajectory_.at(stamp_s() + t);
-    motions.push_back({at.velocity, at.omega});
-  }
+  const motion::TimeSpan span = motion::time_span(scan);
+  const SampledMotion motion(trajectory_, stamp_s() + span.first, stamp_s() + span.last);
   predicted.resize(scan.size());
   const bool is_of_rig = scan.is_of_rig();
   workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
-    const double t = scan.has_times() ? scan.times()[i] - first_s : 0.0;
-    const double x = t / step_s;
-    const auto k = std::min(motions.size() - 1, static_cast<std::size_t>(x));
-    const std::size_t next = std::min(motions.size() - 1, k + 1);
-    const double share = x - static_cast<double>(k);
-    const Eigen::Vector3d& u = scan.directions()[i];
-    Eigen::Vector3d v = (1.0 - share) * motions[k].velocity + share * motions[next].velocity;
+    const SampledMotion::Motion at = motion.at(stamp_s() + (scan.has_times() ? scan.times()[i] : 0.0));
+    Eigen::Vector3d v = at.velocity;
     if (is_of_rig) {
-      v += motions[k].omega.cross(scan.mountings()[scan.channels().sensor[i]].translation());
+      v += at.omega.cross(scan.mountings()[scan.channels().sensor[i]].translation());
     }
-    predicted[i] = -u.dot(v);
+    predicted[i] = -scan.directions()[i].dot(v);
   });
 }
 
