@@ -6,8 +6,10 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <utility>
 
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/spatial/cell_key.hpp"
 
 namespace dynamic_icp::ego_motion {
 namespace {
@@ -15,23 +17,47 @@ namespace {
 // What surfaces differ by even where the sensor has no error, m/s.
 constexpr double kSurface_mps = 0.015;
 
-}  // namespace
+// A neighbour of a cell that creeps is of the same body with less evidence, standard deviations.
+constexpr double kNeighbourSigmas = 1.0;
 
-std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps,
-                                         double sigmas) {
-  const std::size_t cells = rows.cells();
-  std::vector<double> mean(cells);
-  std::vector<double> variance(cells);
-  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
-  std::vector<std::size_t> farthest;
-  for (std::size_t cell = 0; cell < cells; ++cell) {
+// So many cells on the surface that carries the scene tell how far the static scene is off.
+constexpr std::size_t kEnoughOnSupport = 20;
+
+/// How far the Doppler of a cell is from that of the static scene, m/s, and the variance of that by noise alone.
+struct CellDoppler {
+  std::vector<double> mean;
+  std::vector<double> variance;
+};
+
+CellDoppler doppler_of_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps) {
+  CellDoppler result;
+  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
     double sum = 0.0;
     for (std::size_t row = rows.first[cell]; row < rows.first[cell + 1]; ++row) {
       sum += rows.s[row] + rows.u(row).dot(ego.velocity_sensor + rows.dt[row] * ego.acceleration_sensor) - ego.bias_mps;
     }
     const auto count = static_cast<double>(rows.first[cell + 1] - rows.first[cell]);
-    mean[cell] = std::abs(sum / count);
-    variance[cell] = noise_mps * noise_mps / count;
+    result.mean.push_back(sum / count);
+    result.variance.push_back(noise_mps * noise_mps / count);
+  }
+  return result;
+}
+
+/// Cells that are static far more often than not: what carries the scene where that is known, or else the farthest cell
+/// of each direction sector.
+std::vector<std::size_t> likely_static(const DopplerRows& rows) {
+  std::vector<std::size_t> cells;
+  for (std::size_t cell = 0; cell < rows.on_support.size(); ++cell) {
+    if (rows.on_support[cell] != 0) {
+      cells.push_back(cell);
+    }
+  }
+  if (cells.size() >= kEnoughOnSupport) {
+    return cells;
+  }
+  constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+  std::vector<std::size_t> farthest;
+  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
     const std::size_t sector = rows.sector[cell];
     if (sector >= farthest.size()) {
       farthest.resize(sector + 1, kNone);
@@ -40,23 +66,70 @@ std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVeloc
       farthest[sector] = cell;
     }
   }
-  std::vector<double> far_means;
-  std::vector<double> far_variances;
-  for (const std::size_t cell : farthest) {
-    if (cell != kNone) {
-      far_means.push_back(mean[cell]);
-      far_variances.push_back(variance[cell]);
+  std::erase(farthest, kNone);
+  return farthest;
+}
+
+/// From cells that creep to those next to them that are off to the same side.
+void spread(const DopplerRows& rows, const std::vector<double>& sigmas_off, std::vector<std::uint8_t>& creeps) {
+  std::vector<std::pair<std::uint64_t, std::size_t>> by_key;
+  std::vector<std::size_t> open;
+  for (std::size_t cell = 0; cell < rows.key.size(); ++cell) {
+    by_key.emplace_back(rows.key[cell], cell);
+    if (creeps[cell] != 0) {
+      open.push_back(cell);
     }
   }
-  std::vector<std::uint8_t> creeps(cells, 0);
-  if (far_means.empty()) {
+  std::ranges::sort(by_key);
+  const auto visit = [&](std::size_t from, std::uint64_t key) {
+    const auto at = std::ranges::lower_bound(by_key, std::pair(key, std::size_t{0}));
+    if (at == by_key.end() || at->first != key || creeps[at->second] != 0) {
+      return;
+    }
+    const std::size_t cell = at->second;
+    const bool carries = !rows.on_support.empty() && rows.on_support[cell] != 0;
+    if (!carries && sigmas_off[cell] * (sigmas_off[from] > 0.0 ? 1.0 : -1.0) > kNeighbourSigmas) {
+      creeps[cell] = 1;
+      open.push_back(cell);
+    }
+  };
+  while (!open.empty()) {
+    const std::size_t from = open.back();
+    open.pop_back();
+    const auto at = spatial::cell_coordinates(rows.key[from]);
+    for (std::int64_t x = -1; x <= 1; ++x) {
+      for (std::int64_t y = -1; y <= 1; ++y) {
+        for (std::int64_t z = -1; z <= 1; ++z) {
+          visit(from, spatial::cell_key(at.x() + x, at.y() + y, at.z() + z));
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps,
+                                         double sigmas) {
+  const CellDoppler doppler = doppler_of_cells(rows, ego, noise_mps);
+  std::vector<double> static_means;
+  std::vector<double> static_variances;
+  for (const std::size_t cell : likely_static(rows)) {
+    static_means.push_back(std::abs(doppler.mean[cell]));
+    static_variances.push_back(doppler.variance[cell]);
+  }
+  std::vector<std::uint8_t> creeps(rows.cells(), 0);
+  if (static_means.empty()) {
     return creeps;
   }
-  const double scatter = kSigmaPerMad * median(far_means);
-  const double off = std::max(kSurface_mps * kSurface_mps, scatter * scatter - median(far_variances));
-  for (std::size_t cell = 0; cell < cells; ++cell) {
-    creeps[cell] = mean[cell] > sigmas * std::sqrt(off + variance[cell]) ? 1 : 0;
+  const double scatter = kSigmaPerMad * median(static_means);
+  const double off = std::max(kSurface_mps * kSurface_mps, scatter * scatter - median(static_variances));
+  std::vector<double> sigmas_off(rows.cells());
+  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
+    sigmas_off[cell] = doppler.mean[cell] / std::sqrt(off + doppler.variance[cell]);
+    creeps[cell] = std::abs(sigmas_off[cell]) > sigmas ? 1 : 0;
   }
+  spread(rows, sigmas_off, creeps);
   return creeps;
 }
 

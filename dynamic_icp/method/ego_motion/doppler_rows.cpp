@@ -82,6 +82,7 @@ void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& worker
     column->resize(scan.size());
   }
   rows.range.resize(order.cells());
+  rows.key.resize(order.cells());
   workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
     const std::uint32_t row = order.place(i);
     rows.ux[row] = scan.directions()[i].x();
@@ -91,6 +92,7 @@ void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& worker
     rows.dt[row] = rows.takes_time ? scan.times()[i] - rows.reference_time_s : 0.0;
     if (order.rank[i] == 0) {
       rows.range[order.cell[i]] = scan.points()[i].norm();
+      rows.key[order.cell[i]] = order.keys[i];
     }
   });
   rows.sector.resize(order.cells());
@@ -108,6 +110,7 @@ ConsensusSet sample(const DopplerRows& rows, std::size_t most) {
   chosen.first.push_back(0);
   std::vector<std::size_t> farthest(rows.sectors, n);
   std::size_t occupied = 0;
+  std::vector<std::size_t> on_support;
   for (std::size_t k = 0; k < n; ++k) {
     const std::size_t cell = k * rows.cells() / n;
     const std::size_t row = (rows.first[cell] + rows.first[cell + 1]) / 2;
@@ -119,15 +122,22 @@ ConsensusSet sample(const DopplerRows& rows, std::size_t most) {
     chosen.sector.push_back(rows.sector[cell]);
     chosen.range.push_back(rows.range[cell]);
     chosen.first.push_back(static_cast<std::uint32_t>(k + 1));
+    if (!rows.on_support.empty() && rows.on_support[cell] != 0) {
+      on_support.push_back(k);
+    }
     std::size_t& outermost = farthest[rows.sector[cell]];
     occupied += outermost == n ? 1 : 0;
     outermost = outermost == n || rows.range[cell] > chosen.range[outermost] ? k : outermost;
   }
-  consensus_set.weights.assign(n, 0.5 / static_cast<double>(std::max<std::size_t>(n, 1)));
+  const double share = on_support.empty() ? 0.5 : 1.0 / 3.0;
+  consensus_set.weights.assign(n, share / static_cast<double>(std::max<std::size_t>(n, 1)));
   for (const std::size_t k : farthest) {
     if (k < n) {
-      consensus_set.weights[k] += 0.5 / static_cast<double>(occupied);
+      consensus_set.weights[k] += share / static_cast<double>(occupied);
     }
+  }
+  for (const std::size_t k : on_support) {
+    consensus_set.weights[k] += share / static_cast<double>(on_support.size());
   }
   return consensus_set;
 }

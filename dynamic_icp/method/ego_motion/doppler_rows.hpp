@@ -26,6 +26,8 @@ struct DopplerRows {
   std::vector<std::uint32_t> first;   ///< cell c holds the rows [first[c], first[c + 1])
   std::vector<std::uint32_t> sector;  ///< of each cell: number of the direction sector it is seen in
   std::vector<double> range;          ///< of each cell, m: how far its first point is
+  std::vector<std::uint64_t> key;     ///< of each cell: spatial::cell_key
+  std::vector<std::uint8_t> on_support;  ///< of each cell: 1 on the surface that carries the scene; empty: not known
   std::size_t sectors = 0;            ///< how many sectors are occupied
   double reference_time_s = 0.0;      ///< s after the stamp: half way between the first and the last point
   double duration_s = 0.0;            ///< between the first and the last point

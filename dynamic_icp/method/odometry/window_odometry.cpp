@@ -9,6 +9,7 @@
 #include "dynamic_icp/method/base/scan_limits.hpp"
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/method/ego_motion/creeping_cells.hpp"
+#include "dynamic_icp/method/ego_motion/support_plane.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/mapping/rotation_search.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
@@ -135,6 +136,7 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
       [&] {
         ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
                                     memory_.rows);
+        memory_.rows.on_support = ego_motion::cells_on_support(whole, memory_.sort);
       });
   frame.points_used = memory_.thinned.size();
 }
@@ -264,7 +266,7 @@ void WindowOdometry::describe(const window::WindowMotion& motion, double dt_s, F
   alignment.T_target_source = motion.T_target_source;
   alignment.status =
       motion.converged ? registration::AlignStatus::kConverged : registration::AlignStatus::kIterationLimit;
-  FrameStatus status = FrameStatus::kConverged;
+  FrameStatus status = motion.converged ? FrameStatus::kConverged : FrameStatus::kIterationLimit;
   if (clear_scans_ < kClearScans) {
     status = FrameStatus::kAmbiguous;
     const double sigma_m = kTraffic_mps * dt_s;

@@ -192,8 +192,11 @@ std::vector<double> DopplerTerms::residuals(const std::vector<DopplerCell>& cell
   std::vector<double> result(cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const DopplerCell& cell = cells[k];
-    const SampledMotion::Motion at = motion.at(stamp_s_ + cell.time_s);
-    result[k] = cell.s + cell.u.dot(at.velocity) + cell.lxu.dot(at.omega) - field.at(cell, theta);
+    const double time_s = stamp_s_ + cell.time_s;
+    result[k] = cell.s + cell.u.dot(motion.velocity(time_s)) - field.at(cell, theta);
+    if (per_node_ == 6) {
+      result[k] += cell.lxu.dot(motion.omega(time_s));
+    }
   }
   return result;
 }

@@ -105,7 +105,7 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
   const Vector6d change = map_error.tail<6>() - start;
   const double min_variance = noise.min_sigma_m * noise.min_sigma_m;
   const double model_variance = noise.model_sigma_m * noise.model_sigma_m;
-  std::vector<double> scaled;
+  std::vector<double> squares;
   for (Row& row : rows_) {
     if (row.patch == nullptr) {
       continue;
@@ -114,10 +114,10 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
     row.own = std::max(row.own, min_variance);
     row.common = noise.repeated * (row.common + model_variance);
     if (adapt) {
-      scaled.push_back(std::abs(row.e) / std::sqrt(row.own + row.common / noise.repeated));
+      squares.push_back(row.e * row.e / (row.own + row.common / noise.repeated));
     }
   }
-  const double kernel = noise.kernel * (adapt && !scaled.empty() ? std::max(1.0, kSigmaPerMad * median(scaled)) : 1.0);
+  const double kernel = noise.kernel * (adapt && !squares.empty() ? std::max(1.0, kSigmaPerMad * std::sqrt(median(squares))) : 1.0);
   workers_.for_each(slices_.size(), 1, [&](std::size_t s) {
     Slice& slice = slices_[s];
     for (std::size_t k = slice.begin; k < slice.end; ++k) {

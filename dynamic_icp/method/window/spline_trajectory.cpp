@@ -156,20 +156,11 @@ Eigen::Vector3d TrajectoryPoint::place(const Eigen::Vector3d& x, double step_s) 
 SampledMotion::SampledMotion(const SplineTrajectory& trajectory, double first_s, double last_s)
     : first_s_(first_s), step_s_(trajectory.knot_spacing() / kSamples) {
   const auto steps = static_cast<std::size_t>(std::ceil(std::max(0.0, last_s - first_s) / step_s_));
-  samples_.reserve(steps + 1);
   for (std::size_t k = 0; k <= steps; ++k) {
     const TrajectoryPoint at = trajectory.at(first_s + static_cast<double>(k) * step_s_);
-    samples_.push_back({at.velocity, at.omega});
+    velocity_.push_back(at.velocity);
+    omega_.push_back(at.omega);
   }
-}
-
-SampledMotion::Motion SampledMotion::at(double time_s) const {
-  const double x = std::max(0.0, (time_s - first_s_) / step_s_);
-  const std::size_t k = std::min(samples_.size() - 1, static_cast<std::size_t>(x));
-  const std::size_t next = std::min(samples_.size() - 1, k + 1);
-  const double share = std::min(1.0, x - static_cast<double>(k));
-  return {(1.0 - share) * samples_[k].velocity + share * samples_[next].velocity,
-          (1.0 - share) * samples_[k].omega + share * samples_[next].omega};
 }
 
 }  // namespace dynamic_icp::window

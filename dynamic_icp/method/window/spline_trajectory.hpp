@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <vector>
@@ -85,17 +86,23 @@ class SampledMotion {
  public:
   SampledMotion(const SplineTrajectory& trajectory, double first_s, double last_s);
 
-  struct Motion {
-    Eigen::Vector3d velocity;  ///< m/s, sensor axes
-    Eigen::Vector3d omega;     ///< rad/s, sensor axes
-  };
-  /// Times outside count as the nearest inside.
-  [[nodiscard]] Motion at(double time_s) const;
+  /// m/s and rad/s, sensor axes. Times outside count as the nearest inside.
+  [[nodiscard]] Eigen::Vector3d velocity(double time_s) const { return between(velocity_, time_s); }
+  [[nodiscard]] Eigen::Vector3d omega(double time_s) const { return between(omega_, time_s); }
 
  private:
+  [[nodiscard]] Eigen::Vector3d between(const std::vector<Eigen::Vector3d>& samples, double time_s) const {
+    const double x = std::clamp((time_s - first_s_) / step_s_, 0.0, static_cast<double>(samples.size() - 1));
+    const auto k = static_cast<std::size_t>(x);
+    const std::size_t next = std::min(samples.size() - 1, k + 1);
+    const double share = x - static_cast<double>(k);
+    return (1.0 - share) * samples[k] + share * samples[next];
+  }
+
   double first_s_;
   double step_s_;
-  std::vector<Motion> samples_;
+  std::vector<Eigen::Vector3d> velocity_;
+  std::vector<Eigen::Vector3d> omega_;
 };
 
 }  // namespace dynamic_icp::window

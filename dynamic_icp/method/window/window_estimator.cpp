@@ -26,7 +26,7 @@ constexpr double kSlices = 8.0;
 constexpr double kPlaneKernel = 4.0;
 
 // A step shorter than this (rad and m) ends the iterations.
-constexpr double kStep = 2e-5;
+constexpr double kStep = 1e-4;
 constexpr int kMinIterations = 3;
 
 // How often the Doppler is averaged anew, with weights around the trajectory of the moment; more often in the first

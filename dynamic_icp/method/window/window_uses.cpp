@@ -136,10 +136,10 @@ void WindowEstimator::static_doppler(const Scan& scan, const Workers& workers, s
   predicted.resize(scan.size());
   const bool is_of_rig = scan.is_of_rig();
   workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
-    const SampledMotion::Motion at = motion.at(stamp_s() + (scan.has_times() ? scan.times()[i] : 0.0));
-    Eigen::Vector3d v = at.velocity;
+    const double time_s = stamp_s() + (scan.has_times() ? scan.times()[i] : 0.0);
+    Eigen::Vector3d v = motion.velocity(time_s);
     if (is_of_rig) {
-      v += at.omega.cross(scan.mountings()[scan.channels().sensor[i]].translation());
+      v += motion.omega(time_s).cross(scan.mountings()[scan.channels().sensor[i]].translation());
     }
     predicted[i] = -scan.directions()[i].dot(v);
   });

@@ -1,0 +1,142 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/ego_motion/support_plane.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/base/random_source.hpp"
+
+namespace dynamic_icp::ego_motion {
+namespace {
+
+// Roads are flat to so much over so far.
+constexpr double kTolerance_m = 0.25;
+constexpr double kReach_m = 50.0;
+
+// Planes are tried through three points each; all points count, or so many of them.
+constexpr std::uint64_t kPlanes = 500;
+constexpr std::size_t kMaxPoints = 800;
+
+// Noise and reflections lie beyond any surface, but not more of them.
+constexpr double kMaxBeyond = 0.02;
+constexpr double kBeyond_m = -0.5;
+
+// The side of a vehicle is long, but not wide: standard deviation along the shorter direction. And a plane of few
+// points is one by chance.
+constexpr double kMinWidth_m = 2.0;
+constexpr double kMinShare = 0.1;
+constexpr std::size_t kMinPoints = 30;
+
+struct Count {
+  std::size_t on = 0;
+  std::size_t beyond = 0;
+};
+
+Count count(const SupportPlane& plane, const std::vector<Eigen::Vector3d>& points) {
+  Count result;
+  for (const Eigen::Vector3d& x : points) {
+    const double height = plane.height(x);
+    result.on += std::abs(height) < kTolerance_m ? 1 : 0;
+    result.beyond += height < kBeyond_m ? 1 : 0;
+  }
+  return result;
+}
+
+bool bounds(const Count& count, std::size_t points) {
+  return static_cast<double>(count.beyond) <= kMaxBeyond * static_cast<double>(points);
+}
+
+/// The plane through the points near a plane; nothing where they are not wide.
+std::optional<SupportPlane> fitted(const SupportPlane& plane, const std::vector<Eigen::Vector3d>& points) {
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  double n = 0.0;
+  for (const Eigen::Vector3d& x : points) {
+    if (std::abs(plane.height(x)) < kTolerance_m) {
+      mean += x;
+      squares += x * x.transpose();
+      n += 1.0;
+    }
+  }
+  mean /= n;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(squares / n - mean * mean.transpose());
+  if (!(axes.eigenvalues()[1] > kMinWidth_m * kMinWidth_m)) {
+    return std::nullopt;
+  }
+  SupportPlane result;
+  result.normal = axes.eigenvectors().col(0);
+  result.normal *= result.normal.dot(plane.normal) < 0.0 ? -1.0 : 1.0;
+  result.offset_m = result.normal.dot(mean);
+  return result;
+}
+
+std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {
+  std::vector<Eigen::Vector3d> result;
+  const std::size_t n = std::min(kMaxPoints, points.size());
+  for (std::size_t k = 0; k < n; ++k) {
+    result.push_back(points[k * points.size() / n]);
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d>& points) {
+  const std::vector<Eigen::Vector3d> few = thinned(points);
+  if (few.size() < kMinPoints) {
+    return std::nullopt;
+  }
+  const RandomSource random(0);
+  SupportPlane best;
+  std::size_t most = 0;
+  for (std::uint64_t k = 0; k < kPlanes; ++k) {
+    const auto draw = [&](std::uint64_t which) -> const Eigen::Vector3d& {
+      return few[(random.bits(3 * k + which) >> 32) * few.size() >> 32];
+    };
+    const Eigen::Vector3d& x = draw(0);
+    const Eigen::Vector3d normal = (draw(1) - x).cross(draw(2) - x);
+    if (!(normal.norm() > 1.0)) {
+      continue;  // m^2: too near to each other or to a line
+    }
+    for (const double sign : {1.0, -1.0}) {
+      const SupportPlane plane{sign * normal.normalized(), sign * normal.normalized().dot(x)};
+      const Count found = count(plane, few);
+      if (found.on > most && bounds(found, few.size()) && fitted(plane, few)) {
+        best = plane;
+        most = found.on;
+      }
+    }
+  }
+  if (most < std::max(kMinPoints, static_cast<std::size_t>(kMinShare * static_cast<double>(few.size())))) {
+    return std::nullopt;
+  }
+  return fitted(best, few);
+}
+
+std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::CellOrder& order) {
+  std::vector<Eigen::Vector3d> representatives;
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    if (order.rank[i] == 0 && scan.points()[i].squaredNorm() < kReach_m * kReach_m) {
+      representatives.push_back(scan.points()[i]);
+    }
+  }
+  const std::optional<SupportPlane> plane = find_support_plane(representatives);
+  if (!plane) {
+    return {};
+  }
+  std::vector<std::uint32_t> on(order.cells(), 0);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    on[order.cell[i]] += std::abs(plane->height(scan.points()[i])) < kTolerance_m ? 1 : 0;
+  }
+  std::vector<std::uint8_t> result(order.cells());
+  for (std::size_t cell = 0; cell < result.size(); ++cell) {
+    result[cell] = 2 * on[cell] > order.first[cell + 1] - order.first[cell] ? 1 : 0;
+  }
+  return result;
+}
+
+}  // namespace dynamic_icp::ego_motion
