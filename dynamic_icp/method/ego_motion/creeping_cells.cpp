@@ -17,7 +17,9 @@ namespace {
 // What surfaces differ by even where the sensor has no error, m/s.
 constexpr double kSurface_mps = 0.015;
 
-// A neighbour of a cell that creeps is of the same body with less evidence, standard deviations.
+// Where so many cells creep, one that is next to them and off to the same side by so many standard deviations creeps,
+// too. Elsewhere it is most likely static.
+constexpr double kCrowded = 0.25;
 constexpr double kNeighbourSigmas = 1.0;
 
 // So many cells on the surface that carries the scene tell how far the static scene is off.
@@ -129,7 +131,9 @@ std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVeloc
     sigmas_off[cell] = doppler.mean[cell] / std::sqrt(off + doppler.variance[cell]);
     creeps[cell] = std::abs(sigmas_off[cell]) > sigmas ? 1 : 0;
   }
-  spread(rows, sigmas_off, creeps);
+  if (static_cast<double>(std::ranges::count(creeps, 1)) > kCrowded * static_cast<double>(rows.cells())) {
+    spread(rows, sigmas_off, creeps);
+  }
   return creeps;
 }
 

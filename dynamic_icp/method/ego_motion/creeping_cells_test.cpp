@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/ego_motion/creeping_cells.hpp"
 
+#include <array>
 #include <cmath>
+#include <cstdint>
 #include <numbers>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "dynamic_icp/method/spatial/cell_key.hpp"
 
 namespace dynamic_icp::ego_motion {
 namespace {
@@ -142,6 +146,55 @@ TEST(CreepingCells, ManyInFrontOfTheSceneDoNotPassForIt) {
   for (std::size_t cell = 0; cell < creeps.size(); ++cell) {
     EXPECT_EQ(creeps[cell], cell % 3 == 1 ? 0 : 1);
   }
+}
+
+TEST(CreepingCells, WhereTheSupportIsKnownFarThingsNeedNotStand) {
+  // A queue: whatever is farthest in a direction creeps at 0.4 m/s; the road before it stands.
+  Scene scene;
+  for (std::uint32_t sector = 0; sector < 60; ++sector) {
+    scene.add_cell(sector, 12.0, 40, 0.0);
+    scene.add_cell(sector, 20.0, 40, 0.4);
+  }
+  EXPECT_EQ(count(creeping_cells(scene.rows, scene.ego, kNoise_mps, kSigmas)), 0U) << "as if the sensor erred";
+  for (std::size_t cell = 0; cell < scene.rows.cells(); ++cell) {
+    scene.rows.on_support.push_back(cell % 2 == 0 ? 1 : 0);
+  }
+  const std::vector<std::uint8_t> creeps = creeping_cells(scene.rows, scene.ego, kNoise_mps, kSigmas);
+  for (std::size_t cell = 0; cell < creeps.size(); ++cell) {
+    EXPECT_EQ(creeps[cell], cell % 2) << cell;
+  }
+}
+
+TEST(CreepingCells, InACrowdTheSlowerEndOfABodyGoesWithIt) {
+  // Bodies of three cells in a row; the last is off by 0.05 m/s, two standard deviations of a cell. Behind them walls.
+  Scene crowd;
+  const auto add = [&](std::int64_t x, std::int64_t y, double off_mps) {
+    const bool is_wall = x >= 100;
+    crowd.add_cell(static_cast<std::uint32_t>(crowd.rows.cells() % 60), is_wall ? 60.0 : 20.0, 40, off_mps);
+    crowd.rows.key.push_back(spatial::cell_key(x, y, 0));
+  };
+  constexpr std::int64_t kBodies = 30;
+  for (std::int64_t body = 0; body < kBodies; ++body) {
+    add(0, 10 * body, 0.4);
+    add(1, 10 * body, 0.4);
+    add(2, 10 * body, 0.05);
+    add(3, 10 * body, -0.05);  // off, but to the other side
+    add(8, 10 * body, 0.05);   // off alike, but somewhere else
+  }
+  const std::size_t bodies = crowd.rows.cells();
+  for (std::int64_t k = 0; k < 60; ++k) {
+    add(100 + 5 * k, 0, 0.0);
+  }
+  const std::vector<std::uint8_t> creeps = creeping_cells(crowd.rows, crowd.ego, kNoise_mps, kSigmas);
+  std::array<std::size_t, 5> of_body{};
+  for (std::size_t cell = 0; cell < bodies; ++cell) {
+    of_body[cell % 5] += creeps[cell];
+  }
+  EXPECT_EQ(of_body[0], static_cast<std::size_t>(kBodies));
+  EXPECT_EQ(of_body[1], static_cast<std::size_t>(kBodies));
+  EXPECT_GT(of_body[2], static_cast<std::size_t>(kBodies) * 3 / 4);
+  EXPECT_LE(of_body[3], 1U);
+  EXPECT_LE(of_body[4], 1U);
 }
 
 }  // namespace

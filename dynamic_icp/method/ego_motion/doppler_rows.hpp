@@ -20,18 +20,18 @@ namespace dynamic_icp::ego_motion {
 /// they move together and err together. Votes are counted by cells, because a vehicle near by fills few cells with
 /// many points, and the far scene many cells with few.
 struct DopplerRows {
-  std::vector<double> ux, uy, uz;     ///< line of sight, unit length
-  std::vector<double> s;              ///< m/s, positive away from the sensor
-  std::vector<double> dt;             ///< s after `reference_time_s`; zero for scans taken in an instant
-  std::vector<std::uint32_t> first;   ///< cell c holds the rows [first[c], first[c + 1])
-  std::vector<std::uint32_t> sector;  ///< of each cell: number of the direction sector it is seen in
-  std::vector<double> range;          ///< of each cell, m: how far its first point is
-  std::vector<std::uint64_t> key;     ///< of each cell: spatial::cell_key
+  std::vector<double> ux, uy, uz;        ///< line of sight, unit length
+  std::vector<double> s;                 ///< m/s, positive away from the sensor
+  std::vector<double> dt;                ///< s after `reference_time_s`; zero for scans taken in an instant
+  std::vector<std::uint32_t> first;      ///< cell c holds the rows [first[c], first[c + 1])
+  std::vector<std::uint32_t> sector;     ///< of each cell: number of the direction sector it is seen in
+  std::vector<double> range;             ///< of each cell, m: how far its first point is
+  std::vector<std::uint64_t> key;        ///< of each cell: spatial::cell_key
   std::vector<std::uint8_t> on_support;  ///< of each cell: 1 on the surface that carries the scene; empty: not known
-  std::size_t sectors = 0;            ///< how many sectors are occupied
-  double reference_time_s = 0.0;      ///< s after the stamp: half way between the first and the last point
-  double duration_s = 0.0;            ///< between the first and the last point
-  bool takes_time = false;            ///< the times of the points differ
+  std::size_t sectors = 0;               ///< how many sectors are occupied
+  double reference_time_s = 0.0;         ///< s after the stamp: half way between the first and the last point
+  double duration_s = 0.0;               ///< between the first and the last point
+  bool takes_time = false;               ///< the times of the points differ
 
   [[nodiscard]] Eigen::Vector3d u(std::size_t row) const { return {ux[row], uy[row], uz[row]}; }
   [[nodiscard]] std::size_t size() const { return s.size(); }

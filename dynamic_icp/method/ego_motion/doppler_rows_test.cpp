@@ -104,6 +104,22 @@ TEST(ConsensusSet, HasOneVotePerCellAndOneMorePerSectorForTheFarthest) {
   }
 }
 
+TEST(ConsensusSet, WhatCarriesTheSceneHasAThirdOfAllVotes) {
+  DopplerRows rows = sort_into_cells(random_scan(4, 3000, 40.0), 2.0, Workers(1));
+  rows.on_support.assign(rows.cells(), 0);
+  for (std::size_t cell = 0; cell < rows.cells(); cell += 10) {
+    rows.on_support[cell] = 1;
+  }
+  const ConsensusSet with = sample(rows, rows.cells());
+  rows.on_support.clear();
+  const ConsensusSet without = sample(rows, rows.cells());
+  const auto carriers = static_cast<double>((rows.cells() + 9) / 10);
+  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
+    EXPECT_NEAR(with.weights[cell], 2.0 / 3.0 * without.weights[cell] + (cell % 10 == 0 ? 1.0 / (3.0 * carriers) : 0.0),
+                1e-15);
+  }
+}
+
 TEST(ConsensusSet, IsNoLargerThanAllowedAndTakesCellsEvenly) {
   const DopplerRows rows = sort_into_cells(random_scan(5, 5000, 40.0), 2.0, Workers(1));
   ASSERT_GT(rows.cells(), 1000u);

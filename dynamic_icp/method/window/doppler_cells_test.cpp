@@ -71,7 +71,8 @@ std::vector<DopplerCell> cells_of(const Scan& scan, const std::vector<std::uint8
                                   double predicted_mps = 0.0) {
   DopplerCells cells;
   cells.sort(scan, kInterval_s, kOneThread);
-  return cells.average(scan, is_moving, scan.doppler(), std::vector<double>(scan.size(), predicted_mps), kGate_mps, kOneThread);
+  return cells.average(scan, is_moving, scan.doppler(), std::vector<double>(scan.size(), predicted_mps), kGate_mps,
+                       kOneThread);
 }
 
 TEST(DopplerCells, AreMeansOverTheirPoints) {
@@ -169,7 +170,8 @@ TEST(DopplerCells, WeighPointsByHowFarTheyAreFromTheOthers) {
   DopplerCells sorter;
   sorter.sort(scan, kInterval_s, kOneThread);
   const std::vector<double> predicted = Scan::from_raw(Bundles{}.raw()).doppler();
-  const std::vector<DopplerCell>& cells = sorter.average(scan, all_static(scan), scan.doppler(), predicted, kGate_mps, kOneThread);
+  const std::vector<DopplerCell>& cells =
+      sorter.average(scan, all_static(scan), scan.doppler(), predicted, kGate_mps, kOneThread);
   ASSERT_EQ(cells.size(), bundles.count());
   for (std::size_t b = 0; b < cells.size(); ++b) {
     double mean = 0.0, points = 0.0, weight = 0.0, s = 0.0;
@@ -300,8 +302,11 @@ TEST(DopplerCells, AnEmptyScanHasNone) {
   const Bundles bundles;
   const Scan scan = Scan::from_raw(bundles.raw());
   cells.sort(scan, kInterval_s, kOneThread);
-  EXPECT_EQ(cells.average(scan, all_static(scan), scan.doppler(), std::vector<double>(scan.size(), 0.0), kGate_mps, kOneThread).size(),
-            bundles.count());
+  EXPECT_EQ(
+      cells
+          .average(scan, all_static(scan), scan.doppler(), std::vector<double>(scan.size(), 0.0), kGate_mps, kOneThread)
+          .size(),
+      bundles.count());
 }
 
 }  // namespace

@@ -82,10 +82,10 @@ class DopplerErrorField {
   struct Group {
     std::string_view name;
     std::size_t begin = 0;
-    Eigen::MatrixXd K;        ///< correlation
-    Eigen::MatrixXd inverse;  ///< of it
+    Eigen::MatrixXd K;             ///< correlation
+    Eigen::MatrixXd inverse;       ///< of it
     Eigen::MatrixXd inverse_root;  ///< L with the inverse L L^T
-    double tau = 0.05;        ///< m/s
+    double tau = 0.05;             ///< m/s
     bool is_learned = true;
     [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(K.rows()); }
   };

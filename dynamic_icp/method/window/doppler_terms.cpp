@@ -114,71 +114,84 @@ void DopplerTerms::add_cell(const DopplerCell& cell, double w, const DopplerErro
   }
 }
 
-/// The motion at the nodes of an interval, and how it depends on the four coefficients there.
-DopplerTerms::Nodes DopplerTerms::nodes_of(const Interval& interval, const SplineTrajectory& trajectory,
-                                           const Layout& layout) const {
-  Nodes nodes;
-  nodes.by_coefficients = Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(kNodes) * per_node_, 24);
-  nodes.motion.resize(nodes.by_coefficients.rows());
-  const double h = trajectory.knot_spacing();
-  for (std::size_t n = 0; n < kNodes; ++n) {
-    const TrajectoryPoint at = trajectory.at(interval.middle_s + (kNodeAt[n] - 0.5) * h);
-    nodes.first = layout.coefficient(at.first);
-    const Eigen::Index row = static_cast<Eigen::Index>(n) * per_node_;
-    const Eigen::Matrix3d by_rotation = skew(at.velocity) * at.J;
-    const Eigen::Matrix3d R_transposed = at.R.transpose();
-    nodes.motion.segment<3>(row) = at.velocity;
-    for (std::size_t k = 0; k < 4; ++k) {
-      const Eigen::Index column = 6 * static_cast<Eigen::Index>(k);
-      nodes.by_coefficients.block<3, 3>(row, column) = at.weight[k] * by_rotation;
-      nodes.by_coefficients.block<3, 3>(row, column + 3) = at.slope[k] * R_transposed;
-      if (per_node_ == 6) {
-        nodes.by_coefficients.block<3, 3>(row + 3, column) =
-            at.slope[k] * at.J + 0.5 * at.weight[k] * skew(at.omega);
+void DopplerTerms::linearise(const SplineTrajectory& trajectory) {
+  for (Interval& interval : intervals_) {
+    Eigen::MatrixXd& T = interval.by_coefficients;
+    T = Eigen::MatrixXd::Zero(interval.b.size(), 24);
+    for (std::size_t n = 0; n < kNodes; ++n) {
+      const TrajectoryPoint at = trajectory.at(node_time(interval, n, trajectory));
+      interval.first = at.first;
+      const Eigen::Index row = static_cast<Eigen::Index>(n) * per_node_;
+      const Eigen::Matrix3d by_rotation = skew(at.velocity) * at.J;
+      const Eigen::Matrix3d R_transposed = at.R.transpose();
+      for (std::size_t k = 0; k < 4; ++k) {
+        const Eigen::Index column = 6 * static_cast<Eigen::Index>(k);
+        T.block<3, 3>(row, column) = at.weight[k] * by_rotation;
+        T.block<3, 3>(row, column + 3) = at.slope[k] * R_transposed;
+        if (per_node_ == 6) {
+          T.block<3, 3>(row + 3, column) = at.slope[k] * at.J + 0.5 * at.weight[k] * skew(at.omega);
+        }
       }
     }
-    if (per_node_ == 6) {
-      nodes.motion.segment<3>(row + 3) = at.omega;
-    }
   }
-  return nodes;
 }
 
-void DopplerTerms::add_information(const SplineTrajectory& trajectory, const Layout& layout, double scan_variance,
-                                   Eigen::MatrixXd& H) const {
+double DopplerTerms::node_time(const Interval& interval, std::size_t node, const SplineTrajectory& trajectory) {
+  return interval.middle_s + (kNodeAt[node] - 0.5) * trajectory.knot_spacing();
+}
+
+Eigen::VectorXd DopplerTerms::motion_at_nodes(const Interval& interval, const SplineTrajectory& trajectory) const {
+  Eigen::VectorXd y(interval.b.size());
+  for (std::size_t n = 0; n < kNodes; ++n) {
+    const TrajectoryPoint at = trajectory.at(node_time(interval, n, trajectory));
+    const Eigen::Index row = static_cast<Eigen::Index>(n) * per_node_;
+    y.segment<3>(row) = at.velocity;
+    if (per_node_ == 6) {
+      y.segment<3>(row + 3) = at.omega;
+    }
+  }
+  return y;
+}
+
+/// How what is seen depends on the error that all of a scan have in common.
+Eigen::VectorXd DopplerTerms::scan_column(const Layout& layout) const {
+  Eigen::VectorXd U = Eigen::VectorXd::Zero(layout.size());
+  U.head(layout.field) = N_theta_scan_;
+  for (const Interval& interval : intervals_) {
+    U.segment(layout.coefficient(interval.first), 24) += interval.by_coefficients.transpose() * interval.N_scan;
+  }
+  return U;
+}
+
+void DopplerTerms::add_information(const Layout& layout, double scan_variance, Eigen::MatrixXd& H) const {
   const Eigen::Index fields = layout.field;
   H.topLeftCorner(fields, fields) += N_theta_;
-  Eigen::VectorXd U = Eigen::VectorXd::Zero(layout.size());
-  U.head(fields) = N_theta_scan_;
   for (const Interval& interval : intervals_) {
-    const Nodes nodes = nodes_of(interval, trajectory, layout);
-    const Eigen::MatrixXd& T = nodes.by_coefficients;
-    H.block(nodes.first, nodes.first, 24, 24) += T.transpose() * interval.N * T;
+    const Eigen::Index first = layout.coefficient(interval.first);
+    const Eigen::MatrixXd& T = interval.by_coefficients;
+    H.block(first, first, 24, 24) += T.transpose() * interval.N * T;
     const Eigen::MatrixXd cross = interval.N_theta.transpose() * T;
-    H.block(0, nodes.first, fields, 24) += cross;
-    H.block(nodes.first, 0, 24, fields) += cross.transpose();
-    U.segment(nodes.first, 24) += T.transpose() * interval.N_scan;
+    H.block(0, first, fields, 24) += cross;
+    H.block(first, 0, 24, fields) += cross.transpose();
   }
+  const Eigen::VectorXd U = scan_column(layout);
   H.noalias() -= (U / (N_scan_ + 1.0 / scan_variance)) * U.transpose();
 }
 
 DopplerTerms::ScanError DopplerTerms::add_gradient(const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
                                                    const Layout& layout, double scan_variance,
                                                    Eigen::VectorXd& g) const {
-  const Eigen::Index fields = layout.field;
-  g.head(fields) += N_theta_ * theta - b_theta_;
-  Eigen::VectorXd U = Eigen::VectorXd::Zero(layout.size());
-  U.head(fields) = N_theta_scan_;
+  g.head(layout.field) += N_theta_ * theta - b_theta_;
   double gradient = N_theta_scan_.dot(theta) - b_scan_;
   for (const Interval& interval : intervals_) {
-    const Nodes nodes = nodes_of(interval, trajectory, layout);
-    const Eigen::VectorXd residual = interval.N * nodes.motion + interval.N_theta * theta - interval.b;
-    g.segment(nodes.first, 24) += nodes.by_coefficients.transpose() * residual;
-    g.head(fields) += interval.N_theta.transpose() * nodes.motion;
-    U.segment(nodes.first, 24) += nodes.by_coefficients.transpose() * interval.N_scan;
-    gradient += interval.N_scan.dot(nodes.motion);
+    const Eigen::VectorXd y = motion_at_nodes(interval, trajectory);
+    const Eigen::VectorXd residual = interval.N * y + interval.N_theta * theta - interval.b;
+    g.segment(layout.coefficient(interval.first), 24) += interval.by_coefficients.transpose() * residual;
+    g.head(layout.field) += interval.N_theta.transpose() * y;
+    gradient += interval.N_scan.dot(y);
   }
   const double variance = 1.0 / (N_scan_ + 1.0 / scan_variance);
+  const Eigen::VectorXd U = scan_column(layout);
   g -= (variance * gradient) * U;
   return {-variance * gradient, variance, variance * U};
 }

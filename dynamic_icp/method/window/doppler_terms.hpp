@@ -52,11 +52,14 @@ class DopplerTerms {
     Eigen::VectorXd by_unknowns;  ///< d value / d unknowns of the window, negative
   };
 
-  /// Adds the information of the terms, linearised at a trajectory; they are linear in theta.
-  void add_information(const SplineTrajectory& trajectory, const Layout& layout, double scan_variance,
-                       Eigen::MatrixXd& H) const;
+  /// How the terms depend on the trajectory, from now on: that of `trajectory`. In theta they are linear.
+  void linearise(const SplineTrajectory& trajectory);
 
-  /// And their gradient.
+  /// Adds their information.
+  void add_information(const Layout& layout, double scan_variance, Eigen::MatrixXd& H) const;
+
+  /// Adds their gradient: of the residuals at this state, by the rows as linearised. A gradient by other rows would ask
+  /// for large steps where the information says that nothing is known.
   ScanError add_gradient(const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, const Layout& layout,
                          double scan_variance, Eigen::VectorXd& g) const;
 
@@ -71,20 +74,17 @@ class DopplerTerms {
     Eigen::MatrixXd N;        ///< nodes x nodes
     Eigen::MatrixXd N_theta;  ///< nodes x theta
     Eigen::VectorXd b;
-    Eigen::VectorXd N_scan;  ///< nodes x error of the scan
-  };
-
-  struct Nodes {
-    Eigen::Index first = 0;  ///< of the coefficients that they depend on
-    Eigen::VectorXd motion;
-    Eigen::MatrixXd by_coefficients;
+    Eigen::VectorXd N_scan;           ///< nodes x error of the scan
+    Eigen::MatrixXd by_coefficients;  ///< d nodes / d the four coefficients there
+    std::size_t first = 0;            ///< of these coefficients
   };
 
   void weigh(const std::vector<DopplerCell>& cells, const DopplerErrorField& field, const SplineTrajectory& trajectory,
              const Eigen::VectorXd& theta, double cell_variance);
   void add_cell(const DopplerCell& cell, double w, const DopplerErrorField& field, const SplineTrajectory& trajectory);
-  [[nodiscard]] Nodes nodes_of(const Interval& interval, const SplineTrajectory& trajectory,
-                               const Layout& layout) const;
+  [[nodiscard]] static double node_time(const Interval& interval, std::size_t node, const SplineTrajectory& trajectory);
+  [[nodiscard]] Eigen::VectorXd motion_at_nodes(const Interval& interval, const SplineTrajectory& trajectory) const;
+  [[nodiscard]] Eigen::VectorXd scan_column(const Layout& layout) const;
   [[nodiscard]] std::vector<double> residuals(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
                                               const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const;
 

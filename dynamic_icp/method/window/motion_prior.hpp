@@ -29,7 +29,8 @@ class MotionPrior {
            Eigen::VectorXd& g) const;
 
   /// Learns from the intervals [begin, end) by MacKay's fixed point q = sum e^2 / sum (1 - Var e / q). The covariance
-  /// of all unknowns but theta is M M^T, M = `covariance_root`. May be called again with a better estimate before `keep`.
+  /// of all unknowns but theta is M M^T, M = `covariance_root`. May be called again with a better estimate before
+  /// `keep`.
   void learn(const SplineTrajectory& trajectory, std::size_t begin, std::size_t end, const Layout& layout,
              const Eigen::MatrixXd& covariance_root);
   void keep();

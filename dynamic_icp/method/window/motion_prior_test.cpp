@@ -154,7 +154,7 @@ Learned learned(double amplitude_m) {
   for (int scan = 0; scan < 12; ++scan) {
     Motion motion(0.4);
     Sums sums = sums_of(prior, motion);
-    sums.H.diagonal().array() += 1e-6;
+    sums.H.diagonal().array() += 1.0;  // all within 1 m
     for (std::size_t k = 0; k < motion.count(); ++k) {
       const double t = 0.4 * scan + kKnot_s * static_cast<double>(k);
       double x = 0.0;
@@ -167,10 +167,10 @@ Learned learned(double amplitude_m) {
         sums.g[at] -= (x + normal(random)) / (kMeasured_m * kMeasured_m);
       }
     }
-    const Eigen::LLT<MatrixXd> solver(sums.H);
-    motion.add(-solver.solve(sums.g));
-    prior.learn(motion.trajectory, 8, 16, motion.layout,
-                solver.matrixU().solve(MatrixXd::Identity(sums.H.rows(), sums.H.cols())));
+    const Eigen::LLT<MatrixXd> factor(sums.H);
+    const MatrixXd covariance_root = factor.matrixU().solve(MatrixXd::Identity(sums.H.rows(), sums.H.cols()));
+    motion.add(-factor.solve(sums.g));
+    prior.learn(motion.trajectory, 8, 16, motion.layout, covariance_root);
     prior.keep();
   }
   return {std::sqrt(prior.vibration_variance()[3]), std::sqrt(prior.vibration_variance()[0]),

@@ -117,7 +117,8 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
       squares.push_back(row.e * row.e / (row.own + row.common / noise.repeated));
     }
   }
-  const double kernel = noise.kernel * (adapt && !squares.empty() ? std::max(1.0, kSigmaPerMad * std::sqrt(median(squares))) : 1.0);
+  const double kernel =
+      noise.kernel * (adapt && !squares.empty() ? std::max(1.0, kSigmaPerMad * std::sqrt(median(squares))) : 1.0);
   workers_.for_each(slices_.size(), 1, [&](std::size_t s) {
     Slice& slice = slices_[s];
     for (std::size_t k = slice.begin; k < slice.end; ++k) {

@@ -298,5 +298,30 @@ TEST(SplineTrajectory, ChangesOfTheReferenceAreDerivatives) {
   }
 }
 
+TEST(TrajectoryPoint, PlacesWhatIsSeenAMomentLater) {
+  const SplineTrajectory trajectory = smooth_trajectory();
+  const Vector3d x(30.0, -20.0, 4.0);
+  constexpr double kStep_s = 5e-4;
+  for (double t = kBegin_s + 0.01; t < kUntil_s - 0.01; t += 0.013) {
+    const Vector3d later = trajectory.reference().inverse() * (trajectory.pose(t + kStep_s) * x);
+    // What a straight step leaves out: half of 30 m times 5 rad/s^2 times the step squared.
+    EXPECT_LT((trajectory.at(t).place(x, kStep_s) - later).norm(), 3e-5);
+    EXPECT_LT((trajectory.at(t).place(x, 0.0) - trajectory.reference().inverse() * (trajectory.pose(t) * x)).norm(),
+              1e-12);
+  }
+}
+
+TEST(SampledMotion, IsTheMotionOfTheTrajectory) {
+  const SplineTrajectory trajectory = smooth_trajectory();
+  const SampledMotion motion(trajectory, kBegin_s + 0.01, kUntil_s - 0.01);
+  for (double t = kBegin_s + 0.01; t < kUntil_s - 0.01; t += 0.0003) {
+    EXPECT_LT((motion.velocity(t) - trajectory.at(t).velocity).norm(), 1e-3);
+    EXPECT_LT((motion.omega(t) - trajectory.at(t).omega).norm(), 1e-4);
+  }
+  EXPECT_EQ(motion.velocity(kBegin_s), motion.velocity(kBegin_s + 0.01)) << "outside as at the nearest time inside";
+  const SampledMotion instant(trajectory, kBegin_s, kBegin_s);
+  EXPECT_EQ(instant.velocity(kBegin_s + 1.0), trajectory.at(kBegin_s).velocity);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::window

@@ -29,6 +29,9 @@ constexpr double kPlaneKernel = 4.0;
 constexpr double kStep = 1e-4;
 constexpr int kMinIterations = 3;
 
+// After a shorter one the Doppler need not be linearised anew: eliminating theta costs more than all the rest.
+constexpr double kStraight = 1e-3;
+
 // How often the Doppler is averaged anew, with weights around the trajectory of the moment; more often in the first
 // scans of all, when the noise is not known.
 constexpr int kPasses = 2;
@@ -223,11 +226,12 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
   const bool is_second = scans_ == 1;
   const int passes = scans_ever_ < kFirstScans ? kFirstPasses : kPasses;
   motion.converged = false;
+  double step = std::numeric_limits<double>::infinity();
   for (int k = 0; k < config_.max_iterations && !motion.converged; ++k, ++motion.iterations) {
     if (motion.iterations < passes) {
       average_doppler(scan, scans_ever_ < kFirstScans, workers);
     }
-    if (k == 0 || motion.iterations < passes) {
+    if (motion.iterations < passes || step > kStraight) {
       linearise();
     }
     if (is_second && motion.iterations > 0) {
@@ -237,7 +241,7 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
       planes.emplace(*scan.static_points, map, stamp_s(), config_.knot_spacing_s / kSlices, workers);
     }
     compare_with_planes(true, *planes);
-    const double step = solve(scan_terms(planes, first_new));
+    step = solve(scan_terms(planes, first_new));
     if (!(step < kMaxCoordinate_m)) {
       motion.diverged = true;
       return;

@@ -39,7 +39,8 @@ void WindowEstimator::learn_field() {
 
 /// How the sensor moves between two times.
 void WindowEstimator::learn_motion(double from_s, double to_s) {
-  motion_prior_.learn(trajectory_, trajectory_.interval(from_s), trajectory_.interval(to_s), rest_layout(), covariance_root_);
+  motion_prior_.learn(trajectory_, trajectory_.interval(from_s), trajectory_.interval(to_s), rest_layout(),
+                      covariance_root_);
 }
 
 /// How far stamps are off; by which share their variance grew.

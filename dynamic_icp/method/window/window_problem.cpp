@@ -33,7 +33,8 @@ void WindowEstimator::linearise() {
   const Layout at = layout();
   linear_H_ = quadratic_->Q();
   if (doppler_ && config_.use_doppler) {
-    doppler_->add_information(trajectory_, at, scan_error_variance(), linear_H_);
+    doppler_->linearise(trajectory_);
+    doppler_->add_information(at, scan_error_variance(), linear_H_);
   }
   Eigen::MatrixXd F = linear_H_.topLeftCorner(at.field, at.field);
   field_->add_prior_information(F);
