@@ -45,6 +45,7 @@ constexpr Part<WindowOdometryConfig> kWindowParts[] = {
     {"no-dr", [](WindowOdometryConfig& config) { config.window.use_doppler = false; }},
     {"no-bias", [](WindowOdometryConfig& config) { config.window.learn_field = false; }},
     {"no-planes", [](WindowOdometryConfig& config) { config.window.use_planes = false; }},
+    {"no-support", [](WindowOdometryConfig& config) { config.find_support = false; }},
     {"no-vibration", [](WindowOdometryConfig& config) { config.window.learn_vibration = false; }},
     {"no-deskew", [](WindowOdometryConfig& config) { config.sweep.deskew = false; }},
     {"no-map", [](WindowOdometryConfig& config) { config.mapping.memory_scans = 0.0; }},
@@ -75,11 +76,12 @@ void switch_off(PipelineConfig& config, std::string_view name) {
     part->switch_off(config);
     return;
   }
-  if (!is_part(kMapOdometryParts, name) && !is_part(kWindowParts, name)) {
-    throw UsageError(fmt::format("unknown ablation '{}'; known are: {}", name, fmt::join(ablation_names(), ", ")));
+  const std::string own = fmt::format("{}", fmt::join(ablation_names(config), ", "));
+  if (is_part(kMapOdometryParts, name) || is_part(kWindowParts, name)) {
+    throw UsageError(
+        fmt::format("ablation '{}' is about a part that this pipeline does not have; it has: {}", name, own));
   }
-  throw UsageError(fmt::format("ablation '{}' is about a part that this pipeline does not have; it has: {}", name,
-                               fmt::join(ablation_names(config), ", ")));
+  throw UsageError(fmt::format("unknown ablation '{}'; those of this pipeline are: {}", name, own));
 }
 
 }  // namespace

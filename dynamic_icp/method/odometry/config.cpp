@@ -141,13 +141,15 @@ ConfigFields fields(WindowOdometryConfig& config) {
   append_fields(all, "window", fields(config.window));
   append_fields(all, "dynamics", {{"predict", &config.track_objects, 0, 0, "", kPredict}});
   append_fields(all, "tracking", fields(config.tracking));
-  append_fields(all, "odometry",
-                {{"search_start", &config.search_start, 0, 0, "",
-                  "with a local map: try several rotations for the first two scans"},
-                 {"lost_match", &config.lost_match, 0.0, 1.0, "",
-                  "with a local map: lost when less than this share of the usual number of points fits the map"},
-                 {"unobservable_sigma_m", &config.unobservable_sigma_m, 1e-6, 1e3, "m",
-                  "with a local map: directions with a larger standard deviation are reported as degenerate"}});
+  append_fields(
+      all, "odometry",
+      {{"find_support", &config.find_support, 0, 0, "", "the surface that carries the scene votes for what stands"},
+       {"search_start", &config.search_start, 0, 0, "",
+        "with a local map: try several rotations for the first two scans"},
+       {"lost_match", &config.lost_match, 0.0, 1.0, "",
+        "with a local map: lost when less than this share of the usual number of points fits the map"},
+       {"unobservable_sigma_m", &config.unobservable_sigma_m, 1e-6, 1e3, "m",
+        "with a local map: directions with a larger standard deviation are reported as degenerate"}});
   append_stream(all, config.stream);
   return all;
 }

@@ -136,7 +136,8 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
       [&] {
         ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
                                     memory_.rows);
-        memory_.rows.on_support = ego_motion::cells_on_support(whole, memory_.sort);
+        memory_.rows.on_support =
+            config_.find_support ? ego_motion::cells_on_support(whole, memory_.sort) : std::vector<std::uint8_t>{};
       });
   frame.points_used = memory_.thinned.size();
 }
