@@ -7,10 +7,12 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
+#include "testing/synthetic_rig.hpp"
 #include "testing/synthetic_street.hpp"
 
 // A recording whose numbers are wrong in a known way, and its diagnosis.
@@ -30,6 +32,8 @@ class Recording final : public datasets::Dataset {
   synthetic::World world = synthetic::street_with_cars();
   synthetic::Path path = synthetic::agile(9.0);
   synthetic::Sensor sensor;
+  synthetic::Mountings rig;              ///< empty: one sensor at the origin
+  std::vector<double> rig_bias_mps = {};  ///< of each sensor, or empty
   bool has_truth = true;
   double truth_scale = 1.0;
   double stamp_factor = 1.0;
@@ -53,7 +57,8 @@ class Recording final : public datasets::Dataset {
   [[nodiscard]] std::filesystem::path scan_file(std::size_t) const override { return "scan"; }
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     const double time_s = static_cast<double>(index) * kPeriod_s;
-    RawScan raw = synthetic::scan_at(world, path, sensor, time_s).raw;
+    RawScan raw = rig.empty() ? synthetic::scan_at(world, path, sensor, time_s).raw
+                              : synthetic::rig_scan(world, path, sensor, rig, rig_bias_mps, time_s);
     raw.stamp = stamp(index);
     perturb(raw, synthetic::velocity_sensor(path, time_s));
     return raw;

@@ -41,7 +41,7 @@ class DiagnosisProgram : public ProgramTest {
 
 TEST_F(DiagnosisProgram, InfoSaysItAsJson) {
   const json healthy = json::parse(run_program("info --json " + street().string()).text);
-  ASSERT_EQ(healthy["diagnosis"].size(), 11u);
+  ASSERT_EQ(healthy["diagnosis"].size(), 12u);
   for (const json& finding : healthy["diagnosis"]) {
     EXPECT_NE(finding["verdict"], "wrong") << finding;
     EXPECT_NE(finding["verdict"], "suspicious") << finding;

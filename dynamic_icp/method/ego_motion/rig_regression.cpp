@@ -36,14 +36,6 @@ struct SensorRows {
   RobustScale scale;
 };
 
-std::vector<std::vector<std::uint32_t>> rows_by_sensor(const Scan& scan) {
-  std::vector<std::vector<std::uint32_t>> rows(scan.mountings().size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    rows[scan.channels().sensor[i]].push_back(static_cast<std::uint32_t>(i));
-  }
-  return rows;
-}
-
 /// The times of all sensors count from one reference.
 void move_reference(double reference_time_s, bool takes_time, DopplerRows& rows) {
   for (double& dt : rows.dt) {
@@ -235,6 +227,14 @@ void average_over_bias_models(const DriftConfig& drift, Eigen::VectorXd& mean, E
 
 }  // namespace
 
+std::vector<std::vector<std::uint32_t>> rows_by_sensor(const Scan& scan) {
+  std::vector<std::vector<std::uint32_t>> rows(scan.mountings().size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    rows[scan.channels().sensor[i]].push_back(static_cast<std::uint32_t>(i));
+  }
+  return rows;
+}
+
 void reduce_to_origin(Scan& scan, const RigDoppler& rig, const Workers& workers, double sign) {
   workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
     const std::uint8_t k = scan.channels().sensor[i];
@@ -279,22 +279,29 @@ EgoPrior as_ego_prior(const RigPrior& prior) {
   return single;
 }
 
-Eigen::Vector3d first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
-                                       const DriftConfig& drift, const Workers& workers) {
+Eigen::Vector3d first_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
+                                       std::span<const EgoVelocity> of_sensors) {
   Matrix6d information = Matrix6d::Zero();
   information.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / (kUnknownVelocity_mps * kUnknownVelocity_mps));
   information.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / (kStartRotation_rad_s * kStartRotation_rad_s));
   Vector6d right = Vector6d::Zero();
-  const std::vector<std::vector<std::uint32_t>> rows = rows_by_sensor(scan);
-  for (std::size_t k = 0; k < rows.size(); ++k) {
-    const EgoVelocity of_sensor = estimate_velocity(scan.select(rows[k]), first_prior(drift), config, workers);
-    const Eigen::Matrix3d weight = of_sensor.covariance.inverse();
+  for (std::size_t k = 0; k < of_sensors.size(); ++k) {
+    const Eigen::Matrix3d weight = of_sensors[k].covariance.inverse();
     Eigen::Matrix<double, 3, 6> J;
-    J << Eigen::Matrix3d::Identity(), -skew(scan.mountings()[k].translation());
+    J << Eigen::Matrix3d::Identity(), -skew(mountings[k].translation());
     information += J.transpose() * weight * J;
-    right += J.transpose() * weight * of_sensor.velocity_sensor;
+    right += J.transpose() * weight * of_sensors[k].velocity_sensor;
   }
   return information.ldlt().solve(right).tail<3>();
+}
+
+Eigen::Vector3d first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
+                                       const DriftConfig& drift, const Workers& workers) {
+  std::vector<EgoVelocity> of_sensors;
+  for (const std::vector<std::uint32_t>& rows : rows_by_sensor(scan)) {
+    of_sensors.push_back(estimate_velocity(scan.select(rows), first_prior(drift), config, workers));
+  }
+  return first_angular_velocity(scan.mountings(), of_sensors);
 }
 
 RigEstimate estimate_rig_motion(const Scan& scan, const RigDoppler& reduced, const EgoVelocity& start,

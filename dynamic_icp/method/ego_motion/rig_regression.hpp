@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -20,6 +22,9 @@
 // time, b_k: constant error of the Doppler of sensor k. The lever arms make omega observable, but along the line
 // through two sensors.
 namespace dynamic_icp::ego_motion {
+
+/// The rows of a rig's scan that each of its sensors measured.
+std::vector<std::vector<std::uint32_t>> rows_by_sensor(const Scan& scan);
 
 /// What is in the Doppler of a rig beside the velocity of its origin.
 struct RigDoppler {
@@ -66,6 +71,10 @@ struct RigEstimate {
 /// v_k = v + omega x l_k, with omega near zero where the lever arms leave it open.
 Eigen::Vector3d first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
                                        const DriftConfig& drift, const Workers& workers);
+
+/// The same where these velocities are known already: one per mounting, in the axes of the common frame.
+Eigen::Vector3d first_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
+                                       std::span<const EgoVelocity> of_sensors);
 
 /// Fits v, a, omega, alpha and b jointly to the rows near `start`, the velocity that the consensus regression found in
 /// `scan`, which is reduced to the origin by `reduced`. Tukey's kernel; residuals of one sensor may depend on each

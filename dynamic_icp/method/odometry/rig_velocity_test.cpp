@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/rig_velocity.hpp"
 
-#include <cstdint>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -11,46 +10,19 @@
 #include "dynamic_icp/method/odometry/map_odometry.hpp"
 
 #include "testing/synthetic_drive.hpp"
+#include "testing/synthetic_rig.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
 
 using namespace synthetic;
 
-Eigen::Isometry3d mounted_at(double x, double y, double yaw) {
-  Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
-  T.translation() = Vector3d(x, y, 0.3);
-  T.linear() = exp_so3(yaw * Vector3d::UnitZ());
-  return T;
+RawScan rig_scan(const Drive& drive, const Mountings& mountings, const std::vector<double>& bias_mps, int k) {
+  return synthetic::rig_scan(drive.world, drive.path, drive.sensor, mountings, bias_mps, k * drive.period_s,
+                             drive.seed);
 }
 
-/// Two LiDARs ahead of the origin that is followed, and two more that look back and aside.
-const std::vector<Eigen::Isometry3d> kFrontPair = {mounted_at(1.5, 0.3, 0.2), mounted_at(1.5, -0.3, -0.2)};
-const std::vector<Eigen::Isometry3d> kAround = {mounted_at(1.5, 0.0, 0.0), mounted_at(0.7, -0.8, -1.55),
-                                                mounted_at(0.7, 0.8, 1.55), mounted_at(-1.2, 0.0, 3.1)};
-
-/// The points of all sensors in the frame of the origin, each with the Doppler of its own sensor.
-RawScan rig_scan(const Drive& drive, const std::vector<Eigen::Isometry3d>& mountings,
-                 const std::vector<double>& bias_mps, int k) {
-  RawScan raw;
-  raw.mountings = mountings;
-  for (std::size_t s = 0; s < mountings.size(); ++s) {
-    Sensor sensor = drive.sensor;
-    sensor.bias_mps = bias_mps.empty() ? 0.0 : bias_mps[s];
-    const Path path = [&](double t) { return Eigen::Isometry3d(drive.path(t) * mountings[s]); };
-    const RawScan part = scan_at(drive.world, path, sensor, k * drive.period_s, drive.seed + s).raw;
-    raw.stamp = part.stamp;
-    for (const Vector3d& point : part.points) {
-      raw.points.push_back(mountings[s] * point);
-    }
-    raw.doppler.insert(raw.doppler.end(), part.doppler.begin(), part.doppler.end());
-    raw.times.insert(raw.times.end(), part.times.begin(), part.times.end());
-    raw.channels.sensor.resize(raw.points.size(), static_cast<std::uint8_t>(s));
-  }
-  return raw;
-}
-
-std::vector<Frame> run(const Drive& drive, const std::vector<Eigen::Isometry3d>& mountings,
+std::vector<Frame> run(const Drive& drive, const Mountings& mountings,
                        const std::vector<double>& bias_mps, int scans) {
   MapOdometry odometry(with_ablation(), 2);
   std::vector<Frame> frames;

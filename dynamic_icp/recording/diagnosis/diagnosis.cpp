@@ -26,6 +26,7 @@ constexpr Asked kAsked[] = {
     {"point_units", point_units},
     {"columns", columns},
     {"mounting", mounting},
+    {"rig_mountings", rig_mountings},
     {"point_times", point_times},
     {"time_scale", time_scale},
     {"stamps", stamps},

@@ -25,6 +25,7 @@ enum class Question {
   kPointUnits,
   kColumns,
   kMounting,
+  kRigMountings,
   kPointTimes,
   kTimeScale,
   kStamps,

@@ -13,7 +13,7 @@ TEST(Diagnosis, AHealthyDriveIsHealthy) {
   Recording recording;
   const Diagnosis diagnosis = diagnosis_of(recording);
   EXPECT_EQ(not_ok(diagnosis), Verdicts{});
-  EXPECT_EQ(diagnosis.findings.size(), 11u);
+  EXPECT_EQ(diagnosis.findings.size(), 12u);
 }
 
 TEST(Diagnosis, IsTheSameForAnyNumberOfThreads) {

@@ -30,6 +30,9 @@ Finding columns(const Evidence& evidence);
 /// How the sensor is turned against the way it moves, and against the ground truth.
 Finding mounting(const Evidence& evidence);
 
+/// Where the sensors of a rig sit: static points must show one motion to all of them.
+Finding rig_mountings(const Evidence& evidence);
+
 /// Times of points: there, and within a scan?
 Finding point_times(const Evidence& evidence);
 

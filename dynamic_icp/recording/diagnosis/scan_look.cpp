@@ -12,7 +12,6 @@
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kFitting_mps = 0.5;
 constexpr double kStaticSigmas = 4.0;
 constexpr double kMinStill_mps = 0.3;
 constexpr double kMinStaticShare = 0.2;
@@ -67,10 +66,16 @@ DopplerValues doppler_values(const std::vector<double>& doppler, const std::vect
 }
 
 /// Of a rig whose rotation nobody knows yet.
-void take_out_lever_arms(Scan& scan, const Workers& workers) {
+void take_out_lever_arms(Scan& scan, ScanLook& look, const Workers& workers) {
+  look.mountings = scan.mountings();
   if (scan.is_of_rig() && scan.doppler_kind() == DopplerKind::kRelative) {
+    look.sensors = look_at_sensors(scan, workers);
+    std::vector<ego_motion::EgoVelocity> velocities;
+    for (const SensorLook& sensor : look.sensors) {
+      velocities.push_back(sensor.ego);
+    }
     ego_motion::RigDoppler rig;
-    rig.omega = ego_motion::first_angular_velocity(scan, {}, {}, workers);
+    rig.omega = ego_motion::first_angular_velocity(look.mountings, velocities);
     rig.bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scan.mountings().size()));
     ego_motion::reduce_to_origin(scan, rig, workers);
   }
@@ -120,7 +125,7 @@ ScanLook look_at(const RawScan& raw, const Workers& workers, Scan* still) {
   look_at_times(raw, look);
   Scan scan = Scan::from_raw(raw, {}, workers, &look.dropped);
   look_at_columns(scan, look);
-  take_out_lever_arms(scan, workers);
+  take_out_lever_arms(scan, look, workers);
   const DopplerFit fit = fit_doppler(scan, workers);
   look.ego = fit.ego;
   look.static_share = fit.static_share;

@@ -8,16 +8,21 @@
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
+#include "dynamic_icp/recording/diagnosis/sensor_look.hpp"
 
 namespace dynamic_icp::diagnosis {
 
 /// Share of the values that are called nearly all: a few strays say nothing of a unit.
 inline constexpr double kNearlyAll = 0.95;
+
+/// A point whose Doppler differs by less from what a velocity explains fits to it.
+inline constexpr double kFitting_mps = 0.5;
 
 /// The Doppler of the usable points of a scan.
 struct DopplerValues {
@@ -57,6 +62,9 @@ struct ScanLook {
   Eigen::Vector3d look_spread = Eigen::Vector3d::Zero();     ///< root mean square of each axis of the lines of sight
   ego_motion::EgoVelocity ego;                               ///< see DopplerFit
   double static_share = 0.0;
+
+  std::vector<Eigen::Isometry3d> mountings;  ///< of a rig: T_scan_sensor
+  std::vector<SensorLook> sensors;           ///< of a rig with relative Doppler, in the order of the mountings
 
   [[nodiscard]] bool has_velocity() const;
 };
