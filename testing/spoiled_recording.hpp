@@ -32,7 +32,7 @@ class Recording final : public datasets::Dataset {
   synthetic::World world = synthetic::street_with_cars();
   synthetic::Path path = synthetic::agile(9.0);
   synthetic::Sensor sensor;
-  synthetic::Mountings rig;              ///< empty: one sensor at the origin
+  synthetic::Mountings rig;               ///< empty: one sensor at the origin
   std::vector<double> rig_bias_mps = {};  ///< of each sensor, or empty
   bool has_truth = true;
   double truth_scale = 1.0;

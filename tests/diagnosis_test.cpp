@@ -174,6 +174,36 @@ TEST_F(DiagnosisProgram, CompensatedDopplerInATunnelLeavesTheWayUnknown) {
   EXPECT_LT(json::parse(read_file(folder_ / "out-street" / "summary.json"))["rte_rmse_m"].get<double>(), 0.02);
 }
 
+TEST_F(DiagnosisProgram, MountingsThatContradictTheDopplerAreReported) {
+  const fs::path drive = folder_ / "rig";
+  ASSERT_EQ(run_program("simulate street --sensor front-pair --layout aevascenes --frames 10 --quiet --set "
+                        "lidar.columns=300 --output " +
+                        drive.string())
+                .status,
+            0);
+  const auto finding = [&] {
+    const json about = json::parse(run_program("info --json " + drive.string()).text);
+    for (const json& one : about["diagnosis"]) {
+      if (one["question"] == "rig_mountings") {
+        return one;
+      }
+    }
+    return json();
+  };
+  EXPECT_EQ(finding()["verdict"], "ok") << finding();
+  json sequence = json::parse(read_file(drive / "sequence.json"));
+  json& extrinsics = sequence["metadata"]["vehicle_to_lidar_extrinsics"];
+  ASSERT_TRUE(extrinsics.contains("front_narrow_lidar")) << sequence["metadata"];
+  extrinsics["front_narrow_lidar"]["rotation"] = {{"w", std::sqrt(0.5)}, {"x", 0}, {"y", 0}, {"z", -std::sqrt(0.5)}};
+  std::ofstream(drive / "sequence.json") << sequence;
+  EXPECT_EQ(finding()["verdict"], "wrong");
+  EXPECT_NE(finding()["sentence"].get<std::string>().find("sensor 1 moves 9"), std::string::npos) << finding();
+  EXPECT_EQ(run(drive, "out-rig").status, 0);
+  const json record = json::parse(read_file(folder_ / "out-rig" / "run.json"));
+  EXPECT_NE(record["warnings"].dump().find("rig_mountings: the mountings contradict"), std::string::npos)
+      << record["warnings"];
+}
+
 TEST_F(DiagnosisProgram, WrongOptionsAreWrongUse) {
   for (const char* options : {"--doppler-sign up", "--doppler-kind raw", "--columns x,y,z", "--time-scale 0",
                               "--point-scale nan", "--field doppler", "--period -1"}) {

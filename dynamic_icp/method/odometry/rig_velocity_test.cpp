@@ -22,8 +22,7 @@ RawScan rig_scan(const Drive& drive, const Mountings& mountings, const std::vect
                              drive.seed);
 }
 
-std::vector<Frame> run(const Drive& drive, const Mountings& mountings,
-                       const std::vector<double>& bias_mps, int scans) {
+std::vector<Frame> run(const Drive& drive, const Mountings& mountings, const std::vector<double>& bias_mps, int scans) {
   MapOdometry odometry(with_ablation(), 2);
   std::vector<Frame> frames;
   for (int k = 0; k < scans; ++k) {

@@ -156,12 +156,14 @@ void describe_agreement(const std::vector<Hearing>& hearings, const Judgement& j
                         Finding& finding) {
   std::vector<std::string> vague;
   double limit_rad = 0.0;
+  double up_limit_rad = 0.0;
   for (std::size_t k = 0; k < sensors; ++k) {
     if (k == judgement.leader) {
       continue;
     }
     const Offset off = offset(hearings, judgement.leader, k, {});
     limit_rad = std::max(limit_rad, off.left_limit_rad);
+    up_limit_rad = std::max(up_limit_rad, off.up_limit_rad);
     if (!off.is_known || off.left_limit_rad > kWellKnown_rad) {
       const bool is_open = !off.is_known || off.left_limit_rad > std::numbers::pi;
       vague.push_back(fmt::format("sensor {} by {}", k,
@@ -176,9 +178,10 @@ void describe_agreement(const std::vector<Hearing>& hearings, const Judgement& j
   }
   finding.verdict = Verdict::kOk;
   finding.sentence = fmt::format(
-      "by their Doppler all {} sensors move as their mountings have it: {:.1f} degrees to the side would show, a "
-      "rotation about the direction of travel would not",
-      sensors, limit_rad / kDegree);
+      "by their Doppler all {} sensors move as their mountings have it: from {:.1f} degrees to the side or {:.1f} up "
+      "or "
+      "down it would show, a rotation about the direction of travel would not",
+      sensors, limit_rad / kDegree, up_limit_rad / kDegree);
 }
 
 void describe_contradiction(const std::vector<Hearing>& hearings, const Judgement& judgement,
@@ -193,7 +196,8 @@ void describe_contradiction(const std::vector<Hearing>& hearings, const Judgemen
     for (const std::size_t k : judgement.wrong) {
       parts.push_back(sensor_in_words(hearings, judgement, k, mountings));
     }
-    finding.sentence = fmt::format("the mountings contradict the data: next to sensor {}, {}", judgement.leader, fmt::join(parts, "; "));
+    finding.sentence = fmt::format("the mountings contradict the data: next to sensor {}, {}", judgement.leader,
+                                   fmt::join(parts, "; "));
   } else {
     finding.sentence = fmt::format(
         "the mountings contradict the data: by their Doppler sensors {} and {} move {:.1f} degrees apart, and nothing "

@@ -30,7 +30,7 @@ struct Hearing {
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();  ///< rad/s
   double omega_sigma = 0.0;                         ///< rad/s
   bool has_truth = false;                           ///< the direction of travel is that of the ground truth
-  std::vector<Witness> witnesses;                   ///< the sensors, then the ground truth or else that vehicles drive ahead
+  std::vector<Witness> witnesses;  ///< the sensors, then the ground truth or else that vehicles drive ahead
 };
 
 /// Looks fast enough to compare directions. `sensors`: how many there are.

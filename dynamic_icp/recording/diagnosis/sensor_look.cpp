@@ -20,7 +20,7 @@ constexpr double kSectorAzimuth_rad = 0.1;
 constexpr double kSectorElevation_rad = 0.05;
 constexpr double kMinSectorPoints = 10.0;
 constexpr double kSmallestError_mps = 0.005;  // by surfaces and grazing beams, where noise hides it
-constexpr double kSmallestSpread = 1e-6;  // of lines of sight, squared: nothing sees less
+constexpr double kSmallestSpread = 1e-6;      // of lines of sight, squared: nothing sees less
 constexpr double kMinStaticShare = 0.2;
 
 /// Residuals of the neighbouring lines of sight.
