@@ -53,6 +53,9 @@ constexpr std::array<Mistake, 7> kMistakes = {{
      [](const Rotation& stated) { return about_own_z(stated, 2.0 * kQuarter_rad); }},
 }};
 
+/// The Doppler does not show a sensor turned upside down about the direction of travel; nobody means that.
+bool turns_over(const Rotation& stated, const Rotation& meant) { return stated(2, 2) > 0.0 && meant(2, 2) < 0.0; }
+
 bool fits(const Offset& offset, double without_rad) {
   return !offset.contradicts() && offset.angle_rad() < std::min(kFits_rad, kFitsShare * without_rad);
 }
@@ -66,7 +69,7 @@ std::vector<std::string> explanations(const std::vector<Hearing>& hearings, std:
   const auto fits_as = [&](const Rotation& meant) {
     Remounting remounting(mountings.size(), Rotation::Identity());
     remounting[wrong] = meant * stated.transpose();
-    return fits(offset(hearings, right, wrong, remounting), without_rad);
+    return !turns_over(stated, meant) && fits(offset(hearings, right, wrong, remounting), without_rad);
   };
   std::vector<std::string> words;
   for (const Mistake& mistake : kMistakes) {
@@ -85,10 +88,12 @@ std::vector<std::string> explanations(const std::vector<Hearing>& hearings, std:
 std::string common_explanation(const std::vector<Hearing>& hearings, std::span<const Eigen::Isometry3d> mountings) {
   for (const Mistake& mistake : kMistakes) {
     Remounting remounting;
-    for (const Eigen::Isometry3d& T_scan_sensor : mountings) {
-      remounting.push_back(mistake.rotation(T_scan_sensor.linear()) * T_scan_sensor.linear().transpose());
-    }
     bool all_fit = true;
+    for (const Eigen::Isometry3d& T_scan_sensor : mountings) {
+      const Rotation meant = mistake.rotation(T_scan_sensor.linear());
+      remounting.push_back(meant * T_scan_sensor.linear().transpose());
+      all_fit = all_fit && !turns_over(T_scan_sensor.linear(), meant);
+    }
     for (std::size_t i = 0; i < mountings.size(); ++i) {
       for (std::size_t k = i + 1; k <= mountings.size(); ++k) {  // the last one: the direction of travel
         const Offset left = offset(hearings, i, k, remounting);

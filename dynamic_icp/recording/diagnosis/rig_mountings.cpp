@@ -31,12 +31,12 @@ struct Judgement {
 
 /// Of two sensors that contradict each other: the one that moves clearly more as the ground truth does.
 void decide_by_truth(const std::vector<Hearing>& hearings, Judgement& judgement) {
-  constexpr double kClearly = 0.25;
+  constexpr double kClearly = 0.5;
   const bool has_truth = std::ranges::all_of(hearings, [](const Hearing& hearing) { return hearing.has_truth; });
   const Offset of_leader = offset(hearings, 2, judgement.leader, {});
   const Offset of_other = offset(hearings, 2, 1 - judgement.leader, {});
   if (!has_truth || !of_leader.is_known || !of_other.is_known) {
-    return;
+    return;  // as many agree
   }
   const auto [nearer, farther] = std::minmax(of_leader.angle_rad(), of_other.angle_rad());
   judgement.is_decided = nearer < kClearly * farther;
@@ -85,7 +85,7 @@ Judgement judge(const std::vector<Hearing>& hearings, std::size_t sensors) {
       judgement.is_decided = judgement.is_decided && agreeing[judgement.leader] > agreeing[k];
     }
   }
-  if (sensors == 2 && !judgement.is_decided) {
+  if (sensors == 2 && !judgement.wrong.empty()) {
     decide_by_truth(hearings, judgement);
   }
   return judgement;

@@ -43,10 +43,10 @@ Witness sensor_witness(const SensorLook& sensor, const Eigen::Isometry3d& T_scan
 }
 
 /// The mean velocity of a stretch, in the axes of its middle.
-Witness truth_witness(const Motion& motion, const Eigen::Vector3d& omega) {
+Witness truth_witness(const Motion& motion) {
   Witness witness;
   const Eigen::Vector3d velocity = motion.T_from_to.translation() / motion.dt_s;
-  witness.velocity = exp_so3(-0.5 * motion.dt_s * omega) * velocity;
+  witness.velocity = exp_so3(-0.5 * log_so3(motion.T_from_to.linear())) * velocity;
   witness.lasting = squared(kTruthDirection * velocity.norm() + kTruth_mps);
   witness.knows = velocity.norm() > kDirectionKnown_mps;
   return witness;
@@ -136,7 +136,7 @@ std::vector<Hearing> hear(const Evidence& evidence, std::size_t sensors) {
     hearing.omega_sigma = is_known ? kKnownRotation_rps : kUnknownRotation_rps;
     const bool has_truth = probe.by_truth && probe.by_truth->dt_s > 0.0;
     hearing.has_truth = has_truth;
-    hearing.witnesses.push_back(has_truth ? truth_witness(*probe.by_truth, hearing.omega) : ahead_witness(speed_mps));
+    hearing.witnesses.push_back(has_truth ? truth_witness(*probe.by_truth) : ahead_witness(speed_mps));
     hearings.push_back(std::move(hearing));
   }
   return hearings;
