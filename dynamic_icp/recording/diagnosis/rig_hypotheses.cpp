@@ -62,14 +62,14 @@ bool fits(const Offset& offset, double without_rad) {
 
 }  // namespace
 
-std::vector<std::string> explanations(const std::vector<Hearing>& hearings, std::size_t right, std::size_t wrong,
+std::vector<std::string> explanations(const std::vector<RigLook>& rig_looks, std::size_t right, std::size_t wrong,
                                       std::span<const Eigen::Isometry3d> mountings) {
-  const double without_rad = offset(hearings, right, wrong, {}).angle_rad();
+  const double without_rad = offset(rig_looks, right, wrong, {}).angle_rad();
   const Rotation stated = mountings[wrong].linear();
   const auto fits_as = [&](const Rotation& meant) {
     Remounting remounting(mountings.size(), Rotation::Identity());
     remounting[wrong] = meant * stated.transpose();
-    return !turns_over(stated, meant) && fits(offset(hearings, right, wrong, remounting), without_rad);
+    return !turns_over(stated, meant) && fits(offset(rig_looks, right, wrong, remounting), without_rad);
   };
   std::vector<std::string> words;
   for (const Mistake& mistake : kMistakes) {
@@ -85,7 +85,7 @@ std::vector<std::string> explanations(const std::vector<Hearing>& hearings, std:
   return words;
 }
 
-std::string common_explanation(const std::vector<Hearing>& hearings, std::span<const Eigen::Isometry3d> mountings) {
+std::string common_explanation(const std::vector<RigLook>& rig_looks, std::span<const Eigen::Isometry3d> mountings) {
   for (const Mistake& mistake : kMistakes) {
     Remounting remounting;
     bool all_fit = true;
@@ -96,7 +96,7 @@ std::string common_explanation(const std::vector<Hearing>& hearings, std::span<c
     }
     for (std::size_t i = 0; i < mountings.size(); ++i) {
       for (std::size_t k = i + 1; k <= mountings.size(); ++k) {  // the last one: the direction of travel
-        const Offset left = offset(hearings, i, k, remounting);
+        const Offset left = offset(rig_looks, i, k, remounting);
         all_fit = all_fit && !left.contradicts() && (!left.is_known || left.angle_rad() < kFits_rad);
       }
     }

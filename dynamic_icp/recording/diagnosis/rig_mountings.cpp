@@ -30,11 +30,11 @@ struct Judgement {
 };
 
 /// Of two sensors that contradict each other: the one that moves clearly more as the ground truth does.
-void decide_by_truth(const std::vector<Hearing>& hearings, Judgement& judgement) {
+void decide_by_truth(const std::vector<RigLook>& rig_looks, Judgement& judgement) {
   constexpr double kClearly = 0.5;
-  const bool has_truth = std::ranges::all_of(hearings, [](const Hearing& hearing) { return hearing.has_truth; });
-  const Offset of_leader = offset(hearings, 2, judgement.leader, {});
-  const Offset of_other = offset(hearings, 2, 1 - judgement.leader, {});
+  const bool has_truth = std::ranges::all_of(rig_looks, [](const RigLook& rig_look) { return rig_look.has_truth; });
+  const Offset of_leader = offset(rig_looks, 2, judgement.leader, {});
+  const Offset of_other = offset(rig_looks, 2, 1 - judgement.leader, {});
   if (!has_truth || !of_leader.is_known || !of_other.is_known) {
     return;  // as many agree
   }
@@ -47,46 +47,46 @@ void decide_by_truth(const std::vector<Hearing>& hearings, Judgement& judgement)
 }
 
 /// Sensors, itself among them, and the direction of travel that do not contradict sensor `k`.
-int votes(const std::vector<Hearing>& hearings, std::size_t sensors, std::size_t k) {
+int votes(const std::vector<RigLook>& rig_looks, std::size_t sensors, std::size_t k) {
   int agreeing = 1;
   for (std::size_t other = 0; other <= sensors; ++other) {
-    const Offset off = other != k ? offset(hearings, other, k, {}) : Offset{};
+    const Offset off = other != k ? offset(rig_looks, other, k, {}) : Offset{};
     agreeing += off.is_known && !off.contradicts() ? 1 : 0;
   }
   return agreeing;
 }
 
 /// How little is known of the direction of sensor `k`, next to the others.
-double vagueness(const std::vector<Hearing>& hearings, std::size_t sensors, std::size_t k) {
+double vagueness(const std::vector<RigLook>& rig_looks, std::size_t sensors, std::size_t k) {
   double sum = 0.0;
   for (std::size_t other = 0; other < sensors; ++other) {
-    const Offset off = other != k ? offset(hearings, other, k, {}) : Offset{};
+    const Offset off = other != k ? offset(rig_looks, other, k, {}) : Offset{};
     sum += std::min(off.left_limit_rad, std::numbers::pi) + std::min(off.up_limit_rad, std::numbers::pi);
   }
   return sum;
 }
 
-Judgement judge(const std::vector<Hearing>& hearings, std::size_t sensors) {
+Judgement judge(const std::vector<RigLook>& rig_looks, std::size_t sensors) {
   std::vector<int> agreeing;
   for (std::size_t k = 0; k < sensors; ++k) {
-    agreeing.push_back(votes(hearings, sensors, k));
+    agreeing.push_back(votes(rig_looks, sensors, k));
   }
   Judgement judgement;
   for (std::size_t k = 1; k < sensors; ++k) {
     const bool is_clearer = agreeing[k] == agreeing[judgement.leader] &&
-                            vagueness(hearings, sensors, k) < vagueness(hearings, sensors, judgement.leader);
+                            vagueness(rig_looks, sensors, k) < vagueness(rig_looks, sensors, judgement.leader);
     if (agreeing[k] > agreeing[judgement.leader] || is_clearer) {
       judgement.leader = k;
     }
   }
   for (std::size_t k = 0; k < sensors; ++k) {
-    if (k != judgement.leader && offset(hearings, judgement.leader, k, {}).contradicts()) {
+    if (k != judgement.leader && offset(rig_looks, judgement.leader, k, {}).contradicts()) {
       judgement.wrong.push_back(k);
       judgement.is_decided = judgement.is_decided && agreeing[judgement.leader] > agreeing[k];
     }
   }
   if (sensors == 2 && !judgement.wrong.empty()) {
-    decide_by_truth(hearings, judgement);
+    decide_by_truth(rig_looks, judgement);
   }
   return judgement;
 }
@@ -122,23 +122,23 @@ std::string cure_in_words(const Offset& off) {
                      cure.angle() / kDegree, axis.x(), axis.y(), axis.z());
 }
 
-std::string sensor_in_words(const std::vector<Hearing>& hearings, const Judgement& judgement, std::size_t k,
+std::string sensor_in_words(const std::vector<RigLook>& rig_looks, const Judgement& judgement, std::size_t k,
                             const std::vector<Eigen::Isometry3d>& mountings) {
-  const Offset off = offset(hearings, judgement.leader, k, {});
+  const Offset off = offset(rig_looks, judgement.leader, k, {});
   const std::vector<std::string> meant = off.angle_rad() > kMixedUp_rad
-                                             ? explanations(hearings, judgement.leader, k, mountings)
+                                             ? explanations(rig_looks, judgement.leader, k, mountings)
                                              : std::vector<std::string>{};
   return fmt::format("sensor {} moves {} by its Doppler, {} would make it agree", k, offset_in_words(off),
                      meant.empty() ? cure_in_words(off) : fmt::format("{}", fmt::join(meant, ", or ")));
 }
 
-void add_numbers(const std::vector<Hearing>& hearings, const Judgement& judgement, std::size_t sensors,
+void add_numbers(const std::vector<RigLook>& rig_looks, const Judgement& judgement, std::size_t sensors,
                  Finding& finding) {
   finding.evidence = {{"sensors", static_cast<double>(sensors)},
-                      {"looks", static_cast<double>(hearings.size())},
+                      {"looks", static_cast<double>(rig_looks.size())},
                       {"compared_with_sensor", static_cast<double>(judgement.leader)}};
   for (std::size_t k = 0; k < sensors; ++k) {
-    const Offset off = k != judgement.leader ? offset(hearings, judgement.leader, k, {}) : Offset{};
+    const Offset off = k != judgement.leader ? offset(rig_looks, judgement.leader, k, {}) : Offset{};
     if (off.is_known) {
       const auto add = [&](const char* name, double angle_rad) {
         finding.evidence.emplace_back(fmt::format("sensor_{}_{}_deg", k, name), angle_rad / kDegree);
@@ -152,7 +152,7 @@ void add_numbers(const std::vector<Hearing>& hearings, const Judgement& judgemen
 }
 
 /// Nothing contradicts: how much that says.
-void describe_agreement(const std::vector<Hearing>& hearings, const Judgement& judgement, std::size_t sensors,
+void describe_agreement(const std::vector<RigLook>& rig_looks, const Judgement& judgement, std::size_t sensors,
                         Finding& finding) {
   std::vector<std::string> vague;
   double limit_rad = 0.0;
@@ -161,7 +161,7 @@ void describe_agreement(const std::vector<Hearing>& hearings, const Judgement& j
     if (k == judgement.leader) {
       continue;
     }
-    const Offset off = offset(hearings, judgement.leader, k, {});
+    const Offset off = offset(rig_looks, judgement.leader, k, {});
     limit_rad = std::max(limit_rad, off.left_limit_rad);
     up_limit_rad = std::max(up_limit_rad, off.up_limit_rad);
     if (!off.is_known || off.left_limit_rad > kWellKnown_rad) {
@@ -184,17 +184,17 @@ void describe_agreement(const std::vector<Hearing>& hearings, const Judgement& j
       sensors, limit_rad / kDegree, up_limit_rad / kDegree);
 }
 
-void describe_contradiction(const std::vector<Hearing>& hearings, const Judgement& judgement,
+void describe_contradiction(const std::vector<RigLook>& rig_looks, const Judgement& judgement,
                             const std::vector<Eigen::Isometry3d>& mountings, Finding& finding) {
   double worst_rad = 0.0;
   for (const std::size_t k : judgement.wrong) {
-    worst_rad = std::max(worst_rad, offset(hearings, judgement.leader, k, {}).angle_rad());
+    worst_rad = std::max(worst_rad, offset(rig_looks, judgement.leader, k, {}).angle_rad());
   }
   finding.verdict = worst_rad > kMixedUp_rad ? Verdict::kWrong : Verdict::kSuspicious;
   if (judgement.is_decided) {
     std::vector<std::string> parts;
     for (const std::size_t k : judgement.wrong) {
-      parts.push_back(sensor_in_words(hearings, judgement, k, mountings));
+      parts.push_back(sensor_in_words(rig_looks, judgement, k, mountings));
     }
     finding.sentence = fmt::format("the mountings contradict the data: next to sensor {}, {}", judgement.leader,
                                    fmt::join(parts, "; "));
@@ -205,7 +205,7 @@ void describe_contradiction(const std::vector<Hearing>& hearings, const Judgemen
         judgement.leader, fmt::join(judgement.wrong, ", "), worst_rad / kDegree);
   }
   if (worst_rad > kMixedUp_rad && (judgement.wrong.size() > 1 || !judgement.is_decided)) {
-    const std::string common = common_explanation(hearings, mountings);
+    const std::string common = common_explanation(rig_looks, mountings);
     finding.sentence += common.empty() ? "" : fmt::format("; all agree if each mounting is replaced by {}", common);
   }
   finding.sentence += "; correct the calibration of the recording";
@@ -228,17 +228,17 @@ Finding rig_mountings(const Evidence& evidence) {
     return finding;
   }
   const std::size_t sensors = of_rig->mountings.size();
-  const std::vector<Hearing> hearings = hear(evidence, sensors);
-  if (hearings.empty()) {
+  const std::vector<RigLook> rig_looks = rig_looks_of(evidence, sensors);
+  if (rig_looks.empty()) {
     finding.sentence = "the sensors do not move, or too slowly to compare their mountings";
     return finding;
   }
-  const Judgement judgement = judge(hearings, sensors);
-  add_numbers(hearings, judgement, sensors, finding);
+  const Judgement judgement = judge(rig_looks, sensors);
+  add_numbers(rig_looks, judgement, sensors, finding);
   if (judgement.wrong.empty()) {
-    describe_agreement(hearings, judgement, sensors, finding);
+    describe_agreement(rig_looks, judgement, sensors, finding);
   } else {
-    describe_contradiction(hearings, judgement, of_rig->mountings, finding);
+    describe_contradiction(rig_looks, judgement, of_rig->mountings, finding);
   }
   return finding;
 }

@@ -32,40 +32,40 @@ constexpr double kAheadDirection = 0.05;
 
 Eigen::Matrix3d squared(double deviation) { return deviation * deviation * Eigen::Matrix3d::Identity(); }
 
-Witness sensor_witness(const SensorLook& sensor, const Eigen::Isometry3d& T_scan_sensor) {
-  Witness witness;
-  witness.velocity = sensor.ego.velocity_sensor;
-  witness.lever_arm = T_scan_sensor.translation();
-  witness.covariance = sensor.ego.covariance;
-  witness.lasting = kHidden * kHidden * sensor.pretended;
-  witness.knows = sensor.has_velocity();
-  return witness;
+VelocityEstimate sensor_estimate(const SensorLook& sensor, const Eigen::Isometry3d& T_scan_sensor) {
+  VelocityEstimate estimate;
+  estimate.velocity = sensor.ego.velocity_sensor;
+  estimate.lever_arm = T_scan_sensor.translation();
+  estimate.covariance = sensor.ego.covariance;
+  estimate.lasting = kHidden * kHidden * sensor.pretended;
+  estimate.is_known = sensor.has_velocity();
+  return estimate;
 }
 
 /// The mean velocity of a stretch, in the axes of its middle.
-Witness truth_witness(const Motion& motion) {
-  Witness witness;
+VelocityEstimate truth_estimate(const Motion& motion) {
+  VelocityEstimate estimate;
   const Eigen::Vector3d velocity = motion.T_from_to.translation() / motion.dt_s;
-  witness.velocity = exp_so3(-0.5 * log_so3(motion.T_from_to.linear())) * velocity;
-  witness.lasting = squared(kTruthDirection * velocity.norm() + kTruth_mps);
-  witness.knows = velocity.norm() > kDirectionKnown_mps;
-  return witness;
+  estimate.velocity = exp_so3(-0.5 * log_so3(motion.T_from_to.linear())) * velocity;
+  estimate.lasting = squared(kTruthDirection * velocity.norm() + kTruth_mps);
+  estimate.is_known = velocity.norm() > kDirectionKnown_mps;
+  return estimate;
 }
 
-Witness ahead_witness(double speed_mps) {
-  Witness witness;
-  witness.velocity = speed_mps * Eigen::Vector3d::UnitX();
-  witness.lasting = squared(kAheadDirection * speed_mps);
-  witness.knows = true;
-  return witness;
+VelocityEstimate ahead_estimate(double speed_mps) {
+  VelocityEstimate estimate;
+  estimate.velocity = speed_mps * Eigen::Vector3d::UnitX();
+  estimate.lasting = squared(kAheadDirection * speed_mps);
+  estimate.is_known = true;
+  return estimate;
 }
 
 /// That of most sensors: a narrow one may take an error for a speed.
-double speed_of_most(const std::vector<Witness>& witnesses) {
+double speed_of_most(const std::vector<VelocityEstimate>& estimates) {
   std::vector<double> speeds;
-  for (const Witness& witness : witnesses) {
-    if (witness.knows) {
-      speeds.push_back(witness.velocity.norm());
+  for (const VelocityEstimate& estimate : estimates) {
+    if (estimate.is_known) {
+      speeds.push_back(estimate.velocity.norm());
     }
   }
   return quantile(std::move(speeds), 0.25);
@@ -85,7 +85,7 @@ Eigen::Matrix3d axes_of(const Eigen::Vector3d& velocity) {
 double left_of(const Eigen::Vector3d& v) { return std::atan2(v.y(), v.x()); }
 double up_of(const Eigen::Vector3d& v) { return std::atan2(v.z(), v.head<2>().norm()); }
 
-/// Sums over the looks, in axes ahead, left and up of where witness `to` is expected to move.
+/// Sums over the looks, in axes ahead, left and up of where estimate `to` is expected to move.
 struct Sums {
   Eigen::Vector3d velocity = Eigen::Vector3d::Zero();
   std::map<std::size_t, Eigen::Vector3d> of_stretch;
@@ -109,37 +109,37 @@ double scatter(const Sums& sums, const Angle& angle) {
 
 }  // namespace
 
-std::vector<Hearing> hear(const Evidence& evidence, std::size_t sensors) {
-  std::vector<Hearing> hearings;
+std::vector<RigLook> rig_looks_of(const Evidence& evidence, std::size_t sensors) {
+  std::vector<RigLook> rig_looks;
   for (std::size_t i = 0; i < evidence.looks.size(); ++i) {
     const ScanLook& look = evidence.looks[i];
     if (look.sensors.size() != sensors) {
       continue;
     }
-    Hearing hearing;
-    hearing.stretch = i / kLooksOfStretch;
+    RigLook rig_look;
+    rig_look.stretch = i / kLooksOfStretch;
     for (std::size_t k = 0; k < sensors; ++k) {
-      hearing.witnesses.push_back(sensor_witness(look.sensors[k], look.mountings[k]));
+      rig_look.estimates.push_back(sensor_estimate(look.sensors[k], look.mountings[k]));
     }
-    const double speed_mps = speed_of_most(hearing.witnesses);
+    const double speed_mps = speed_of_most(rig_look.estimates);
     if (speed_mps < kDirectionKnown_mps) {
       continue;
     }
-    const Probe probe = hearing.stretch < evidence.probes.size() ? evidence.probes[hearing.stretch] : Probe{};
+    const Probe probe = rig_look.stretch < evidence.probes.size() ? evidence.probes[rig_look.stretch] : Probe{};
     const std::optional<Motion>& motion = probe.by_matching ? probe.by_matching : probe.by_truth;
     const bool is_known = motion && motion->dt_s > 0.0;
-    const ScanLook& first = evidence.looks[hearing.stretch * kLooksOfStretch];
+    const ScanLook& first = evidence.looks[rig_look.stretch * kLooksOfStretch];
     if (is_known && seconds_between(first.stamp, look.stamp) > 1.1 * motion->dt_s) {
       continue;  // the rotation is another by now
     }
-    hearing.omega = is_known ? log_so3(motion->T_from_to.linear()) / motion->dt_s : Eigen::Vector3d::Zero().eval();
-    hearing.omega_sigma = is_known ? kKnownRotation_rps : kUnknownRotation_rps;
+    rig_look.omega = is_known ? log_so3(motion->T_from_to.linear()) / motion->dt_s : Eigen::Vector3d::Zero().eval();
+    rig_look.omega_sigma = is_known ? kKnownRotation_rps : kUnknownRotation_rps;
     const bool has_truth = probe.by_truth && probe.by_truth->dt_s > 0.0;
-    hearing.has_truth = has_truth;
-    hearing.witnesses.push_back(has_truth ? truth_witness(*probe.by_truth) : ahead_witness(speed_mps));
-    hearings.push_back(std::move(hearing));
+    rig_look.has_truth = has_truth;
+    rig_look.estimates.push_back(has_truth ? truth_estimate(*probe.by_truth) : ahead_estimate(speed_mps));
+    rig_looks.push_back(std::move(rig_look));
   }
-  return hearings;
+  return rig_looks;
 }
 
 bool Offset::contradicts() const {
@@ -152,7 +152,7 @@ double Offset::limit_rad() const {
   return std::abs(left_rad) - left_limit_rad > std::abs(up_rad) - up_limit_rad ? left_limit_rad : up_limit_rad;
 }
 
-Offset offset(const std::vector<Hearing>& hearings, std::size_t from, std::size_t to, const Remounting& remounting) {
+Offset offset(const std::vector<RigLook>& rig_looks, std::size_t from, std::size_t to, const Remounting& remounting) {
   const auto as_if = [&](std::size_t k) {
     return k < remounting.size() ? remounting[k] : Eigen::Matrix3d(Eigen::Matrix3d::Identity());
   };
@@ -160,12 +160,12 @@ Offset offset(const std::vector<Hearing>& hearings, std::size_t from, std::size_
   const Eigen::Matrix3d Q_to = as_if(to);
   Offset offset;
   Sums sums;
-  for (const Hearing& hearing : hearings) {
-    const Witness& a = hearing.witnesses[from];
-    const Witness& b = hearing.witnesses[to];
+  for (const RigLook& rig_look : rig_looks) {
+    const VelocityEstimate& a = rig_look.estimates[from];
+    const VelocityEstimate& b = rig_look.estimates[to];
     const Eigen::Vector3d arm = b.lever_arm - a.lever_arm;
-    const Eigen::Vector3d expected = Q_from * a.velocity + hearing.omega.cross(arm);
-    if (!a.knows || !b.knows || expected.norm() < kDirectionKnown_mps) {
+    const Eigen::Vector3d expected = Q_from * a.velocity + rig_look.omega.cross(arm);
+    if (!a.is_known || !b.is_known || expected.norm() < kDirectionKnown_mps) {
       continue;
     }
     const Eigen::Matrix3d axes = axes_of(expected);
@@ -174,9 +174,9 @@ Offset offset(const std::vector<Hearing>& hearings, std::size_t from, std::size_
       return Eigen::Vector3d((axes.transpose() * sum * axes).diagonal());
     };
     const Eigen::Vector3d velocity = axes.transpose() * Q_to * b.velocity;
-    const Eigen::Vector3d of_rotation = Eigen::Vector3d::Constant(hearing.omega_sigma * arm.norm());
+    const Eigen::Vector3d of_rotation = Eigen::Vector3d::Constant(rig_look.omega_sigma * arm.norm());
     sums.velocity += velocity;
-    sums.of_stretch.try_emplace(hearing.stretch, Eigen::Vector3d::Zero()).first->second += velocity;
+    sums.of_stretch.try_emplace(rig_look.stretch, Eigen::Vector3d::Zero()).first->second += velocity;
     sums.variance += variances(a.covariance, b.covariance);
     sums.lasting += (variances(a.lasting, b.lasting) + of_rotation.cwiseAbs2()).cwiseSqrt();
     sums.speed += expected.norm();
