@@ -14,7 +14,7 @@
 namespace dynamic_icp::apps {
 namespace {
 
-constexpr std::size_t kBarWidth = 20;
+constexpr std::size_t kCellBarWidth = 20;
 constexpr std::size_t kLongestNames = 40;  // the line must not wrap, or it could not redraw itself
 constexpr const char* kClearLine = "\r\x1b[K";
 
@@ -53,13 +53,13 @@ void CellProgress::say(const std::string& line) const {
 
 void CellProgress::draw() const {
   if (terminal_ && total_ > 0) {
-    const std::size_t filled = kBarWidth * done_ / total_;
+    const std::size_t filled = kCellBarWidth * done_ / total_;
     std::string names = fmt::format("{}", fmt::join(running_, ", "));
     if (names.size() > kLongestNames) {
       names = names.substr(0, kLongestNames) + "...";
     }
-    tell("{}benchmark [{}{}] {}/{}  {} ", kClearLine, std::string(filled, '='), std::string(kBarWidth - filled, ' '),
-         done_, total_, names);
+    tell("{}benchmark [{}{}] {}/{}  {} ", kClearLine, std::string(filled, '='),
+         std::string(kCellBarWidth - filled, ' '), done_, total_, names);
     std::fflush(stderr);
   }
 }

@@ -7,7 +7,7 @@
 namespace dynamic_icp::odometry {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
+constexpr std::size_t kLabelBlock = 4096;
 
 void count_dynamics(Frame& frame, const std::vector<std::uint8_t>& is_dynamic,
                     const std::vector<std::int32_t>& labels) {
@@ -48,7 +48,7 @@ void describe_clusters(Frame& frame, const Scan& scan, const std::vector<std::ui
 void describe_tracks(Frame& frame, const Scan& scan, const std::vector<std::uint8_t>& is_moving,
                      std::span<const std::uint32_t> thinned, std::vector<tracking::TrackedObject> objects,
                      const Workers& workers) {
-  workers.for_each(scan.size(), kBlock,
+  workers.for_each(scan.size(), kLabelBlock,
                    [&](std::size_t row) { frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0; });
   std::vector<std::uint8_t> in_track(scan.size(), 0);
   for (tracking::TrackedObject& object : objects) {

@@ -17,7 +17,7 @@
 namespace dynamic_icp::odometry {
 namespace {
 
-constexpr std::size_t kBlock = 256;
+constexpr std::size_t kPairBlock = 256;
 
 /// Robust point-to-point registration of a scan to the map. The target frame is the predicted pose of the sensor and
 /// not the world: there a step of so many rad and m means the same wherever the drive has led.
@@ -36,7 +36,7 @@ class ScanToMap final : public registration::Problem {
   registration::Correspondences find(const Eigen::Isometry3d& T_predicted_source) override {
     const Eigen::Isometry3d T_world_source = T_world_predicted_ * T_predicted_source;
     std::vector<std::optional<spatial::Neighbour>> nearest(source_.size());
-    workers_.for_each(source_.size(), kBlock, [&](std::size_t i) {
+    workers_.for_each(source_.size(), kPairBlock, [&](std::size_t i) {
       nearest[i] = map_.nearest(T_world_source * source_.points()[i], max_distance_m_);
     });
     std::vector<registration::Correspondence> pairs;
@@ -65,7 +65,7 @@ class ScanToMap final : public registration::Problem {
       }
       return part;
     };
-    return workers_.sum_blocks(pairs.size(), kBlock, registration::LinearisationSum{}, block_sum).finish();
+    return workers_.sum_blocks(pairs.size(), kPairBlock, registration::LinearisationSum{}, block_sum).finish();
   }
 
  private:

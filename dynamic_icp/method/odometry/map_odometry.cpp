@@ -13,6 +13,7 @@
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_labels.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
+#include "dynamic_icp/method/odometry/map_agreement.hpp"
 #include "dynamic_icp/method/odometry/rig_origin.hpp"
 #include "dynamic_icp/method/registration/gauss_newton.hpp"
 
@@ -20,20 +21,13 @@ namespace dynamic_icp::odometry {
 namespace {
 
 constexpr std::size_t kVelocitySamples = 3;
-constexpr std::size_t kBlock = 4096;
-
-// Fewer agree with a map only by chance: of the points on its patches, and of all. A sparse radar meets few patches in
-// the map of one scan (2 % of its points agree), and fits those well.
-constexpr double kMinAgreement = 0.2;
-constexpr double kMinMatch = 0.01;
+constexpr std::size_t kPointBlock = 4096;
 
 // 1/m^2, of a position that is known because the map begins with it.
 constexpr double kExactPosition = 1e12;
 
-// The usual share of points that agree with the map follows the last scans with this weight for the newest.
-constexpr double kUsualMatchGain = 0.2;
-
-// So does the standard deviation of patches from planes; below the least no surface is trusted.
+// The standard deviation of patches from planes follows the last scans with this weight for the newest; below the least
+// no surface is trusted.
 constexpr double kModelSigmaGain = 0.2;
 constexpr double kMinModelDeviation_m = 0.001;
 
@@ -346,7 +340,7 @@ mapping::MapAlignment MapOdometry::align_second(const ScanState& now, const mapp
 std::vector<Eigen::Vector3d> MapOdometry::add_to_map(const ScanState& now) {
   std::vector<Eigen::Vector3d> points = motion::deskewed_points(now.static_points, state_->sweep, workers_);
   std::vector<Eigen::Vector3d> in_map(points.size());
-  workers_.for_each(points.size(), kBlock, [&](std::size_t i) { in_map[i] = state_->T_map_sensor * points[i]; });
+  workers_.for_each(points.size(), kPointBlock, [&](std::size_t i) { in_map[i] = state_->T_map_sensor * points[i]; });
   map_.add(in_map, state_->T_map_sensor.translation(), workers_);
   ++state_->scans_in_map;
   return points;

@@ -18,16 +18,12 @@
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_labels.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
+#include "dynamic_icp/method/odometry/map_agreement.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
 #include "dynamic_icp/method/registration/gauss_newton.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
-
-// Fewer agree with a map only by chance: of the points on its patches, and of all.
-constexpr double kMinAgreement = 0.2;
-constexpr double kMinMatch = 0.01;
-constexpr double kUsualMatchGain = 0.2;
 
 // How far the velocity of the sensor may be from the last one: m/s.
 constexpr double kVelocitySigma_mps = 0.5;

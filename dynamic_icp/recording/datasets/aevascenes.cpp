@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 constexpr const char* kRawFolder = "pointcloud_raw";
 constexpr const char* kCompensatedFolder = "pointcloud_compensated";
 constexpr const char* kSequenceFile = "sequence.json";
-constexpr double kNanosecond = 1e-9;
+constexpr double kNanosecond_s = 1e-9;
 /// Columns beside point, Doppler and time.
 struct OtherColumn {
   const char* name;
@@ -281,7 +281,7 @@ class AevaScenesDataset final : public Dataset {
     }
     if (file.contains("time_offset_ns")) {
       for (const double ns : formats::column_as_doubles(read_column(file, "time_offset_ns", rows))) {
-        raw.times.push_back(kNanosecond * ns);
+        raw.times.push_back(kNanosecond_s * ns);
       }
     }
   }

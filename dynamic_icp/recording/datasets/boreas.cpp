@@ -23,9 +23,9 @@ namespace {
 namespace fs = std::filesystem;
 using formats::RecordLayout;
 
-constexpr std::array<const RecordLayout*, 5> kCandidates = {&formats::kBoreas40, &formats::kBoreas28,
-                                                            &formats::kBoreas28BeamThenTime, &formats::kBoreas24,
-                                                            &formats::kBoreas32};
+constexpr std::array<const RecordLayout*, 5> kRecordLayouts = {&formats::kBoreas40, &formats::kBoreas28,
+                                                               &formats::kBoreas28BeamThenTime, &formats::kBoreas24,
+                                                               &formats::kBoreas32};
 
 void check_rows(const fs::path& path, std::size_t rows, std::size_t scans) {
   if (rows != scans) {
@@ -60,15 +60,15 @@ const RecordLayout& layout_of(const std::vector<fs::path>& files) {
   };
   const auto first = std::find_if(files.begin(), files.end(), holds_points);
   if (first == files.end()) {
-    return *kCandidates.front();
+    return *kRecordLayouts.front();
   }
-  if (const RecordLayout* const guess = guess_layout(*first, kCandidates)) {
+  if (const RecordLayout* const guess = guess_layout(*first, kRecordLayouts)) {
     return *guess;
   }
-  const auto fits = std::find_if(kCandidates.begin(), kCandidates.end(), [&](const RecordLayout* layout) {
+  const auto fits = std::find_if(kRecordLayouts.begin(), kRecordLayouts.end(), [&](const RecordLayout* layout) {
     return fs::file_size(*first) % layout->bytes == 0;
   });
-  return fits == kCandidates.end() ? *kCandidates.front() : **fits;
+  return fits == kRecordLayouts.end() ? *kRecordLayouts.front() : **fits;
 }
 
 RecordRecording aeva_recording(const fs::path& folder, const OpenOptions& options) {

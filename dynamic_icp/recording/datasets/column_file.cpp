@@ -10,8 +10,8 @@
 namespace dynamic_icp::datasets {
 namespace {
 
-constexpr const char* kPoints = "points";
-constexpr const char* kDoppler = "doppler";
+constexpr const char* kPointsColumn = "points";
+constexpr const char* kDopplerColumn = "doppler";
 
 /// The column as an array; integers get the one type that holds them all.
 formats::NpyArray array_of(const formats::PlyColumn& column) {
@@ -56,7 +56,7 @@ ColumnFile::ColumnFile(ColumnFileKind kind, const std::filesystem::path& path) :
       break;
     case ColumnFileKind::kNpyPair:
       file_ = NpyPair{path};
-      names_ = {kPoints, kDoppler};
+      names_ = {kPointsColumn, kDopplerColumn};
       break;
   }
 }
@@ -78,7 +78,7 @@ formats::NpyArray ColumnFile::read(const std::string& name) const {
     return pcd->read(name);
   }
   if (const auto* const pair = std::get_if<NpyPair>(&file_)) {
-    return formats::read_npy(name == kPoints ? pair->points : doppler_file(pair->points));
+    return formats::read_npy(name == kPointsColumn ? pair->points : doppler_file(pair->points));
   }
   const formats::PlyColumn* const column = vertices(std::get<formats::PlyFile>(file_), path_).find(name);
   if (column == nullptr || column->is_list) {

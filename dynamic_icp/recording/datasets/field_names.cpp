@@ -55,7 +55,7 @@ bool is_obvious(std::string_view name) {
   return name == "doppler" || name == "time_offset_ns" || name == "time_offset_s";
 }
 
-std::string lower(std::string_view text) {
+std::string lower_case(std::string_view text) {
   std::string result(text);
   std::transform(result.begin(), result.end(), result.begin(),
                  [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
@@ -87,7 +87,7 @@ class FieldFinder {
   [[nodiscard]] const std::string* same_as(std::string_view name) const {
     const auto exact = std::find(names_.begin(), names_.end(), name);
     const auto found = exact != names_.end() ? exact : std::find_if(names_.begin(), names_.end(), [&](const auto& own) {
-      return lower(own) == lower(name);
+      return lower_case(own) == lower_case(name);
     });
     return found == names_.end() ? nullptr : &*found;
   }
@@ -136,7 +136,7 @@ class FieldFinder {
     if (found.empty()) {
       return std::nullopt;
     }
-    if (!is_obvious(lower(found.front())) || found.size() > 1) {
+    if (!is_obvious(lower_case(found.front())) || found.size() > 1) {
       std::string sentence = fmt::format("using column '{}' as {}", found.front(), key);
       if (found.size() > 1) {
         sentence += fmt::format("; there is also: {}", fmt::join(std::span(found).subspan(1), ", "));

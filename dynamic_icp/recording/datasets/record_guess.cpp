@@ -22,13 +22,13 @@ namespace fs = std::filesystem;
 using formats::RecordLayout;
 using formats::value_at;
 
-constexpr std::size_t kSamples = 200;
+constexpr std::size_t kSampledRecords = 200;
 constexpr double kNeededShare = 0.99;
 
 /// Some records from all over the content, in its order.
 std::vector<std::string_view> samples_of(std::string_view content, std::size_t record_bytes) {
   const std::size_t records = content.size() / record_bytes;
-  const std::size_t count = std::min(records, kSamples);
+  const std::size_t count = std::min(records, kSampledRecords);
   std::vector<std::string_view> samples;
   for (std::size_t i = 0; i < count; ++i) {
     const std::size_t record = count == 1 ? 0 : i * (records - 1) / (count - 1);

@@ -18,7 +18,7 @@ namespace {
 
 constexpr double kSourceVoxel_m = 0.8;
 constexpr std::size_t kFinePoints = 4000;
-constexpr double kFarthest_m = 100.0;
+constexpr double kFarthestPoint_m = 100.0;
 constexpr std::size_t kMinPoints = 200;
 
 // The stamps may be wrong: the search never ends before some metres.
@@ -84,7 +84,7 @@ std::optional<Eigen::Isometry3d> refined(const Scan& earlier, const Scan& later,
   return T.inverse();
 }
 
-Scan in_reach(const Scan& scan) { return preprocess::crop_range(scan, {0.5, kFarthest_m}); }
+Scan in_reach(const Scan& scan) { return preprocess::crop_range(scan, {0.5, kFarthestPoint_m}); }
 
 }  // namespace
 

@@ -16,8 +16,8 @@ namespace {
 
 constexpr std::size_t kStretches = 4;
 constexpr std::size_t kScansOfStretch = 20;
-constexpr std::size_t kMinScans = 10;
-constexpr double kMaxPeriod_s = 2.0;  // scans farther apart do not show how the velocity changes
+constexpr std::size_t kMinScansToSearch = 10;
+constexpr double kMaxScanPeriod_s = 2.0;  // scans farther apart do not show how the velocity changes
 
 // Of the period: what takes less is no sweep, what takes more is no measurement, and what is nearer to one is one.
 constexpr double kMinSweep = 0.4;
@@ -144,7 +144,7 @@ SweepSearch judge_sweep(const motion::SweepDuration& by_azimuth, const motion::S
 
 std::optional<SweepSearch> search_sweep(const datasets::Dataset& dataset, const datasets::ScanRange& scans,
                                         double period_s, const Workers& workers) {
-  if (scans.size() < kMinScans || !(period_s > 0.0 && period_s <= kMaxPeriod_s)) {
+  if (scans.size() < kMinScansToSearch || !(period_s > 0.0 && period_s <= kMaxScanPeriod_s)) {
     return std::nullopt;
   }
   const std::size_t count = std::clamp<std::size_t>(scans.size() / kScansOfStretch, 1, kStretches);

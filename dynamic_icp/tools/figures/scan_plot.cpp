@@ -21,8 +21,8 @@ namespace dynamic_icp::figures {
 namespace {
 
 constexpr PanelSpacing kSpacing;
-constexpr double kWidth = 1120.0;  // px
-constexpr double kFoot = 78.0;     // px below the panels, for the scales
+constexpr double kWidth = 1120.0;    // px
+constexpr double kScaleFoot = 78.0;  // px below the panels, for the scales
 constexpr std::size_t kMaxDots = 13'000;
 
 /// The rows to draw: thinned just as far as it takes to stay within kMaxDots.
@@ -183,7 +183,7 @@ drawing::Svg scan_plot(const ScanView& view, const drawing::Theme& theme) {
   const Scales scales{.limit = colour_limit(view.scan.doppler()), .ring_m = drawing::nice_step(region.x.length(), 9)};
   const std::vector<std::uint32_t> rows = rows_to_draw(view.scan, panels.front());
 
-  drawing::Svg svg(kWidth, panels.back().box.bottom() + kFoot,
+  drawing::Svg svg(kWidth, panels.back().box.bottom() + kScaleFoot,
                    view.title + " from above, coloured by Doppler velocity");
   svg.rectangle({0.0, 0.0, kWidth, svg.height()}, {.fill = theme.background}, 10.0);
   for (std::size_t k = 0; k < panels.size(); ++k) {

@@ -25,11 +25,11 @@ using drawing::Pixel;
 using runs::ObjectRow;
 using runs::RunFiles;
 
-constexpr double kWidth = 1120.0;  // px
+constexpr double kFigureWidth = 1120.0;  // px
 constexpr double kMargin = 20.0;
-constexpr double kHead = 48.0;  // above each panel: title and legend
+constexpr double kPanelHead = 48.0;  // above each panel: title and legend
 constexpr double kLowerHeight = 330.0;
-constexpr std::size_t kMaxDots = 5000;  // of a panel
+constexpr std::size_t kMaxPanelDots = 5000;  // of a panel
 
 constexpr std::size_t kMovingColour = 1;  // in the order of the theme: also "raw" and "target"
 constexpr std::size_t kGoodColour = 2;    // "predicted", "source after alignment"
@@ -77,7 +77,7 @@ class Sheet {
  public:
   Sheet(const drawing::Theme& theme, double upper_height)
       : theme_(theme),
-        svg_(kWidth, 2.0 * kHead + upper_height + kLowerHeight + kMargin,
+        svg_(kFigureWidth, 2.0 * kPanelHead + upper_height + kLowerHeight + kMargin,
              "The steps from a scan with Doppler to two aligned scans, from above") {
     svg_.rectangle({0.0, 0.0, svg_.width(), svg_.height()}, {.fill = theme.background}, 10.0);
   }
@@ -100,7 +100,7 @@ class Sheet {
       }
     }
     std::vector<Pixel> dots;
-    for (const std::uint32_t row : spread_rows(seen, kMaxDots)) {
+    for (const std::uint32_t row : spread_rows(seen, kMaxPanelDots)) {
       dots.push_back(view_.at(seen[row]));
     }
     svg_.dots(dots, diameter, colour);
@@ -281,12 +281,12 @@ ScanPair read_pair(const RunFiles& run, const datasets::Dataset& recording, std:
 
 drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawing::Theme& theme) {
   const std::vector<ObjectRow>& objects = run.objects[pair.source];
-  const double upper_width = (kWidth - 4.0 * kMargin) / 3.0;
+  const double upper_width = (kFigureWidth - 4.0 * kMargin) / 3.0;
   const Region scene = scene_region(objects);
   const double upper_height = std::clamp(upper_width * scene.y.length() / scene.x.length(), 180.0, 340.0);
   Sheet sheet(theme, upper_height);
   const auto upper = [&](int column) {
-    return panel({kMargin + column * (upper_width + kMargin), kHead, upper_width, upper_height}, scene);
+    return panel({kMargin + column * (upper_width + kMargin), kPanelHead, upper_width, upper_height}, scene);
   };
   draw_doppler(sheet, upper(0), run, pair, theme);
   draw_filter(sheet, upper(1), run, pair, theme);
@@ -301,8 +301,8 @@ drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawin
   if (lower.focus < objects.size()) {
     middle = lower.T_target_source * objects[lower.focus].centroid;
   }
-  const double lower_width = (kWidth - 3.0 * kMargin) / 2.0;
-  const double lower_top = 2.0 * kHead + upper_height;
+  const double lower_width = (kFigureWidth - 3.0 * kMargin) / 2.0;
+  const double lower_top = 2.0 * kPanelHead + upper_height;
   const auto view = [&](int column, double half_m) {
     return panel({kMargin + column * (lower_width + kMargin), lower_top, lower_width, kLowerHeight},
                  {{middle.x() - half_m, middle.x() + half_m}, {middle.y() - 0.5 * half_m, middle.y() + 0.5 * half_m}});

@@ -11,8 +11,8 @@
 namespace dynamic_icp::figures {
 namespace {
 
-constexpr double kLeft = 74.0;  // px around the drawing area
-constexpr double kRight = 18.0;
+constexpr double kPathLeft = 74.0;  // px around the drawing area
+constexpr double kPathRight = 18.0;
 constexpr double kTop = 58.0;
 constexpr double kBottom = 50.0;
 constexpr std::size_t kTruthColour = 3;    // in the order of the theme
@@ -74,18 +74,18 @@ void draw_start(drawing::Svg& svg, const drawing::Theme& theme, const drawing::P
 drawing::Svg trajectory_plot(const PathMap& paths, const drawing::Theme& theme, const MapSize& size) {
   drawing::Range x = extent(paths, 0);
   drawing::Range y = extent(paths, 1);
-  const double width = size.width - kLeft - kRight;
+  const double width = size.width - kPathLeft - kPathRight;
   const double largest = size.largest_height - kTop - kBottom;
   const std::vector<drawing::LegendEntry> legend = legend_of(paths, theme);
   const double top = kTop + drawing::kLegendLine * (drawing::draw_legend(nullptr, theme, {}, width, legend) - 1);
-  const drawing::PixelBox area{kLeft, top, width,
+  const drawing::PixelBox area{kPathLeft, top, width,
                                std::clamp(width * y.length() / x.length(), kSmallestHeight, largest)};
   drawing::make_aspect_equal(area, x, y);
   const drawing::Axes axes(area, {.label = "x (m)", .range = x}, {.label = "y (m)", .range = y});
 
   drawing::Svg svg(size.width, area.bottom() + kBottom, paths.title);
   svg.rectangle({0.0, 0.0, svg.width(), svg.height()}, {.fill = theme.background}, 8.0);
-  svg.text({kLeft, 26.0}, paths.title, {.colour = theme.ink, .size = 15.0, .bold = true});
+  svg.text({kPathLeft, 26.0}, paths.title, {.colour = theme.ink, .size = 15.0, .bold = true});
   axes.draw(svg, theme);
   if (!paths.ground_truth.empty()) {
     svg.polyline(thinned(axes, paths.ground_truth),
@@ -100,7 +100,7 @@ drawing::Svg trajectory_plot(const PathMap& paths, const drawing::Theme& theme, 
       start = start.value_or(estimate.front());
     }
   }
-  drawing::draw_legend(&svg, theme, {kLeft, 47.0}, area.width, legend);
+  drawing::draw_legend(&svg, theme, {kPathLeft, 47.0}, area.width, legend);
   if (start) {
     draw_start(svg, theme, area, *start);
   } else {

@@ -16,14 +16,12 @@
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/tools/simulation/compensated_doppler.hpp"
 #include "dynamic_icp/tools/simulation/point_layout.hpp"
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr float kPercent = 100.0F;
-constexpr double kNanoseconds = 1e9;  // in a second
 
 /// What differs between the recordings that hold scans of an Aeva sensor in these files.
 struct AevaFiles {

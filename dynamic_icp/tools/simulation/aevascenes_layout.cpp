@@ -20,6 +20,7 @@
 #include "dynamic_icp/tools/simulation/compensated_doppler.hpp"
 #include "dynamic_icp/tools/simulation/named_source.hpp"
 #include "dynamic_icp/tools/simulation/point_layout.hpp"
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
@@ -30,7 +31,6 @@ using Json = nlohmann::ordered_json;
 constexpr const char* kRawFolder = "pointcloud_raw";
 constexpr const char* kCompensatedFolder = "pointcloud_compensated";
 constexpr double kLargestReflectivity = 8191.0;
-constexpr double kNanoseconds = 1e9;  // in a second
 
 /// A class of the data set and what the scenes call its bodies.
 struct ObjectClass {
@@ -55,11 +55,11 @@ const ObjectClass& class_of(std::string_view body) {
   return found == kClasses.end() ? kUnknown : *found;
 }
 
-Json to_json(const Eigen::Vector3d& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
+Json xyz_json(const Eigen::Vector3d& v) { return {{"x", v.x()}, {"y", v.y()}, {"z", v.z()}}; }
 
 Json to_json(const Eigen::Isometry3d& T) {
   const Eigen::Quaterniond q(T.linear());
-  return {{"translation", to_json(Eigen::Vector3d(T.translation()))},
+  return {{"translation", xyz_json(Eigen::Vector3d(T.translation()))},
           {"rotation", {{"w", q.w()}, {"x", q.x()}, {"y", q.y()}, {"z", q.z()}}}};
 }
 
@@ -223,10 +223,10 @@ class AevaScenesLayout : public PointLayout {
     const ObjectClass& object_class = class_of(object.name);
     return {{"id", id},
             {"reference_frame", "VEHICLE"},
-            {"dimensions", to_json(object.size)},
+            {"dimensions", xyz_json(object.size)},
             {"pose", to_json(T_vehicle_box)},
-            {"linear_velocity", to_json(Eigen::Vector3d(T_vehicle_lidar.linear() * object.velocity_sensor))},
-            {"angular_velocity", to_json(turning_vehicle)},
+            {"linear_velocity", xyz_json(Eigen::Vector3d(T_vehicle_lidar.linear() * object.velocity_sensor))},
+            {"angular_velocity", xyz_json(turning_vehicle)},
             {"class", object_class.name},
             {"class_idx", object_class.index}};
   }

@@ -14,14 +14,13 @@
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/tools/simulation/point_layout.hpp"
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr float kPercent = 100.0F;
-constexpr double kNanoseconds = 1e9;          // in a second
 constexpr std::int64_t kMicrosecond = 1'000;  // ns
 constexpr int kLineShift = 8;                 // where line, beam and face lie among the flags
 constexpr int kBeamShift = 16;

@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/simulation/mount.hpp"
 
-#include <numbers>
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
 
@@ -18,7 +18,6 @@ ConfigFields fields(MountConfig& config) {
 }
 
 Eigen::Isometry3d T_vehicle_sensor(const MountConfig& mount) {
-  constexpr double kRadians = std::numbers::pi / 180.0;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = (Eigen::AngleAxisd(mount.yaw_deg * kRadians, Eigen::Vector3d::UnitZ()) *
                 Eigen::AngleAxisd(mount.pitch_deg * kRadians, Eigen::Vector3d::UnitY()) *

@@ -2,16 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/simulation/pointing_error.hpp"
 
-#include <numbers>
-
 #include "dynamic_icp/tools/simulation/random_streams.hpp"
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
-namespace {
-
-constexpr double kRadians = std::numbers::pi / 180.0;
-
-}  // namespace
 
 ConfigFields fields(PointingErrorConfig& config) {
   return {

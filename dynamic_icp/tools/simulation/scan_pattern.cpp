@@ -3,12 +3,11 @@
 #include "dynamic_icp/tools/simulation/scan_pattern.hpp"
 
 #include <cmath>
-#include <numbers>
+
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 /// The angle of the middle of cell `i` of `n` over a field of view, from +fov/2 down to -fov/2.
 double cell_angle(int i, int n, double fov_deg) { return fov_deg * kRadians * (0.5 - (i + 0.5) / n); }

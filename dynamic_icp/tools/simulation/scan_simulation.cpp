@@ -4,16 +4,15 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <optional>
 
 #include "dynamic_icp/tools/simulation/random_streams.hpp"
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
 
 constexpr std::size_t kFiringsPerBlock = 16;
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 /// What the rays of one instant have in common.
 struct FiringState {

@@ -2,14 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/simulation/sensor_unit.hpp"
 
-#include <numbers>
-
 #include "dynamic_icp/tools/simulation/named_source.hpp"
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
 namespace {
-
-constexpr double kRadians = std::numbers::pi / 180.0;
 
 RandomSource source_of(const FmcwLidarConfig& lidar, std::string_view name) {
   return named_source(RandomSource(static_cast<std::uint64_t>(lidar.unit)), name);

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "dynamic_icp/tools/simulation/units.hpp"
 
 namespace dynamic_icp::simulation {
 
 drawing::Raster sensor_view(const FmcwLidarConfig& lidar, const SimulatedScan& scan, std::size_t width,
                             drawing::Rgb nothing, const std::function<drawing::Rgb(std::size_t)>& colour_of) {
-  constexpr double kRadians = std::numbers::pi / 180.0;
   const std::size_t columns = std::min(width, static_cast<std::size_t>(lidar.columns));
   const auto rows = static_cast<std::size_t>(lidar.rows);
   drawing::Raster raster(columns, rows, nothing);
