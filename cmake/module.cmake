@@ -41,7 +41,7 @@ function(dynamic_icp_precompile target like)
   endif()
   target_link_libraries(${target} PRIVATE $<BUILD_INTERFACE:fmt::fmt>)  # one set of definitions for all
   if(NOT TARGET ${like})
-    file(WRITE ${PROJECT_BINARY_DIR}/precompiled/${like}.cpp "")
+    file(CONFIGURE OUTPUT ${PROJECT_BINARY_DIR}/precompiled/${like}.cpp CONTENT "")  # touched once only
     if(like MATCHES "test")
       add_executable(${like} EXCLUDE_FROM_ALL ${PROJECT_BINARY_DIR}/precompiled/${like}.cpp)
       target_link_libraries(${like} PRIVATE GTest::gtest_main)
