@@ -201,8 +201,8 @@ Config configuration(std::string_view method, std::string_view preset = "default
 /// static), "no-dpp" (no prediction: moving points are left out; with the local map: no tracking), "no-dr" (no Doppler
 /// term in the alignment); with the local map also "no-consensus" (Huber regression of the ego velocity), "no-bias" (no
 /// Doppler bias), "no-deskew", "no-map" (only the last scan), "no-search" (first pair from one start);
-/// with preset "window" also "no-planes", "no-support" and "no-vibration". Throws UsageError for other names, and for parts the
-/// pipeline does not have.
+/// with preset "window" also "no-planes", "no-support" and "no-vibration". Throws UsageError for other names, and for
+/// parts the pipeline does not have.
 void apply_ablation(Config& config, std::string_view name);
 void apply_ablation(PaperConfig& config, std::string_view name);
 void apply_ablation(MapOdometryConfig& config, std::string_view name);

@@ -12,8 +12,6 @@ namespace {
 
 constexpr std::size_t kOrder = 4;
 
-constexpr double kSamples = 8.0;  // of a SampledMotion in each interval
-
 std::array<double, 4> weights(double x) {
   const double y = 1.0 - x;
   return {y * y * y / 6.0, (x * x * (3.0 * x - 6.0) + 4.0) / 6.0, (x * (x * (3.0 - 3.0 * x) + 3.0) + 1.0) / 6.0,
@@ -154,7 +152,7 @@ Eigen::Vector3d TrajectoryPoint::place(const Eigen::Vector3d& x, double step_s) 
 }
 
 SampledMotion::SampledMotion(const SplineTrajectory& trajectory, double first_s, double last_s)
-    : first_s_(first_s), step_s_(trajectory.knot_spacing() / kSamples) {
+    : first_s_(first_s), step_s_(trajectory.knot_spacing() / kSlices) {
   const auto steps = static_cast<std::size_t>(std::ceil(std::max(0.0, last_s - first_s) / step_s_));
   for (std::size_t k = 0; k <= steps; ++k) {
     const TrajectoryPoint at = trajectory.at(first_s + static_cast<double>(k) * step_s_);

@@ -13,6 +13,10 @@
 
 namespace dynamic_icp::window {
 
+/// Slices of a knot interval within which the sensor moves straight on: what is asked for each of many points is asked
+/// for the slices.
+inline constexpr double kSlices = 8.0;
+
 /// The sensor at one time, and how that depends on the four coefficients around it.
 struct TrajectoryPoint {
   std::size_t first = 0;                               ///< of the four coefficients

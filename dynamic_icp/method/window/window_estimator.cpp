@@ -19,9 +19,6 @@ using Matrix12d = Eigen::Matrix<double, 12, 12>;
 // The motion of so much time goes on evenly into the next scan.
 constexpr double kEven_s = 0.1;
 
-// Slices of a knot interval whose points share a pose, but for a straight step.
-constexpr double kSlices = 8.0;
-
 // Tukey's kernel of the planes, in standard deviations.
 constexpr double kPlaneKernel = 4.0;
 
@@ -175,6 +172,10 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   compare_with_planes(false, *planes);
   motion.planes = planes->quality();
   join(scan_terms(planes, first_new));
+  if (!elimination_.is_solvable() || rest_factor_.info() != Eigen::Success || !covariance_root_.allFinite()) {
+    motion.diverged = true;
+    return motion;
+  }
   learn_roughness(motion.planes);
   motion_between(last_s, motion);
   find_twist();

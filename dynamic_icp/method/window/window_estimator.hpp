@@ -46,7 +46,7 @@ struct WindowMotion {
   std::size_t points = 0;
   int iterations = 0;
   bool converged = false;
-  bool diverged = false;  ///< a step was not finite, or beyond the reach of any scan
+  bool diverged = false;  ///< a step or the covariance is not finite, or a step beyond the reach of any scan
 };
 
 /// One estimator: the trajectory of the sensor in continuous time over the last two scans, the error field of its

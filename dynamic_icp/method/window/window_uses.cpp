@@ -15,9 +15,6 @@ constexpr std::size_t kBlock = 4096;
 constexpr std::size_t kCellBlock = 128;
 constexpr std::size_t kPlacingBlock = 512;
 
-// Slices of a knot interval whose points share a pose, but for a straight step.
-constexpr double kSlices = 8.0;
-
 /// One point as a cell of its own.
 DopplerCell point_of(const Scan& scan, std::size_t i) {
   const Channels& channels = scan.channels();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <numbers>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -12,6 +13,8 @@
 
 // What several questions ask of the evidence, and say alike.
 namespace dynamic_icp::diagnosis {
+
+inline constexpr double kDegree = std::numbers::pi / 180.0;  ///< rad
 
 /// So many standard errors off is no chance.
 inline constexpr double kCertain = 4.0;

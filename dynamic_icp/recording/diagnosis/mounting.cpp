@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -15,7 +15,6 @@ constexpr double kOffTruth_deg = 8.0;  // at walking pace in a jam a few degrees
 constexpr double kOffAhead_deg = 8.0;
 constexpr double kOffAheadInTurns_deg = 15.0;  // the sensor swings out: it is not where the wheels are
 constexpr double kDeskewed_rps = 0.06;
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kSigmas = 3.0;
 constexpr double kWellKnown_deg = 5.0;  // a direction known no better is not told
 

@@ -18,7 +18,6 @@
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
 constexpr double kWellKnown_rad = 10.0 * kDegree;  // a direction known no better proves nothing
 constexpr double kMixedUp_rad = 10.0 * kDegree;    // no mounting moves so far by itself
 

@@ -13,8 +13,6 @@
 namespace dynamic_icp::diagnosis {
 namespace {
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-
 // Angles that are never told, known or not: what mountings are calibrated to, and how beams point.
 constexpr double kCalibrated_rad = 0.5 * kDegree;
 
