@@ -33,7 +33,27 @@ constexpr Asked kAsked[] = {
     {"unusable_points", unusable_points},
 };
 
+// Told by the motion of all sensors together.
+constexpr Question kOfTheWholeRig[] = {Question::kDopplerSign,  Question::kDopplerKind, Question::kDopplerBias,
+                                       Question::kDopplerUnits, Question::kPointUnits,  Question::kMounting,
+                                       Question::kPointTimes,   Question::kTimeScale};
+
 constexpr std::string_view kVerdicts[] = {"ok", "wrong", "suspicious", "cannot_tell"};
+
+/// Points and Doppler put together by wrong mountings look wrong in other ways, too: what is said of them then is no
+/// finding, and no reason to refuse the recording.
+void set_aside_by_mountings(std::vector<Finding>& findings) {
+  const Verdict of_rig = findings[static_cast<std::size_t>(Question::kRigMountings)].verdict;
+  if (of_rig != Verdict::kWrong && of_rig != Verdict::kSuspicious) {
+    return;
+  }
+  for (const Question question : kOfTheWholeRig) {
+    Finding& finding = findings[static_cast<std::size_t>(question)];
+    if (finding.verdict == Verdict::kWrong || finding.verdict == Verdict::kSuspicious) {
+      finding = {question, Verdict::kCannotTell, "not before the mountings of the sensors agree"};
+    }
+  }
+}
 
 }  // namespace
 
@@ -57,6 +77,7 @@ Diagnosis diagnose(const datasets::Dataset& dataset, const DiagnosisConfig& conf
   for (const Asked& asked : kAsked) {
     diagnosis.findings.push_back(asked.ask(evidence));
   }
+  set_aside_by_mountings(diagnosis.findings);
   return diagnosis;
 }
 

@@ -41,7 +41,7 @@ void add_direction_error(RawScan& raw, double rms_mps) {
   }
 }
 
-Finding finding_of(const Drive& drive) {
+Diagnosis diagnosis_of(const Drive& drive) {
   Recording recording;
   recording.rig = drive.rig;
   recording.rig_bias_mps = drive.bias_mps;
@@ -55,8 +55,10 @@ Finding finding_of(const Drive& drive) {
     synthetic::remount(raw, drive.stated);
   };
   const DiagnosisConfig config{.probes = 4, .always_match_scans = false, .search_sweep = false};
-  return diagnose(recording.ready(), config, Workers(1)).of(Question::kRigMountings);
+  return diagnose(recording.ready(), config, Workers(1));
 }
+
+Finding finding_of(const Drive& drive) { return diagnosis_of(drive).of(Question::kRigMountings); }
 
 double number(const Finding& finding, const std::string& name) {
   for (const auto& [key, value] : finding.evidence) {
@@ -150,6 +152,24 @@ TEST(RigMountings, SwappedOnesAreFound) {
   EXPECT_TRUE(says(finding, "the mounting of sensor 2") && says(finding, "the mounting of sensor 3"))
       << finding.sentence;
   EXPECT_FALSE(says(finding, "sensor 1 moves")) << finding.sentence;
+}
+
+TEST(RigMountings, WhatElseLooksWrongThenIsNotClaimed) {
+  Drive drive;
+  for (Eigen::Isometry3d& T : drive.stated) {
+    T = rotated(T, {0.0, 0.0, 90.0 * static_cast<double>(&T - drive.stated.data())});
+  }
+  const Diagnosis diagnosis = diagnosis_of(drive);
+  EXPECT_EQ(diagnosis.of(Question::kRigMountings).verdict, Verdict::kWrong);
+  bool is_set_aside = false;
+  for (const Finding& finding : diagnosis.findings) {
+    if (finding.question != Question::kRigMountings) {
+      EXPECT_NE(finding.verdict, Verdict::kWrong) << to_string(finding.question) << finding.sentence;
+      EXPECT_NE(finding.verdict, Verdict::kSuspicious) << to_string(finding.question) << finding.sentence;
+      is_set_aside = is_set_aside || says(finding, "before the mountings");
+    }
+  }
+  EXPECT_TRUE(is_set_aside) << "as if nothing else looked wrong";
 }
 
 TEST(RigMountings, InvertedOnesAreFound) {
