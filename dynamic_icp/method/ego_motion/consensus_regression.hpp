@@ -46,10 +46,10 @@ bool agrees(const EgoPrior& prior, const Eigen::Vector3d& velocity);
 /// The velocity of the sensor where most of the points may move.
 ///
 /// 1. Velocities from samples of three points are voted on. Half of all votes is spread over the cells of space, half
-///    over the farthest cell of each direction (see `elect`), so it takes no prior and no mounting to find the static
-///    scene. Modes of the support are refined and split as finely as the noise allows. The mode with the most support
-///    wins; agreement with the prior velocity adds to the votes, but never more than `prior_weight`, so a wrong prior
-///    is outvoted.
+///    over the farthest cell of each direction, or a third each and a third over the ground where it is known (see
+///    `sample`), so it takes no prior and no mounting to find the static scene. Modes of the support are refined and
+///    split as finely as the noise allows. The mode with the most support wins; agreement with the prior velocity adds
+///    to the votes, but never more than `prior_weight`, so a wrong prior is outvoted.
 /// 2. v, acceleration a during a sweep and Doppler bias b minimise, jointly over all points near the winner,
 ///      sum_cells W_c sum_i rho(s_i + u_i . (v + a dt_i) - b) / sigma^2 + prior of v, a and b,
 ///    with Tukey's rho, sigma from differences between neighbouring points, and a weight W_c of each cell that vanishes

@@ -13,7 +13,8 @@
 
 namespace dynamic_icp::ego_motion {
 
-/// The surface on which everything stands, in sensor axes: points are at normal . x > offset, but for those on it.
+/// The ground, or whatever else carries or bounds the scene, in sensor axes: points are at normal . x > offset, but for
+/// those on it.
 struct SupportPlane {
   Eigen::Vector3d normal = Eigen::Vector3d::UnitZ();
   double offset_m = 0.0;

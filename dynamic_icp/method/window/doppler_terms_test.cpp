@@ -236,6 +236,7 @@ TEST(DopplerTerms, TellWhatAllOfAScanHaveInCommon) {
   const double variance = 1.0 / (weights.sum() + 1.0 / kScanVariance);
   EXPECT_NEAR(scan_error.value, variance * weights.dot(problem.residuals()), 1e-5);
   EXPECT_NEAR(scan_error.value, 0.05, 0.01);
+  // Weights are taken at the sampled motion, those of the test at the exact one.
   EXPECT_NEAR(scan_error.variance, variance, 1e-4 * variance);
   const MatrixXd B = smooth_changes(problem.layout());
   const VectorXd by_unknowns = -variance * B.transpose() * problem.jacobian().transpose() * weights;
