@@ -108,7 +108,7 @@ void DopplerTerms::add_cell(const DopplerCell& cell, double w, const DopplerErro
     interval.N_theta.col(at) += wi * nodes;
     b_theta_[at] += wi * cell.s;
     N_theta_scan_[at] += wi;
-    for (std::size_t j = 0; j < columns.size; ++j) {
+    for (std::size_t j = i; j < columns.size; ++j) {  // in the order of theta: the lower triangle
       N_theta_(columns.index[j], at) += wi * columns.value[j];
     }
   }
@@ -169,19 +169,19 @@ void DopplerTerms::add_information(const Layout& layout, double scan_variance, E
   for (const Interval& interval : intervals_) {
     const Eigen::Index first = layout.coefficient(interval.first);
     const Eigen::MatrixXd& T = interval.by_coefficients;
-    H.block(first, first, 24, 24) += T.transpose() * interval.N * T;
-    const Eigen::MatrixXd cross = interval.N_theta.transpose() * T;
-    H.block(0, first, fields, 24) += cross;
-    H.block(first, 0, 24, fields) += cross.transpose();
+    const Eigen::MatrixXd TN = T.transpose() * interval.N;
+    H.block(first, first, 24, 24).noalias() += TN * T;
+    H.block(first, 0, 24, fields).noalias() += T.transpose() * interval.N_theta;
   }
-  const Eigen::VectorXd U = scan_column(layout);
-  H.noalias() -= (U / (N_scan_ + 1.0 / scan_variance)) * U.transpose();
+  const Eigen::Index head = layout.head();
+  const Eigen::VectorXd U = scan_column(layout).head(head) / std::sqrt(N_scan_ + 1.0 / scan_variance);
+  H.topLeftCorner(head, head).selfadjointView<Eigen::Lower>().rankUpdate(U, -1.0);
 }
 
 DopplerTerms::ScanError DopplerTerms::add_gradient(const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
                                                    const Layout& layout, double scan_variance,
                                                    Eigen::VectorXd& g) const {
-  g.head(layout.field) += N_theta_ * theta - b_theta_;
+  g.head(layout.field) += N_theta_.selfadjointView<Eigen::Lower>() * theta - b_theta_;
   double gradient = N_theta_scan_.dot(theta) - b_scan_;
   for (const Interval& interval : intervals_) {
     const Eigen::VectorXd y = motion_at_nodes(interval, trajectory);

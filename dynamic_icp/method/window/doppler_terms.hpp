@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include <Eigen/Core>
@@ -19,6 +20,10 @@ struct Layout {
   static constexpr Eigen::Index kStamps = 2;  ///< s, error of the stamp of the scan before and of the one at hand
   static constexpr Eigen::Index kBefore = kMapError + kStamps;  ///< what stands between theta and the coefficients
 
+  /// The prior joins the motion of so many coefficients with the next one: only their vibration depends on anything but
+  /// the motion prior, because what was known of dropped coefficients passes to it.
+  static constexpr Eigen::Index kJoined = 3;
+
   Eigen::Index field = 0;         ///< size of theta
   Eigen::Index coefficients = 0;  ///< number of coefficients, six unknowns each
   bool vibrates = false;          ///< each coefficient has six more: how far the vibration moved it
@@ -31,6 +36,10 @@ struct Layout {
   }
   [[nodiscard]] Eigen::Index vibration(std::size_t k) const { return coefficient(k) + 6 * coefficients; }
   [[nodiscard]] Eigen::Index size() const { return field + kBefore + (vibrates ? 12 : 6) * coefficients; }
+  /// Without the tail: the vibration that the motion prior alone knows of.
+  [[nodiscard]] Eigen::Index head() const {
+    return field + kBefore + 6 * coefficients + (vibrates ? 6 * std::min(kJoined, coefficients) : 0);
+  }
 };
 
 /// The Doppler of one scan as normal equations in the motion at three nodes of each knot interval and in theta:
@@ -55,7 +64,7 @@ class DopplerTerms {
   /// How the terms depend on the trajectory, from now on: that of `trajectory`. In theta they are linear.
   void linearise(const SplineTrajectory& trajectory);
 
-  /// Adds their information.
+  /// Adds their information to the lower triangle of H.
   void add_information(const Layout& layout, double scan_variance, Eigen::MatrixXd& H) const;
 
   /// Adds their gradient: of the residuals at this state, by the rows as linearised. A gradient by other rows would ask
@@ -92,7 +101,7 @@ class DopplerTerms {
   std::vector<double> robust_;  ///< weight of each cell by the kernel
   Eigen::Index per_node_ = 3;
   std::vector<Interval> intervals_;
-  Eigen::MatrixXd N_theta_;
+  Eigen::MatrixXd N_theta_;  ///< the lower triangle
   Eigen::VectorXd b_theta_;
   Eigen::VectorXd N_theta_scan_;  ///< theta x error of the scan
   double N_scan_ = 0.0;

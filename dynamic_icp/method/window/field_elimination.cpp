@@ -9,7 +9,8 @@ FieldElimination::FieldElimination(const Eigen::MatrixXd& F, const Eigen::Matrix
   const Eigen::Index n = H.rows() - F.rows();
   rest_ = H.bottomRightCorner(n, n);
   if (is_learned_) {
-    W_ = factor_.matrixL().solve(H.topRightCorner(F.rows(), n));
+    W_ = H.bottomLeftCorner(n, F.rows()).transpose();
+    factor_.matrixL().solveInPlace(W_);
     rest_.selfadjointView<Eigen::Lower>().rankUpdate(W_.transpose(), -1.0);
   }
 }
@@ -30,13 +31,14 @@ Eigen::VectorXd FieldElimination::step(const Eigen::VectorXd& gradient, const Ei
   return -factor_.matrixU().solve(w + W_ * rest_step);
 }
 
-Eigen::MatrixXd FieldElimination::covariance_root(const Eigen::MatrixXd& rest_root) const {
-  // P = F^-1 + L^-T W C W^T L^-1 with C = rest_root rest_root^T
+Eigen::MatrixXd FieldElimination::covariance_root(const Eigen::LLT<Eigen::MatrixXd>& rest) const {
+  // P = F^-1 + L^-T W C W^T L^-1 with C = (A A^T)^-1, A the factor of the rest
   const Eigen::Index n = factor_.rows();
-  Eigen::MatrixXd root(n, n + (is_learned_ ? rest_root.cols() : 0));
+  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(n, n + (is_learned_ ? rest.rows() : 0));
   root.leftCols(n).setIdentity();
   if (is_learned_) {
-    root.rightCols(rest_root.cols()).noalias() = W_ * rest_root.triangularView<Eigen::Upper>();
+    root.rightCols(rest.rows()) = W_;
+    rest.matrixU().solveInPlace<Eigen::OnTheRight>(root.rightCols(rest.rows()));
   }
   factor_.matrixU().solveInPlace(root);
   return root;

@@ -15,8 +15,8 @@ class FieldElimination {
  public:
   FieldElimination() = default;
 
-  /// F with the prior of theta, F x F; H of all unknowns, whose own block of theta is not read. Without `is_learned`
-  /// theta stays where it is, and the rest does not depend on it.
+  /// F with the prior of theta; H of all unknowns, whose own block of theta is not read. Of both the lower triangle.
+  /// Without `is_learned` theta stays where it is, and the rest does not depend on it.
   FieldElimination(const Eigen::MatrixXd& F, const Eigen::MatrixXd& H, bool is_learned);
 
   [[nodiscard]] bool is_solvable() const { return factor_.info() == Eigen::Success; }
@@ -30,8 +30,8 @@ class FieldElimination {
   /// The step of theta that goes with a step of the rest.
   [[nodiscard]] Eigen::VectorXd step(const Eigen::VectorXd& gradient, const Eigen::VectorXd& rest_step) const;
 
-  /// M with M M^T the covariance of theta, from such a root of the covariance of the rest.
-  [[nodiscard]] Eigen::MatrixXd covariance_root(const Eigen::MatrixXd& rest_root) const;
+  /// M with M M^T the covariance of theta, from the factor of the information of the rest.
+  [[nodiscard]] Eigen::MatrixXd covariance_root(const Eigen::LLT<Eigen::MatrixXd>& rest) const;
 
  private:
   Eigen::LLT<Eigen::MatrixXd> factor_;

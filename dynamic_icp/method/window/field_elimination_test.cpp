@@ -54,7 +54,7 @@ TEST(FieldElimination, CovarianceIsThatOfTheWholeProblem) {
   const MatrixXd S = information_of_rest(elimination);
   EXPECT_LT((S.inverse() - covariance.bottomRightCorner(kRest, kRest)).norm(), 1e-9 * covariance.norm());
   const Eigen::LLT<MatrixXd> factor(S);
-  const MatrixXd root = elimination.covariance_root(factor.matrixU().solve(MatrixXd::Identity(kRest, kRest)));
+  const MatrixXd root = elimination.covariance_root(factor);
   EXPECT_LT((root * root.transpose() - covariance.topLeftCorner(kField, kField)).norm(), 1e-9 * covariance.norm());
 }
 

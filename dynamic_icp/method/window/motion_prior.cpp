@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace dynamic_icp::window {
 namespace {
@@ -79,13 +81,25 @@ void add_row(const Row& row, const Vector6d& information, Eigen::MatrixXd& H, Ei
   }
 }
 
-Vector6d variance_of(const Row& row, Eigen::Index first, const Eigen::MatrixXd& covariance_root) {
-  Eigen::MatrixXd root = Eigen::MatrixXd::Zero(6, covariance_root.cols());
-  for (std::size_t i = 0; i < row.size; ++i) {
-    root += row.weight[i] * covariance_root.middleRows<6>(row.at[i] - first);
+/// The rows of a scan, six sums each, and the variances of these by the factor of the unknowns from `first` on.
+class RowVariances {
+ public:
+  RowVariances(const std::vector<Row>& rows, Eigen::Index first, const RestFactor& factor) {
+    Eigen::MatrixXd sums = Eigen::MatrixXd::Zero(factor.size(), 6 * static_cast<Eigen::Index>(rows.size()));
+    for (std::size_t k = 0; k < rows.size(); ++k) {
+      for (std::size_t i = 0; i < rows[k].size; ++i) {
+        sums.block<6, 6>(rows[k].at[i] - first, 6 * static_cast<Eigen::Index>(k)).diagonal().array() +=
+            rows[k].weight[i];
+      }
+    }
+    variances_ = factor.covariance_root(std::move(sums)).colwise().squaredNorm();
   }
-  return root.rowwise().squaredNorm();
-}
+
+  [[nodiscard]] Vector6d of(std::size_t row) const { return variances_.segment<6>(6 * static_cast<Eigen::Index>(row)); }
+
+ private:
+  Eigen::VectorXd variances_;
+};
 
 Vector6d values(const std::array<LearnedVariance, 6>& variances) {
   Vector6d result;
@@ -153,19 +167,23 @@ void MotionPrior::add(const SplineTrajectory& trajectory, std::size_t first_new,
 }
 
 void MotionPrior::learn(const SplineTrajectory& trajectory, std::size_t begin, std::size_t end, const Layout& layout,
-                        const Eigen::MatrixXd& covariance_root) {
+                        const RestFactor& factor) {
   Evidence jerks;
   Evidence vibrations;
   const Vector6d q = jerk_variance();
   const Vector6d r = values(vibration_);
   const auto [a1, a2] = resonator_;
+  std::vector<Row> rows;
   for (std::size_t k = begin; k < end; ++k) {
-    const Row jerk = jerk_row(trajectory, k, layout);
-    jerks.add(jerk, q, variance_of(jerk, layout.field, covariance_root));
-    if (layout.vibrates) {
-      const Row driven = vibration_row(trajectory, k + 3, {1.0, -a1, -a2}, layout);
-      vibrations.add(driven, r, variance_of(driven, layout.field, covariance_root));
-    }
+    rows.push_back(jerk_row(trajectory, k, layout));
+  }
+  for (std::size_t k = begin; k < end && layout.vibrates; ++k) {
+    rows.push_back(vibration_row(trajectory, k + 3, {1.0, -a1, -a2}, layout));
+  }
+  const RowVariances variances(rows, layout.field, factor);
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    const bool is_jerk = k < end - begin;
+    (is_jerk ? jerks : vibrations).add(rows[k], is_jerk ? q : r, variances.of(k));
   }
   double squares = 0.0;
   double counts = 0.0;

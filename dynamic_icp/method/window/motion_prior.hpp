@@ -10,6 +10,7 @@
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/window/doppler_terms.hpp"
 #include "dynamic_icp/method/window/learned_variance.hpp"
+#include "dynamic_icp/method/window/rest_factor.hpp"
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
 #include "dynamic_icp/method/window/window_config.hpp"
 
@@ -28,11 +29,10 @@ class MotionPrior {
   void add(const SplineTrajectory& trajectory, std::size_t first_new, const Layout& layout, Eigen::MatrixXd& H,
            Eigen::VectorXd& g) const;
 
-  /// Learns from the intervals [begin, end) by MacKay's fixed point q = sum e^2 / sum (1 - Var e / q). The covariance
-  /// of all unknowns but theta is M M^T, M = `covariance_root`. May be called again with a better estimate before
-  /// `keep`.
+  /// Learns from the intervals [begin, end) by MacKay's fixed point q = sum e^2 / sum (1 - Var e / q). `factor` is that
+  /// of the information of all unknowns but theta. May be called again with a better estimate before `keep`.
   void learn(const SplineTrajectory& trajectory, std::size_t begin, std::size_t end, const Layout& layout,
-             const Eigen::MatrixXd& covariance_root);
+             const RestFactor& factor);
   void keep();
 
   [[nodiscard]] Vector6d jerk_variance() const;       ///< q, [rad/s^3; m/s^3] squared

@@ -167,10 +167,12 @@ Learned learned(double amplitude_m) {
         sums.g[at] -= (x + normal(random)) / (kMeasured_m * kMeasured_m);
       }
     }
-    const Eigen::LLT<MatrixXd> factor(sums.H);
-    const MatrixXd covariance_root = factor.matrixU().solve(MatrixXd::Identity(sums.H.rows(), sums.H.cols()));
+    const Index head = motion.layout.head();
+    RestFactor factor;
+    factor.set_tail(sums.H.bottomRows(sums.H.rows() - head));
+    factor.compute(sums.H.topLeftCorner(head, head));
     motion.add(-factor.solve(sums.g));
-    prior.learn(motion.trajectory, 8, 16, motion.layout, covariance_root);
+    prior.learn(motion.trajectory, 8, 16, motion.layout, factor);
     prior.keep();
   }
   return {std::sqrt(prior.vibration_variance()[3]), std::sqrt(prior.vibration_variance()[0]),

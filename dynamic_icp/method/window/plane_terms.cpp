@@ -209,8 +209,6 @@ void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::Matr
   const Eigen::Index stamp = layout.stamp();
   H(stamp, stamp) += along.dot(S_along);
   g[stamp] += along.dot(slice.E[0]);
-  H.block<6, 1>(d, stamp) -= S_along - along_end;
-  H.block<6, 1>(d + 6, stamp) -= along_end;
   H.block<1, 6>(stamp, d) -= (S_along - along_end).transpose();
   H.block<1, 6>(stamp, d + 6) -= along_end.transpose();
   U.row(stamp) += (S_along.tail<3>().transpose() * axes_);
@@ -218,22 +216,17 @@ void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::Matr
   for (std::size_t i = 0; i < 4; ++i) {
     const Eigen::Index row = layout.coefficient(slice.at.first + i);
     const double wi = slice.at.weight[i];
-    for (std::size_t j = 0; j < 4; ++j) {
+    for (std::size_t j = 0; j <= i; ++j) {
       H.block<6, 6>(row, layout.coefficient(slice.at.first + j)) += (wi * slice.at.weight[j]) * S0;
     }
     H.block<6, 6>(row, d) -= wi * at_start;
     H.block<6, 6>(row, d + 6) -= wi * at_end;
-    H.block<6, 6>(d, row) -= wi * at_start.transpose();
-    H.block<6, 6>(d + 6, row) -= wi * at_end.transpose();
-    g.segment<6>(row) += wi * E0;
     H.block<6, 1>(row, stamp) += wi * M_along;
-    H.block<1, 6>(stamp, row) += wi * M_along.transpose();
+    g.segment<6>(row) += wi * E0;
     U.block<6, 3>(row, 0) += wi * offset;
   }
-  const Matrix6d middle = slice.S[1] - slice.S[2];
   H.block<6, 6>(d, d) += slice.S[0] - 2.0 * slice.S[1] + slice.S[2];
-  H.block<6, 6>(d, d + 6) += middle;
-  H.block<6, 6>(d + 6, d) += middle;
+  H.block<6, 6>(d + 6, d) += slice.S[1] - slice.S[2];
   H.block<6, 6>(d + 6, d + 6) += slice.S[2];
   g.segment<6>(d) -= slice.E[0] - slice.E[1];
   g.segment<6>(d + 6) -= slice.E[1];
@@ -252,11 +245,12 @@ void PlaneTerms::add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& 
     by_offset += axes_.transpose() * slice.E[0].tail<3>();
   }
   const Eigen::LLT<Eigen::Matrix3d> offsets(offset_information_);
-  const Eigen::Matrix<double, 3, Eigen::Dynamic> SU = offsets.solve(U.transpose());
+  offsets.matrixU().solveInPlace<Eigen::OnTheRight>(U);
+  offsets.matrixL().solveInPlace(by_offset);
   const Eigen::Index first = layout.map_error();
-  const Eigen::Index n = layout.size() - first;
-  H.bottomRightCorner(n, n).noalias() -= U.bottomRows(n) * SU.rightCols(n);
-  g.tail(n) -= SU.rightCols(n).transpose() * by_offset;
+  const Eigen::Index n = layout.head() - first;  // the vibration moves nothing
+  H.block(first, first, n, n).selfadjointView<Eigen::Lower>().rankUpdate(U.middleRows(first, n), -1.0);
+  g.noalias() -= U * by_offset;
 }
 
 PlaneQuality PlaneTerms::quality() const {

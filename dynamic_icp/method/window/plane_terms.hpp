@@ -54,7 +54,7 @@ class PlaneTerms {
   void associate(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
                  bool adapt);
 
-  /// Adds the terms at the trajectory of the last `associate`.
+  /// Adds the terms at the trajectory of the last `associate`; to the lower triangle of H.
   void add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
 
   /// Fit at the last `associate`, and how far patches are from planes after the best rigid motion of the whole scan:

@@ -204,6 +204,7 @@ Sums expected_sums(const Definition& definition, const Vector3d& held) {
 Sums sums_of(const PlaneTerms& terms, const Layout& at) {
   Sums sums{MatrixXd::Zero(at.size(), at.size()), VectorXd::Zero(at.size())};
   terms.add(at, sums.H, sums.g);
+  sums.H = MatrixXd(sums.H.selfadjointView<Eigen::Lower>());
   return sums;
 }
 

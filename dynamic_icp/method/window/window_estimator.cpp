@@ -130,10 +130,11 @@ bool WindowEstimator::settle_first(const WindowScan& scan, const Workers& worker
       average_doppler(scan, pass == 0, workers);
     }
     linearise();
-    if (!(solve(start_terms(scan)) < kMaxCoordinate_m)) {
+    const Problem rest = start_terms(scan);
+    factor_tail(rest);
+    if (!(solve(rest) < kMaxCoordinate_m)) {
       return false;
     }
-    find_covariance();
     learn_field();
     if (scans_ever_ == 0 && pass >= kFirstPasses) {
       learn_motion(stamp_s() + begin_s_, stamp_s() + end_s_);
@@ -160,7 +161,6 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
     if (motion.diverged) {
       return motion;
     }
-    find_covariance();
     if (std::max(learn_stamps(), learn_scan_errors()) < kMuchNoise) {
       break;
     }
@@ -172,7 +172,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   compare_with_planes(false, *planes);
   motion.planes = planes->quality();
   join(scan_terms(planes, first_new));
-  if (!elimination_.is_solvable() || rest_factor_.info() != Eigen::Success || !covariance_root_.allFinite()) {
+  if (!elimination_.is_solvable() || !rest_factor_.is_solvable()) {
     motion.diverged = true;
     return motion;
   }
@@ -242,7 +242,11 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
       planes.emplace(*scan.static_points, map, stamp_s(), config_.knot_spacing_s / kSlices, workers);
     }
     compare_with_planes(true, *planes);
-    step = solve(scan_terms(planes, first_new));
+    const Problem rest = scan_terms(planes, first_new);
+    if (motion.iterations == 0) {
+      factor_tail(rest);
+    }
+    step = solve(rest);
     if (!(step < kMaxCoordinate_m)) {
       motion.diverged = true;
       return;
@@ -277,11 +281,14 @@ double WindowEstimator::solve(const Problem& rest) {
   Eigen::VectorXd gradient = linear_gradient();
   field_->add_prior_gradient(theta_, gradient.head(theta_.size()));
   factor(rest);
-  const Eigen::VectorXd y = -rest_factor_.solve(elimination_.rest_gradient(gradient) + rest.g);
-  if (!elimination_.is_solvable() || rest_factor_.info() != Eigen::Success || !y.allFinite()) {
+  Eigen::VectorXd rest_gradient = gradient.tail(rest.g.size()) + rest.g;
+  const Eigen::VectorXd by_field = elimination_.rest_gradient(gradient.head(layout().head()));
+  rest_gradient.head(by_field.size()) = by_field + rest.g.head(by_field.size());
+  const Eigen::VectorXd y = -rest_factor_.solve(rest_gradient);
+  if (!elimination_.is_solvable() || !rest_factor_.is_solvable() || !y.allFinite()) {
     return std::numeric_limits<double>::infinity();
   }
-  theta_ += elimination_.step(gradient, y);
+  theta_ += elimination_.step(gradient.head(layout().head()), y.head(by_field.size()));
   const Layout at = rest_layout();
   map_error_ += y.head(Layout::kMapError);
   stamp_errors_ += y.segment<2>(Layout::kMapError);
@@ -299,20 +306,31 @@ double WindowEstimator::solve(const Problem& rest) {
 
 /// The information of all unknowns but theta.
 void WindowEstimator::factor(const Problem& rest) {
-  Eigen::MatrixXd S = elimination_.rest() + rest.H;
+  const Eigen::Index head = rest_layout().head();
+  Eigen::MatrixXd S = elimination_.rest() + rest.H.topLeftCorner(head, head);
   S.diagonal().array() += kNothing;
   rest_factor_.compute(S);
+}
+
+/// The vibration that nothing but the past and the prior of the motion know of: the same in all steps.
+void WindowEstimator::factor_tail(const Problem& rest) {
+  const Eigen::Index tail = rest.H.rows() - rest_layout().head();
+  Eigen::MatrixXd rows = quadratic_->Q().bottomRightCorner(tail, rest.H.cols()) + rest.H.bottomRows(tail);
+  rows.rightCols(tail).diagonal().array() += kNothing;
+  rest_factor_.set_tail(rows);
 }
 
 /// The scan becomes part of the past; the prior of the field stays apart, so that its scale can still be learned.
 void WindowEstimator::join(const Problem& rest) {
   Eigen::VectorXd g = linear_gradient();
   g.tail(rest.g.size()) += rest.g;
-  linear_H_.bottomRightCorner(rest.g.size(), rest.g.size()) += rest.H;
-  quadratic_->set(linear_H_, std::move(g));
+  factor_tail(rest);
+  Eigen::MatrixXd H = quadratic_->Q();
+  H.topLeftCorner(linear_H_.rows(), linear_H_.cols()) = linear_H_;
+  H.bottomRightCorner(rest.g.size(), rest.g.size()) += rest.H;
+  quadratic_->set(std::move(H), std::move(g));
   linearise_here();
   factor(rest);
-  find_covariance();
   learn_field();
   learn_cell_variance();
 }

@@ -21,6 +21,7 @@
 #include "dynamic_icp/method/window/learned_variance.hpp"
 #include "dynamic_icp/method/window/motion_prior.hpp"
 #include "dynamic_icp/method/window/plane_terms.hpp"
+#include "dynamic_icp/method/window/rest_factor.hpp"
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
 #include "dynamic_icp/method/window/window_config.hpp"
 #include "dynamic_icp/method/window/window_quadratic.hpp"
@@ -107,7 +108,7 @@ class WindowEstimator {
  private:
   /// Of all unknowns but theta.
   struct Problem {
-    Eigen::MatrixXd H;
+    Eigen::MatrixXd H;  ///< the lower triangle
     Eigen::VectorXd g;
   };
 
@@ -123,6 +124,7 @@ class WindowEstimator {
   void compare_with_planes(bool adapt, PlaneTerms& planes) const;
   double solve(const Problem& rest);
   void factor(const Problem& rest);
+  void factor_tail(const Problem& rest);
   void join(const Problem& rest);
   void lay_first_again(const Scan& first_points, mapping::PlaneMap& map, const Workers& workers);
 
@@ -138,7 +140,6 @@ class WindowEstimator {
   [[nodiscard]] Eigen::MatrixXd sweep_rows(const Layout& layout) const;
 
   // window_learning.cpp
-  void find_covariance();
   void learn_field();
   void learn_motion(double from_s, double to_s);
   double learn_stamps();
@@ -173,12 +174,10 @@ class WindowEstimator {
   DopplerCells cells_;
   std::optional<DopplerTerms> doppler_;
   std::vector<double> predicted_;
-  Eigen::MatrixXd linear_H_;  ///< of the past and the Doppler, at the state where it was last linearised
+  Eigen::MatrixXd linear_H_;  ///< of the past and the Doppler in the head (Layout), where it was last linearised
   FieldElimination elimination_;
   DopplerTerms::ScanError scan_error_;
-  Eigen::LLT<Eigen::MatrixXd> rest_factor_;
-  /// M with M M^T the covariance of [map error; stamp errors; coefficients; vibration] after the last scan.
-  Eigen::MatrixXd covariance_root_;
+  RestFactor rest_factor_;  ///< of [map error; stamp errors; coefficients; vibration]
   motion::Twist twist_;
   Eigen::MatrixXd field_covariance_root_;
   MotionPrior motion_prior_;

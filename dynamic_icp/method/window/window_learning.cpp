@@ -23,16 +23,10 @@ constexpr double kVelocityWalk_mps = 0.002;
 
 }  // namespace
 
-/// A root of the covariance of the window, at the last factor of the rest.
-void WindowEstimator::find_covariance() {
-  const Eigen::Index n = rest_factor_.rows();
-  covariance_root_ = rest_factor_.matrixU().solve(Eigen::MatrixXd::Identity(n, n));
-}
-
 /// The scales of the error field, from the covariance of the window.
 void WindowEstimator::learn_field() {
   if (config_.learn_field) {
-    field_covariance_root_ = elimination_.covariance_root(covariance_root_);
+    field_covariance_root_ = elimination_.covariance_root(rest_factor_.head());
     field_->learn_scales(theta_, field_covariance_root_);
   }
 }
@@ -40,13 +34,13 @@ void WindowEstimator::learn_field() {
 /// How the sensor moves between two times.
 void WindowEstimator::learn_motion(double from_s, double to_s) {
   motion_prior_.learn(trajectory_, trajectory_.interval(from_s), trajectory_.interval(to_s), rest_layout(),
-                      covariance_root_);
+                      rest_factor_);
 }
 
 /// How far stamps are off; by which share their variance grew.
 double WindowEstimator::learn_stamps() {
-  const Eigen::Index now = Layout::kMapError + 1;
-  return stamp_variance_.propose(stamp_errors_[1], covariance_root_.row(now).squaredNorm());
+  const Eigen::VectorXd now = Eigen::VectorXd::Unit(rest_factor_.size(), rest_layout().stamp());
+  return stamp_variance_.propose(stamp_errors_[1], rest_factor_.covariance_root(now).squaredNorm());
 }
 
 /// And what all Doppler values of a scan have in common.
@@ -54,8 +48,8 @@ double WindowEstimator::learn_scan_errors() {
   if (!doppler_) {
     return 0.0;
   }
-  const Eigen::VectorXd by_rest = scan_error_.by_unknowns.tail(covariance_root_.rows());
-  const double variance = scan_error_.variance + (covariance_root_.transpose() * by_rest).squaredNorm();
+  const Eigen::VectorXd by_rest = scan_error_.by_unknowns.tail(rest_factor_.size());
+  const double variance = scan_error_.variance + rest_factor_.covariance_root(by_rest).squaredNorm();
   return scan_error_variance_.propose(scan_error_.value, variance);
 }
 

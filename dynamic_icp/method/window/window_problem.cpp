@@ -31,7 +31,7 @@ const Vector6d kMapInformation{{100.0, 100.0, 100.0, 1.0, 1.0, 1.0}};
 /// The past and the Doppler, on which theta acts, linearised at the state of the moment; theta is eliminated from them.
 void WindowEstimator::linearise() {
   const Layout at = layout();
-  linear_H_ = quadratic_->Q();
+  linear_H_ = quadratic_->Q().topLeftCorner(at.head(), at.head());
   if (doppler_ && config_.use_doppler) {
     doppler_->linearise(trajectory_);
     doppler_->add_information(at, scan_error_variance(), linear_H_);

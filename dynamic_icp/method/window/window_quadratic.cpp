@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/window/window_quadratic.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <type_traits>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -12,6 +15,9 @@ namespace {
 
 // 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
 constexpr double kNothing = 1e-9;
+
+// Columns that are mirrored together.
+constexpr Eigen::Index kMirrored = 16;
 
 std::vector<Eigen::Index> range(Eigen::Index first, Eigen::Index count) {
   std::vector<Eigen::Index> result(static_cast<std::size_t>(count));
@@ -31,10 +37,29 @@ WindowQuadratic::WindowQuadratic(Eigen::Index field_size, std::size_t coefficien
       Q_(Eigen::MatrixXd::Zero(layout_.size(), layout_.size())),
       g_(Eigen::VectorXd::Zero(layout_.size())) {}
 
-void WindowQuadratic::set(const Eigen::MatrixXd& Q, Eigen::VectorXd g) {
-  // Rounding must not let the two halves part.
-  Q_ = 0.5 * (Q + Q.transpose());
+void WindowQuadratic::set(Eigen::MatrixXd Q, Eigen::VectorXd g) {
+  Q_ = std::move(Q);
   g_ = std::move(g);
+  mirror(Q_.rows());
+}
+
+/// The upper triangle of the first rows and columns from the lower one.
+void WindowQuadratic::mirror(Eigen::Index size) {
+  for (Eigen::Index first = 0; first < size; first += kMirrored) {
+    const Eigen::Index n = std::min(kMirrored, size - first);
+    Q_.block(0, first, first, n) = Q_.block(first, 0, n, first).transpose();
+    for (Eigen::Index k = first + 1; k < first + n; ++k) {
+      Q_.block(first, k, k - first, 1) = Q_.block(k, first, 1, k - first).transpose();
+    }
+  }
+}
+
+/// Q - W^T W and g - W^T w in the first rows and columns, as many as W has.
+void WindowQuadratic::subtract(const Eigen::MatrixXd& W, const Eigen::VectorXd& w) {
+  const Eigen::Index n = W.cols();
+  Q_.topLeftCorner(n, n).selfadjointView<Eigen::Lower>().rankUpdate(W.transpose(), -1.0);
+  g_.head(n).noalias() -= W.transpose() * w;
+  mirror(n);
 }
 
 void WindowQuadratic::set_field(const Eigen::MatrixXd& Q, const Eigen::VectorXd& g) {
@@ -66,10 +91,8 @@ void WindowQuadratic::next_stamp() {
   const Eigen::Index now = layout_.stamp();
   const double information = Q_(last, last);
   if (information > 0.0) {
-    const Eigen::VectorXd column = Q_.col(last);
-    const double gradient = g_[last];
-    Q_.noalias() -= column * column.transpose() / information;
-    g_ -= column * (gradient / information);
+    const double scale = 1.0 / std::sqrt(information);
+    subtract(scale * Q_.row(last).head(layout_.head()), Eigen::VectorXd::Constant(1, scale * g_[last]));
   }
   Q_.row(last) = Q_.row(now);
   Q_.col(last) = Q_.col(now);
@@ -93,20 +116,18 @@ void WindowQuadratic::drop_coefficients(std::size_t count) {
     dropped = join(std::move(dropped), range(layout_.vibration(0), gone));
     remaining = join(std::move(remaining), range(layout_.vibration(0) + gone, left));
   }
-  Eigen::MatrixXd kept = Q_(remaining, remaining);
-  Eigen::VectorXd g = g_(remaining);
   Eigen::MatrixXd old = Q_(dropped, dropped);
   old.diagonal().array() += kNothing;
   const Eigen::LLT<Eigen::MatrixXd> eliminated(old);
-  const Eigen::MatrixXd cross = Q_(dropped, remaining);
-  const Eigen::VectorXd old_g = g_(dropped);
-  const Eigen::MatrixXd W = eliminated.matrixL().solve(cross);
-  const Eigen::VectorXd w = eliminated.matrixL().solve(old_g);
-  kept.noalias() -= W.transpose() * W;
-  g.noalias() -= W.transpose() * w;
-  Q_ = std::move(kept);
-  g_ = std::move(g);
   layout_.coefficients -= static_cast<Eigen::Index>(count);
+  // The tail of what remains has nothing to do with what is dropped.
+  Eigen::MatrixXd W = Q_(dropped, std::vector(remaining.begin(), remaining.begin() + layout_.head()));
+  Eigen::VectorXd w = g_(dropped);
+  eliminated.matrixL().solveInPlace(W);
+  eliminated.matrixL().solveInPlace(w);
+  Q_ = Q_(remaining, remaining).eval();
+  g_ = g_(remaining).eval();
+  subtract(W, w);
 }
 
 void WindowQuadratic::keep_field_only(std::size_t coefficients) {
@@ -129,11 +150,16 @@ void WindowQuadratic::keep_field_only(std::size_t coefficients) {
 
 void WindowQuadratic::move_reference(const std::vector<Matrix6d>& changes,
                                      const Eigen::Matrix<double, 12, 12>& map_change) {
+  // A^T Q A, the lower triangle, block by block
   const Eigen::Index d = layout_.map_error();
   const auto apply = [&](Eigen::Index at, const auto& A) {
-    Q_.middleRows(at, A.rows()) = (A.transpose() * Q_.middleRows(at, A.rows())).eval();
-    Q_.middleCols(at, A.rows()) = (Q_.middleCols(at, A.rows()) * A).eval();
-    g_.segment(at, A.rows()) = (A.transpose() * g_.segment(at, A.rows())).eval();
+    constexpr int n = std::decay_t<decltype(A)>::RowsAtCompileTime;
+    for (Eigen::Index k = 0; k < at + n; ++k) {
+      Q_.col(k).segment<n>(at) = (A.transpose() * Q_.col(k).segment<n>(at)).eval();
+    }
+    auto below = Q_.middleCols<n>(at).bottomRows(Q_.rows() - at);
+    below = below.lazyProduct(A).eval();
+    g_.segment<n>(at) = (A.transpose() * g_.segment<n>(at)).eval();
   };
   apply(d, map_change);
   for (std::size_t k = 0; k < changes.size(); ++k) {
@@ -142,6 +168,7 @@ void WindowQuadratic::move_reference(const std::vector<Matrix6d>& changes,
       apply(layout_.vibration(k), changes[k]);
     }
   }
+  mirror(Q_.rows());
 }
 
 void WindowQuadratic::mix_map_error(double share, const Eigen::MatrixXd& J) {
@@ -167,10 +194,8 @@ void WindowQuadratic::walk_field(Eigen::Index begin, const Eigen::MatrixXd& W) {
   Eigen::MatrixXd A = W.llt().solve(Eigen::MatrixXd::Identity(n, n));
   A += Q_.block(begin, begin, n, n);
   const Eigen::LLT<Eigen::MatrixXd> sum(A);
-  const Eigen::MatrixXd Z = sum.matrixL().solve(Q_.middleRows(begin, n));
-  const Eigen::VectorXd z = sum.matrixL().solve(g_.segment(begin, n));
-  Q_.noalias() -= Z.transpose() * Z;
-  g_.noalias() -= Z.transpose() * z;
+  const Eigen::MatrixXd Z = sum.matrixL().solve(Q_.block(begin, 0, n, layout_.head()));
+  subtract(Z, sum.matrixL().solve(g_.segment(begin, n)));
 }
 
 }  // namespace dynamic_icp::window

@@ -23,8 +23,8 @@ class WindowQuadratic {
   [[nodiscard]] const Eigen::MatrixXd& Q() const { return Q_; }
   [[nodiscard]] const Eigen::VectorXd& g() const { return g_; }
 
-  /// Replaces the quadratic; the layout stays.
-  void set(const Eigen::MatrixXd& Q, Eigen::VectorXd g);
+  /// Replaces the quadratic, of which the lower triangle is given; the layout stays.
+  void set(Eigen::MatrixXd Q, Eigen::VectorXd g);
 
   /// What is known of theta, where nothing else is.
   void set_field(const Eigen::MatrixXd& Q, const Eigen::VectorXd& g);
@@ -52,6 +52,9 @@ class WindowQuadratic {
   void walk_field(Eigen::Index begin, const Eigen::MatrixXd& W);
 
  private:
+  void mirror(Eigen::Index size);
+  void subtract(const Eigen::MatrixXd& W, const Eigen::VectorXd& w);
+
   Layout layout_;
   Eigen::MatrixXd Q_;
   Eigen::VectorXd g_;

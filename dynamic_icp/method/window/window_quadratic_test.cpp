@@ -32,12 +32,16 @@ MatrixXd random_information(std::mt19937& random, Index n) {
   return A * A.transpose() + MatrixXd::Identity(n, n);
 }
 
-/// Everything is correlated with everything.
+/// Everything is correlated with everything, but the tail with the coefficients and their vibration alone.
 WindowQuadratic random_quadratic(unsigned seed) {
   std::mt19937 random(seed);
   WindowQuadratic quadratic(kField, kCoefficients, true);
-  const Index n = quadratic.layout().size();
-  quadratic.set(random_information(random, n), random_matrix(random, n, 1));
+  const Layout& at = quadratic.layout();
+  const Index n = at.size();
+  MatrixXd A = random_matrix(random, n, 2 * n);
+  A.block(0, 0, at.coefficient(0), n).setZero();
+  A.bottomRightCorner(n - at.head(), n).setZero();
+  quadratic.set(A * A.transpose() + MatrixXd::Identity(n, n), random_matrix(random, n, 1));
   return quadratic;
 }
 

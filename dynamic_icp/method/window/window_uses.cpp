@@ -59,8 +59,8 @@ std::vector<Eigen::Vector3d> WindowEstimator::add_to_map(const WindowScan& scan,
 
 /// Of six sums of the unknowns but theta.
 Matrix6d WindowEstimator::covariance_of(const Eigen::MatrixXd& rows) const {
-  const Eigen::Matrix<double, 6, Eigen::Dynamic> root = rows * covariance_root_;
-  const Matrix6d covariance = root * root.transpose();
+  const Eigen::MatrixXd root = rest_factor_.covariance_root(rows.transpose());
+  const Matrix6d covariance = root.transpose() * root;
   return 0.5 * (covariance + covariance.transpose());
 }
 
@@ -72,7 +72,7 @@ void WindowEstimator::motion_between(double source_s, WindowMotion& motion) cons
   motion.T_target_source.translation() = b.R.transpose() * (a.p - b.p);
   // omega = R alpha - beta and rho = R_b^T (dp_a - dp_b) - beta x t - omega x t, with alpha, beta = J dphi.
   const Eigen::Vector3d t = motion.T_target_source.translation();
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, covariance_root_.rows());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, rest_factor_.size());
   for (std::size_t k = 0; k < 4; ++k) {
     const auto of_a = Layout::kBefore + static_cast<Eigen::Index>(6 * (a.first + k));
     const auto of_b = Layout::kBefore + static_cast<Eigen::Index>(6 * (b.first + k));
@@ -97,7 +97,7 @@ void WindowEstimator::find_twist() {
   const TrajectoryPoint at = trajectory_.at(stamp_s());
   twist_.angular = at.omega;
   twist_.linear = at.velocity;
-  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, covariance_root_.rows());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, rest_factor_.size());
   for (std::size_t k = 0; k < 4; ++k) {
     const auto column = Layout::kBefore + static_cast<Eigen::Index>(6 * (at.first + k));
     rows.block<3, 3>(0, column) = at.slope[k] * at.J + 0.5 * at.weight[k] * skew(at.omega);
