@@ -26,7 +26,7 @@ constexpr double kKernel = 4.5;
 // A cell tells how its points scatter with so many of them, and a bin of the noise with so many deviations.
 constexpr double kInformativeCell = 5.0;
 constexpr std::size_t kInformativeBin = 60;
-constexpr double kNoiseGain = 0.2;
+constexpr double kNoiseGain = 0.35;
 constexpr double kShrinkage = 1.15;  // the mean of a cell was taken from the same points
 constexpr double kMinVariance = 1e-6;
 

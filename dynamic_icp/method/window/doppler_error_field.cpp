@@ -12,6 +12,8 @@
 namespace dynamic_icp::window {
 namespace {
 
+constexpr std::size_t kCellBlock = 256;
+
 constexpr std::size_t kAzimuths = 48;
 constexpr std::size_t kCrossAzimuths = 12;
 constexpr std::size_t kCrossElevations = 4;
@@ -136,6 +138,13 @@ DopplerErrorField::DopplerErrorField(const FieldShape& shape) : shape_(shape) {
 FieldColumns DopplerErrorField::columns(const DopplerCell& cell) const {
   FieldColumns result = shared_columns(cell);
   add_own_columns(cell, result);
+  return result;
+}
+
+std::vector<FieldColumns> DopplerErrorField::columns(const std::vector<DopplerCell>& cells,
+                                                     const Workers& workers) const {
+  std::vector<FieldColumns> result(cells.size());
+  workers.for_each(cells.size(), kCellBlock, [&](std::size_t k) { result[k] = columns(cells[k]); });
   return result;
 }
 

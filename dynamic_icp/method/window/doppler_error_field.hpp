@@ -10,6 +10,7 @@
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/window/doppler_cells.hpp"
 #include "dynamic_icp/method/window/window_config.hpp"
 
@@ -60,6 +61,9 @@ class DopplerErrorField {
 
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] FieldColumns columns(const DopplerCell& cell) const;
+
+  /// Of all cells.
+  [[nodiscard]] std::vector<FieldColumns> columns(const std::vector<DopplerCell>& cells, const Workers& workers) const;
 
   /// Those that points seen in nearly the same direction share, and those that each has for itself.
   [[nodiscard]] FieldColumns shared_columns(const DopplerCell& cell) const;

@@ -11,7 +11,9 @@
 namespace dynamic_icp::window {
 namespace {
 
-constexpr std::size_t kNodes = 3;
+constexpr std::size_t kCellBlock = 512;
+
+constexpr int kNodes = 3;
 
 // Tukey's kernel for cells, in standard deviations.
 constexpr double kKernel = 4.5;
@@ -34,94 +36,129 @@ Vector6d motion_row(const DopplerCell& cell) {
 
 }  // namespace
 
-DopplerTerms::DopplerTerms(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+DopplerTerms::DopplerTerms(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double stamp_s,
-                           double cell_variance, bool has_lever_arms)
-    : stamp_s_(stamp_s), per_node_(has_lever_arms ? 6 : 3) {
-  const auto unknowns = static_cast<Eigen::Index>(field.size());
-  N_theta_ = Eigen::MatrixXd::Zero(unknowns, unknowns);
-  b_theta_ = Eigen::VectorXd::Zero(unknowns);
-  N_theta_scan_ = Eigen::VectorXd::Zero(unknowns);
+                           double cell_variance, bool has_lever_arms, const Workers& workers)
+    : stamp_s_(stamp_s),
+      per_node_(has_lever_arms ? 6 : 3),
+      N_theta_(Eigen::MatrixXd::Zero(theta.size(), theta.size())),
+      b_theta_(Eigen::VectorXd::Zero(theta.size())),
+      N_theta_scan_(Eigen::VectorXd::Zero(theta.size())) {
   intervals_.resize(trajectory.coefficients().size() - 3);
-  weigh(cells, field, trajectory, theta, cell_variance);
+  const std::vector<double> w = weights(cells, columns, trajectory, theta, cell_variance, workers);
+  std::vector<std::vector<std::uint32_t>> members(intervals_.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    if (robust_[k] > 0.0) {
-      add_cell(cells[k], robust_[k] / (1.0 / cells[k].weight + cell_variance), field, trajectory);
+    if (w[k] > 0.0) {
+      members[trajectory.interval(stamp_s_ + cells[k].time_s)].push_back(static_cast<std::uint32_t>(k));
     }
   }
+  const double h = trajectory.knot_spacing();
+  const auto sum_intervals = [&](std::size_t number) {
+    const double begin_s = trajectory.interval_begin(number);
+    if (has_lever_arms) {
+      sum_interval<6 * kNodes>(cells, columns, w, members[number], begin_s, h, intervals_[number]);
+    } else {
+      sum_interval<3 * kNodes>(cells, columns, w, members[number], begin_s, h, intervals_[number]);
+    }
+  };
+  workers.both([&] { sum_field(cells, columns, w); }, [&] { workers.for_each(intervals_.size(), 1, sum_intervals); });
   std::erase_if(intervals_, [](const Interval& interval) { return interval.b.size() == 0; });
 }
 
-/// Weights by how far cells are from what is expected of them, against how far most of them are.
-void DopplerTerms::weigh(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
-                         const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double cell_variance) {
+/// The kernel's weight of each cell by how far it is from what is expected of it, against how far most of them are;
+/// over its variance.
+std::vector<double> DopplerTerms::weights(const std::vector<DopplerCell>& cells,
+                                          const std::vector<FieldColumns>& columns, const SplineTrajectory& trajectory,
+                                          const Eigen::VectorXd& theta, double cell_variance, const Workers& workers) {
   if (cells.empty()) {
-    return;
+    return {};
   }
-  std::vector<double> scaled = residuals(cells, field, trajectory, theta);
+  std::vector<double> scaled = residuals(cells, columns, trajectory, theta, workers);
   std::vector<double> size(cells.size());
+  std::vector<double> w(cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
-    scaled[k] /= std::sqrt(1.0 / cells[k].weight + cell_variance);
+    const double variance = 1.0 / cells[k].weight + cell_variance;
+    scaled[k] /= std::sqrt(variance);
     size[k] = std::abs(scaled[k]);
+    w[k] = 1.0 / variance;
   }
   const double reach = kKernel * std::max(1.0, kQuarterToSigma * quantile(size, 0.25));
   robust_.resize(cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const double inside = std::max(0.0, 1.0 - scaled[k] * scaled[k] / (reach * reach));
     robust_[k] = inside * inside;
+    w[k] *= robust_[k];
+  }
+  return w;
+}
+
+/// The sums of all cells with the weights w in which the motion does not occur.
+void DopplerTerms::sum_field(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
+                             const std::vector<double>& w) {
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (w[k] <= 0.0) {
+      continue;
+    }
+    N_scan_ += w[k];
+    b_scan_ += w[k] * cells[k].s;
+    const FieldColumns& of = columns[k];
+    for (std::size_t i = 0; i < of.size; ++i) {
+      const double wi = w[k] * of.value[i];
+      const Eigen::Index at = of.index[i];
+      b_theta_[at] += wi * cells[k].s;
+      N_theta_scan_[at] += wi;
+      for (std::size_t j = i; j < of.size; ++j) {  // in the order of theta: the lower triangle
+        N_theta_(of.index[j], at) += wi * of.value[j];
+      }
+    }
   }
 }
 
-/// Adds a cell with the weight w to the sums of its knot interval.
-void DopplerTerms::add_cell(const DopplerCell& cell, double w, const DopplerErrorField& field,
-                            const SplineTrajectory& trajectory) {
-  const Eigen::Index unknowns = N_theta_.rows();
-  const Eigen::Index node_unknowns = static_cast<Eigen::Index>(kNodes) * per_node_;
-  const double h = trajectory.knot_spacing();
-  const double t = stamp_s_ + cell.time_s;
-  const std::size_t number = trajectory.interval(t);
-  Interval& interval = intervals_[number];
-  const double begin = trajectory.interval_begin(number);
-  if (interval.b.size() == 0) {
-    interval.middle_s = begin + 0.5 * h;
-    interval.N = Eigen::MatrixXd::Zero(node_unknowns, node_unknowns);
-    interval.N_theta = Eigen::MatrixXd::Zero(node_unknowns, unknowns);
-    interval.b = Eigen::VectorXd::Zero(node_unknowns);
-    interval.N_scan = Eigen::VectorXd::Zero(node_unknowns);
+/// The others of one knot interval.
+template <int nodes>
+void DopplerTerms::sum_interval(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
+                                const std::vector<double>& w, const std::vector<std::uint32_t>& members, double begin_s,
+                                double h, Interval& interval) const {
+  if (members.empty()) {
+    return;
   }
-  const std::array<double, kNodes> L = node_weights((t - begin) / h);
-  const Vector6d row = motion_row(cell);
-  Eigen::Matrix<double, 18, 1> a = Eigen::Matrix<double, 18, 1>::Zero();
-  for (std::size_t n = 0; n < kNodes; ++n) {
-    a.segment(static_cast<Eigen::Index>(n) * per_node_, per_node_) = L[n] * row.head(per_node_);
-  }
-  const auto nodes = a.head(node_unknowns);
-  interval.N.noalias() += (w * nodes) * nodes.transpose();
-  interval.b += (w * cell.s) * nodes;
-  interval.N_scan += w * nodes;
-  N_scan_ += w;
-  b_scan_ += w * cell.s;
-  const FieldColumns columns = field.columns(cell);
-  for (std::size_t i = 0; i < columns.size; ++i) {
-    const double wi = w * columns.value[i];
-    const Eigen::Index at = columns.index[i];
-    interval.N_theta.col(at) += wi * nodes;
-    b_theta_[at] += wi * cell.s;
-    N_theta_scan_[at] += wi;
-    for (std::size_t j = i; j < columns.size; ++j) {  // in the order of theta: the lower triangle
-      N_theta_(columns.index[j], at) += wi * columns.value[j];
+  constexpr int kPerNode = nodes / kNodes;
+  using Nodes = Eigen::Matrix<double, nodes, 1>;
+  Eigen::Matrix<double, nodes, nodes> N = Eigen::Matrix<double, nodes, nodes>::Zero();
+  Eigen::Matrix<double, nodes, Eigen::Dynamic> N_theta;
+  N_theta.setZero(nodes, N_theta_.cols());
+  Nodes b = Nodes::Zero();
+  Nodes N_scan = Nodes::Zero();
+  for (const std::uint32_t k : members) {
+    const std::array<double, kNodes> L = node_weights((stamp_s_ + cells[k].time_s - begin_s) / h);
+    const Vector6d row = motion_row(cells[k]);
+    Nodes a;
+    for (int n = 0; n < kNodes; ++n) {
+      a.template segment<kPerNode>(n * kPerNode) = L[static_cast<std::size_t>(n)] * row.head<kPerNode>();
+    }
+    const Nodes wa = w[k] * a;
+    N.noalias() += wa * a.transpose();
+    b += cells[k].s * wa;
+    N_scan += wa;
+    for (std::size_t i = 0; i < columns[k].size; ++i) {
+      N_theta.col(columns[k].index[i]) += columns[k].value[i] * wa;
     }
   }
+  interval.middle_s = begin_s + 0.5 * h;
+  interval.N = N;
+  interval.N_theta = N_theta;
+  interval.b = b;
+  interval.N_scan = N_scan;
 }
 
 void DopplerTerms::linearise(const SplineTrajectory& trajectory) {
   for (Interval& interval : intervals_) {
     Eigen::MatrixXd& T = interval.by_coefficients;
     T = Eigen::MatrixXd::Zero(interval.b.size(), 24);
-    for (std::size_t n = 0; n < kNodes; ++n) {
-      const TrajectoryPoint at = trajectory.at(node_time(interval, n, trajectory));
+    for (int n = 0; n < kNodes; ++n) {
+      const TrajectoryPoint at = trajectory.at(node_time(interval, static_cast<std::size_t>(n), trajectory));
       interval.first = at.first;
-      const Eigen::Index row = static_cast<Eigen::Index>(n) * per_node_;
+      const Eigen::Index row = n * per_node_;
       const Eigen::Matrix3d by_rotation = skew(at.velocity) * at.J;
       const Eigen::Matrix3d R_transposed = at.R.transpose();
       for (std::size_t k = 0; k < 4; ++k) {
@@ -142,9 +179,9 @@ double DopplerTerms::node_time(const Interval& interval, std::size_t node, const
 
 Eigen::VectorXd DopplerTerms::motion_at_nodes(const Interval& interval, const SplineTrajectory& trajectory) const {
   Eigen::VectorXd y(interval.b.size());
-  for (std::size_t n = 0; n < kNodes; ++n) {
-    const TrajectoryPoint at = trajectory.at(node_time(interval, n, trajectory));
-    const Eigen::Index row = static_cast<Eigen::Index>(n) * per_node_;
+  for (int n = 0; n < kNodes; ++n) {
+    const TrajectoryPoint at = trajectory.at(node_time(interval, static_cast<std::size_t>(n), trajectory));
+    const Eigen::Index row = n * per_node_;
     y.segment<3>(row) = at.velocity;
     if (per_node_ == 6) {
       y.segment<3>(row + 3) = at.omega;
@@ -197,37 +234,40 @@ DopplerTerms::ScanError DopplerTerms::add_gradient(const SplineTrajectory& traje
 }
 
 /// What is not explained of each cell.
-std::vector<double> DopplerTerms::residuals(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
-                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const {
+std::vector<double> DopplerTerms::residuals(const std::vector<DopplerCell>& cells,
+                                            const std::vector<FieldColumns>& columns,
+                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
+                                            const Workers& workers) const {
   const auto [first, last] = std::minmax_element(
       cells.begin(), cells.end(), [](const DopplerCell& a, const DopplerCell& b) { return a.time_s < b.time_s; });
   const SampledMotion motion(trajectory, stamp_s_ + first->time_s, stamp_s_ + last->time_s);
   std::vector<double> result(cells.size());
-  for (std::size_t k = 0; k < cells.size(); ++k) {
+  workers.for_each(cells.size(), kCellBlock, [&](std::size_t k) {
     const DopplerCell& cell = cells[k];
     const double time_s = stamp_s_ + cell.time_s;
-    result[k] = cell.s + cell.u.dot(motion.velocity(time_s)) - field.at(cell, theta);
+    result[k] = cell.s + cell.u.dot(motion.velocity(time_s)) - columns[k].dot(theta);
     if (per_node_ == 6) {
       result[k] += cell.lxu.dot(motion.omega(time_s));
     }
-  }
+  });
   return result;
 }
 
-double DopplerTerms::unexplained_variance(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
-                                          const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const {
+double DopplerTerms::unexplained_variance(const std::vector<DopplerCell>& cells,
+                                          const std::vector<FieldColumns>& columns, const SplineTrajectory& trajectory,
+                                          const Eigen::VectorXd& theta, const Workers& workers) const {
   if (cells.empty()) {
     return 0.0;
   }
-  const std::vector<double> unexplained = residuals(cells, field, trajectory, theta);
+  const std::vector<double> unexplained = residuals(cells, columns, trajectory, theta, workers);
   double sum = 0.0;
-  double weights = 0.0;
+  double counts = 0.0;
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const double e = unexplained[k];
     sum += robust_[k] * (e * e - 1.0 / cells[k].weight);
-    weights += robust_[k];
+    counts += robust_[k];
   }
-  return weights > 0.0 ? std::max(0.0, sum / weights) : 0.0;
+  return counts > 0.0 ? std::max(0.0, sum / counts) : 0.0;
 }
 
 }  // namespace dynamic_icp::window

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstdint>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,11 +49,12 @@ struct Layout {
 /// but the chain rule from the nodes to its coefficients.
 class DopplerTerms {
  public:
-  /// `cell_variance` (m/s)^2 is what the points of a cell have in common. Cells have times after `stamp_s`. Those far
-  /// from what trajectory and theta say, against how far most are, move by themselves and have no weight.
-  DopplerTerms(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
+  /// `columns` of the error field for each cell. `cell_variance` (m/s)^2 is what the points of a cell have in common.
+  /// Cells have times after `stamp_s`. Those far from what trajectory and theta say, against how far most are, move by
+  /// themselves and have no weight.
+  DopplerTerms(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
                const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double stamp_s, double cell_variance,
-               bool has_lever_arms);
+               bool has_lever_arms, const Workers& workers);
 
   /// The error that all Doppler values of the scan have in common, N(0, `scan_variance`) (m/s)^2: it is eliminated.
   struct ScanError {
@@ -73,8 +75,10 @@ class DopplerTerms {
                          double scan_variance, Eigen::VectorXd& g) const;
 
   /// Variance that cells show beyond the noise of their points, (m/s)^2, robust; at the given state.
-  [[nodiscard]] double unexplained_variance(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
-                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const;
+  [[nodiscard]] double unexplained_variance(const std::vector<DopplerCell>& cells,
+                                            const std::vector<FieldColumns>& columns,
+                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
+                                            const Workers& workers) const;
 
  private:
   /// What one knot interval sees.
@@ -88,14 +92,23 @@ class DopplerTerms {
     std::size_t first = 0;            ///< of these coefficients
   };
 
-  void weigh(const std::vector<DopplerCell>& cells, const DopplerErrorField& field, const SplineTrajectory& trajectory,
-             const Eigen::VectorXd& theta, double cell_variance);
-  void add_cell(const DopplerCell& cell, double w, const DopplerErrorField& field, const SplineTrajectory& trajectory);
+  [[nodiscard]] std::vector<double> weights(const std::vector<DopplerCell>& cells,
+                                            const std::vector<FieldColumns>& columns,
+                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
+                                            double cell_variance, const Workers& workers);
+  void sum_field(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
+                 const std::vector<double>& w);
+  template <int nodes>
+  void sum_interval(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
+                    const std::vector<double>& w, const std::vector<std::uint32_t>& members, double begin_s, double h,
+                    Interval& interval) const;
   [[nodiscard]] static double node_time(const Interval& interval, std::size_t node, const SplineTrajectory& trajectory);
   [[nodiscard]] Eigen::VectorXd motion_at_nodes(const Interval& interval, const SplineTrajectory& trajectory) const;
   [[nodiscard]] Eigen::VectorXd scan_column(const Layout& layout) const;
-  [[nodiscard]] std::vector<double> residuals(const std::vector<DopplerCell>& cells, const DopplerErrorField& field,
-                                              const SplineTrajectory& trajectory, const Eigen::VectorXd& theta) const;
+  [[nodiscard]] std::vector<double> residuals(const std::vector<DopplerCell>& cells,
+                                              const std::vector<FieldColumns>& columns,
+                                              const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
+                                              const Workers& workers) const;
 
   double stamp_s_ = 0.0;
   std::vector<double> robust_;  ///< weight of each cell by the kernel

@@ -20,6 +20,8 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
+const Workers kOneThread(1);
+
 constexpr double kH = 0.0125;
 constexpr double kSweep_s = 0.1;
 constexpr double kPointSigma_mps = 0.05;
@@ -55,8 +57,10 @@ struct Problem {
   }
 
   [[nodiscard]] DopplerTerms terms() const {
-    return {cells, *field, trajectory, theta, stamp_s, kCellVariance, has_lever_arms};
+    return {cells, columns(), trajectory, theta, stamp_s, kCellVariance, has_lever_arms, kOneThread};
   }
+
+  [[nodiscard]] std::vector<FieldColumns> columns() const { return field->columns(cells, kOneThread); }
 
   [[nodiscard]] Layout layout() const { return {theta.size(), static_cast<Index>(trajectory.coefficients().size())}; }
 
@@ -293,12 +297,12 @@ TEST(DopplerTerms, TheKernelWidensWithTheScatter) {
 
 TEST(DopplerTerms, OfNoCellsAddNothing) {
   Problem problem;
-  const DopplerTerms terms({}, *problem.field, problem.trajectory, problem.theta, problem.stamp_s, kCellVariance,
-                           false);
+  const DopplerTerms terms({}, {}, problem.trajectory, problem.theta, problem.stamp_s, kCellVariance, false,
+                           kOneThread);
   const Sums sums = sums_of(problem, terms);
   EXPECT_EQ(sums.H.norm(), 0.0);
   EXPECT_EQ(sums.g.norm(), 0.0);
-  EXPECT_EQ(terms.unexplained_variance({}, *problem.field, problem.trajectory, problem.theta), 0.0);
+  EXPECT_EQ(terms.unexplained_variance({}, {}, problem.trajectory, problem.theta, kOneThread), 0.0);
 }
 
 TEST(DopplerTerms, TellTheVarianceBeyondThatOfPoints) {
@@ -310,15 +314,16 @@ TEST(DopplerTerms, TellTheVarianceBeyondThatOfPoints) {
     cell.s -= problem.residual(cell);
     cell.s += std::sqrt(1.0 / cell.weight + unexplained * unexplained) * normal(random);
   }
-  const double found =
-      problem.terms().unexplained_variance(problem.cells, *problem.field, problem.trajectory, problem.theta);
+  const double found = problem.terms().unexplained_variance(problem.cells, problem.columns(), problem.trajectory,
+                                                            problem.theta, kOneThread);
   // Of normal errors the kernel, 4.5 standard deviations wide, holds back 0.185 of the whole variance, here 0.0029.
   EXPECT_NEAR(found, unexplained * unexplained - 0.185 * 0.0029, 0.1 * 0.0029);
   for (DopplerCell& cell : problem.cells) {
     cell.s -= problem.residual(cell);
     cell.s += 0.7 / std::sqrt(cell.weight) * normal(random);
   }
-  EXPECT_EQ(problem.terms().unexplained_variance(problem.cells, *problem.field, problem.trajectory, problem.theta),
+  EXPECT_EQ(problem.terms().unexplained_variance(problem.cells, problem.columns(), problem.trajectory, problem.theta,
+                                                 kOneThread),
             0.0);
 }
 

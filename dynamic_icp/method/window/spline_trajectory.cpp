@@ -151,6 +151,19 @@ Eigen::Vector3d TrajectoryPoint::place(const Eigen::Vector3d& x, double step_s) 
   return R * (x + step_s * (omega.cross(x) + velocity)) + p;
 }
 
+bool SampledMotion::is_near(const SampledMotion& other, double velocity_mps, double omega_rad_s) const {
+  if (velocity_.size() != other.velocity_.size()) {
+    return false;
+  }
+  for (std::size_t k = 0; k < velocity_.size(); ++k) {
+    if ((velocity_[k] - other.velocity_[k]).norm() > velocity_mps ||
+        (omega_[k] - other.omega_[k]).norm() > omega_rad_s) {
+      return false;
+    }
+  }
+  return true;
+}
+
 SampledMotion::SampledMotion(const SplineTrajectory& trajectory, double first_s, double last_s)
     : first_s_(first_s), step_s_(trajectory.knot_spacing() / kSlices) {
   const auto steps = static_cast<std::size_t>(std::ceil(std::max(0.0, last_s - first_s) / step_s_));

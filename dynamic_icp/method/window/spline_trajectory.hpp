@@ -94,6 +94,9 @@ class SampledMotion {
   [[nodiscard]] Eigen::Vector3d velocity(double time_s) const { return between(velocity_, time_s); }
   [[nodiscard]] Eigen::Vector3d omega(double time_s) const { return between(omega_, time_s); }
 
+  /// Whether velocity and angular velocity are nearly those of another motion, sampled at nearly the same times.
+  [[nodiscard]] bool is_near(const SampledMotion& other, double velocity_mps, double omega_rad_s) const;
+
  private:
   [[nodiscard]] Eigen::Vector3d between(const std::vector<Eigen::Vector3d>& samples, double time_s) const {
     const double x = std::clamp((time_s - first_s_) / step_s_, 0.0, static_cast<double>(samples.size() - 1));

@@ -35,6 +35,10 @@ constexpr int kPasses = 2;
 constexpr int kFirstPasses = 3;
 constexpr int kFirstScans = 3;
 constexpr int kStartPasses = 10;  // until the scales of the error field have settled
+// A motion that differs by less is the same for the points of a cell: they see 2 % of the difference.
+constexpr double kSameVelocity_mps = 0.2;
+constexpr double kSameOmega_rad_s = 0.05;
+
 constexpr double kFirstGate_mps = 10.0;
 constexpr double kGate_mps = 1.0;
 
@@ -118,7 +122,7 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
     linearise_here();
     settle_first(scan, workers);
   }
-  join(start_terms(scan));
+  join(start_terms(scan), workers);
   find_twist();
   ++scans_ever_;
 }
@@ -171,7 +175,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   motion_prior_.keep();
   compare_with_planes(false, *planes);
   motion.planes = planes->quality();
-  join(scan_terms(planes, first_new));
+  join(scan_terms(planes, first_new), workers);
   if (!elimination_.is_solvable() || !rest_factor_.is_solvable()) {
     motion.diverged = true;
     return motion;
@@ -230,7 +234,12 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
   double step = std::numeric_limits<double>::infinity();
   for (int k = 0; k < config_.max_iterations && !motion.converged; ++k, ++motion.iterations) {
     if (motion.iterations < passes) {
-      average_doppler(scan, scans_ever_ < kFirstScans, workers);
+      const bool is_first = scans_ever_ < kFirstScans;
+      if (motion.iterations == 0 || is_first || !is_averaged_here()) {
+        average_doppler(scan, is_first, workers);
+      } else {
+        weigh_doppler(scan, workers);
+      }
     }
     if (motion.iterations < passes || step > kStraight) {
       linearise();
@@ -262,18 +271,32 @@ void WindowEstimator::compare_with_planes(bool adapt, PlaneTerms& planes) const 
       {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel, config_.max_noise_share}, adapt);
 }
 
-/// Weights around the trajectory of the moment.
+/// Weights of points around the trajectory of the moment.
 void WindowEstimator::average_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers) {
   doppler_.reset();
+  averaged_along_.reset();
   if (scan.measured == nullptr) {
     return;
   }
+  averaged_along_ = sampled_motion();
   static_doppler(*scan.whole, workers, predicted_);
   cells_.average(*scan.whole, *scan.is_moving, *scan.measured, predicted_, is_first_pass ? kFirstGate_mps : kGate_mps,
                  workers);
   if (field_) {
-    doppler_.emplace(cells_.cells(), *field_, trajectory_, theta_, stamp_s(), cell_variance_, scan.whole->is_of_rig());
+    columns_ = field_->columns(cells_.cells(), workers);
+    weigh_doppler(scan, workers);
   }
+}
+
+/// Whether points of a cell, which are seen in nearly the same direction, would have the same weights as they have.
+bool WindowEstimator::is_averaged_here() const {
+  return averaged_along_ && sampled_motion().is_near(*averaged_along_, kSameVelocity_mps, kSameOmega_rad_s);
+}
+
+/// Weights of cells around the trajectory of the moment.
+void WindowEstimator::weigh_doppler(const WindowScan& scan, const Workers& workers) {
+  doppler_.emplace(cells_.cells(), columns_, trajectory_, theta_, stamp_s(), cell_variance_, scan.whole->is_of_rig(),
+                   workers);
 }
 
 /// One step of all unknowns.
@@ -321,7 +344,7 @@ void WindowEstimator::factor_tail(const Problem& rest) {
 }
 
 /// The scan becomes part of the past; the prior of the field stays apart, so that its scale can still be learned.
-void WindowEstimator::join(const Problem& rest) {
+void WindowEstimator::join(const Problem& rest, const Workers& workers) {
   Eigen::VectorXd g = linear_gradient();
   g.tail(rest.g.size()) += rest.g;
   factor_tail(rest);
@@ -332,7 +355,7 @@ void WindowEstimator::join(const Problem& rest) {
   linearise_here();
   factor(rest);
   learn_field();
-  learn_cell_variance();
+  learn_cell_variance(workers);
 }
 
 /// The rotation of the first scan is known now: its points are moved to where they were.

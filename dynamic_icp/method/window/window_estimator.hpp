@@ -121,11 +121,14 @@ class WindowEstimator {
   void iterate(const WindowScan& scan, const Scan& first_points, std::size_t first_new, mapping::PlaneMap& map,
                std::optional<PlaneTerms>& planes, WindowMotion& motion, const Workers& workers);
   void average_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers);
+  [[nodiscard]] bool is_averaged_here() const;
+  void weigh_doppler(const WindowScan& scan, const Workers& workers);
+  [[nodiscard]] SampledMotion sampled_motion() const;
   void compare_with_planes(bool adapt, PlaneTerms& planes) const;
   double solve(const Problem& rest);
   void factor(const Problem& rest);
   void factor_tail(const Problem& rest);
-  void join(const Problem& rest);
+  void join(const Problem& rest, const Workers& workers);
   void lay_first_again(const Scan& first_points, mapping::PlaneMap& map, const Workers& workers);
 
   // window_problem.cpp
@@ -145,7 +148,7 @@ class WindowEstimator {
   double learn_stamps();
   double learn_scan_errors();
   void learn_roughness(const PlaneQuality& planes);
-  void learn_cell_variance();
+  void learn_cell_variance(const Workers& workers);
   void walk_field();
 
   // window_calibration.cpp
@@ -172,6 +175,8 @@ class WindowEstimator {
   Eigen::Vector2d stamp_errors_ = Eigen::Vector2d::Zero();  ///< s, of the last scan and of the one at hand
   Eigen::Vector2d stamp_errors_0_ = Eigen::Vector2d::Zero();
   DopplerCells cells_;
+  std::vector<FieldColumns> columns_;            ///< of each cell
+  std::optional<SampledMotion> averaged_along_;  ///< the motion that the cells were averaged around
   std::optional<DopplerTerms> doppler_;
   std::vector<double> predicted_;
   Eigen::MatrixXd linear_H_;  ///< of the past and the Doppler in the head (Layout), where it was last linearised

@@ -127,9 +127,13 @@ void WindowEstimator::field_errors(const Scan& scan, const Workers& workers, std
   });
 }
 
+/// During the scan at hand.
+SampledMotion WindowEstimator::sampled_motion() const {
+  return {trajectory_, stamp_s() + begin_s_, stamp_s() + end_s_};
+}
+
 void WindowEstimator::static_doppler(const Scan& scan, const Workers& workers, std::vector<double>& predicted) const {
-  const motion::TimeSpan span = motion::time_span(scan);
-  const SampledMotion motion(trajectory_, stamp_s() + span.first, stamp_s() + span.last);
+  const SampledMotion motion = sampled_motion();
   predicted.resize(scan.size());
   const bool is_of_rig = scan.is_of_rig();
   workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
