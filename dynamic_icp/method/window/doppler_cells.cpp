@@ -96,13 +96,13 @@ void DopplerCells::sort(const Scan& scan, double interval_s, const Workers& work
   });
   order_.sort();
   points_.resize(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    points_[order_.place(i)] = static_cast<std::uint32_t>(i);
-  }
+  workers.for_each(scan.size(), kBlock,
+                   [&](std::size_t i) { points_[order_.place(i)] = static_cast<std::uint32_t>(i); });
+  bin_.clear();
 }
 
-/// From how points scatter within their cells: any motion and any smooth error is the same for all of a cell.
-void DopplerCells::learn_noise(const Scan& scan) {
+/// The bin of the noise for each point of the scan that was sorted; the first scan shows which bins there are.
+void DopplerCells::find_bins(const Scan& scan, const Workers& workers) {
   const std::vector<float>& intensity = scan.channels().intensity;
   if (noise_.range_edges_m.empty()) {
     noise_.range_edges_m = edges(range_, DopplerNoise::kRanges);
@@ -110,12 +110,20 @@ void DopplerCells::learn_noise(const Scan& scan) {
       noise_.intensity_edges = edges({intensity.begin(), intensity.end()}, DopplerNoise::kIntensities);
     }
   }
+  bin_.resize(scan.size());
+  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+    const double shown = intensity.empty() ? 0.0 : static_cast<double>(intensity[i]);
+    bin_[i] = static_cast<std::uint8_t>(noise_.bin(range_[i], shown));
+  });
+}
+
+/// From how points scatter within their cells: any motion and any smooth error is the same for all of a cell.
+void DopplerCells::learn_noise(const Scan& scan) {
   std::vector<std::vector<double>> samples(DopplerNoise::kRanges * DopplerNoise::kIntensities);
   const std::size_t stride = std::max<std::size_t>(1, scan.size() / 16384);
   for (std::size_t i = 0; i < scan.size(); i += stride) {
     if (std::isfinite(residual_[i]) && counts_[order_.cell[i]] >= kInformativeCell) {
-      samples[noise_.bin(range_[i], intensity.empty() ? 0.0 : static_cast<double>(intensity[i]))].push_back(
-          std::abs(residual_[i]));
+      samples[bin_[i]].push_back(std::abs(residual_[i]));
     }
   }
   std::vector<double> all;
@@ -155,6 +163,9 @@ const std::vector<DopplerCell>& DopplerCells::average(const Scan& scan, const st
       residual_[i] -= sum / counts_[cell];
     }
   });
+  if (bin_.empty()) {
+    find_bins(scan, workers);
+  }
   learn_noise(scan);
   cells_.resize(count());
   workers.for_each(count(), kCellBlock, [&](std::size_t cell) { cells_[cell] = mean_of(cell, scan, measured); });
@@ -170,7 +181,7 @@ DopplerCell DopplerCells::mean_of(std::size_t cell, const Scan& scan, const std:
       continue;
     }
     const double intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
-    const double variance = noise_.variance[noise_.bin(range_[i], intensity)];
+    const double variance = noise_.variance[bin_[i]];
     const double inside = 1.0 - residual_[i] * residual_[i] / (kKernel * kKernel * variance);
     if (inside <= 0.0) {
       continue;

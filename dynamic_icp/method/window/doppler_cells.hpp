@@ -61,6 +61,8 @@ class DopplerCells {
     return std::span(points_).subspan(order_.first[cell], order_.first[cell + 1] - order_.first[cell]);
   }
 
+  [[nodiscard]] double range_m(std::size_t point) const { return range_[point]; }
+
   [[nodiscard]] const std::vector<DopplerCell>& cells() const { return cells_; }
 
   /// What stands for the line of a point where the scan has none: its elevation in steps.
@@ -69,12 +71,14 @@ class DopplerCells {
   [[nodiscard]] const DopplerNoise& noise() const { return noise_; }
 
  private:
+  void find_bins(const Scan& scan, const Workers& workers);
   void learn_noise(const Scan& scan);
   [[nodiscard]] DopplerCell mean_of(std::size_t cell, const Scan& scan, const std::vector<double>& measured) const;
 
   spatial::CellOrder order_;
   std::vector<std::uint32_t> points_;  ///< cell by cell
   std::vector<double> range_;          ///< m, of each point
+  std::vector<std::uint8_t> bin_;      ///< of the noise, of each point; empty: not known yet
   std::vector<double> residual_;       ///< m/s, of each point from the mean of its cell; not a number: has no weight
   std::vector<double> counts_;         ///< of the points in a cell that have one
   std::vector<DopplerCell> cells_;

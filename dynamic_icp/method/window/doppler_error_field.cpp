@@ -175,12 +175,25 @@ FieldColumns DopplerErrorField::shared_columns(const DopplerCell& cell) const {
 
 void DopplerErrorField::add_own_columns(const DopplerCell& cell, FieldColumns& columns) const {
   const SensorColumns& c = sensors_[std::min<std::size_t>(cell.sensor, sensors_.size() - 1)];
-  columns.add(c.range, cell.range_m / kRangeScale_m - kRangeMean);
-  columns.add(c.range + 1, std::exp(-cell.range_m / kNear_m));
-  columns.add(c.range + 2, std::clamp(shape_.intensity_scale * (cell.intensity - shape_.intensity_mean), -3.0, 3.0));
+  const Eigen::Vector3d own = by_range_and_intensity(cell.range_m, cell.intensity);
+  for (Eigen::Index k = 0; k < 3; ++k) {
+    columns.add(c.range + static_cast<std::size_t>(k), own[k]);
+  }
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
     columns.add(c.velocity + static_cast<std::size_t>(axis), -cell.u[axis]);
   }
+}
+
+Eigen::Vector3d DopplerErrorField::by_range_and_intensity(double range_m, double intensity) const {
+  return {range_m / kRangeScale_m - kRangeMean, std::exp(-range_m / kNear_m),
+          std::clamp(shape_.intensity_scale * (intensity - shape_.intensity_mean), -3.0, 3.0)};
+}
+
+double DopplerErrorField::own_error(std::size_t sensor, const Eigen::Vector3d& u, double range_m, double intensity,
+                                    const Eigen::VectorXd& theta) const {
+  const SensorColumns& c = sensors_[std::min(sensor, sensors_.size() - 1)];
+  return by_range_and_intensity(range_m, intensity).dot(theta.segment<3>(static_cast<Eigen::Index>(c.range))) -
+         u.dot(theta.segment<3>(static_cast<Eigen::Index>(c.velocity)));
 }
 
 void DopplerErrorField::add_prior_information(Eigen::Ref<Eigen::MatrixXd> H) const {

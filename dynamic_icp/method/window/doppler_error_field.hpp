@@ -69,6 +69,10 @@ class DopplerErrorField {
   [[nodiscard]] FieldColumns shared_columns(const DopplerCell& cell) const;
   void add_own_columns(const DopplerCell& cell, FieldColumns& columns) const;
 
+  /// The error by the columns that a point has for itself, m/s.
+  [[nodiscard]] double own_error(std::size_t sensor, const Eigen::Vector3d& u, double range_m, double intensity,
+                                 const Eigen::VectorXd& theta) const;
+
   [[nodiscard]] double at(const DopplerCell& cell, const Eigen::VectorXd& theta) const {
     return columns(cell).dot(theta);
   }
@@ -101,6 +105,7 @@ class DopplerErrorField {
     std::size_t azimuth = 0, cross = 0, line = 0, face = 0, range = 0, velocity = 0;
   };
 
+  [[nodiscard]] Eigen::Vector3d by_range_and_intensity(double range_m, double intensity) const;
   std::size_t add_group(std::string_view name, Eigen::MatrixXd K, double tau, bool is_learned);
 
   FieldShape shape_;

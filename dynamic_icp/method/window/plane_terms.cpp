@@ -61,10 +61,15 @@ void PlaneTerms::set_stamp(double stamp_s) {
 }
 
 /// Where the points of a slice are: the pose in its middle, and from there a straight step.
-void PlaneTerms::place(const SplineTrajectory& trajectory, Slice& slice) {
+void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
+                       Slice& slice) {
   slice.at = trajectory.at(slice.time_s);
   const Eigen::Isometry3d& T_map_reference = trajectory.reference();
   const Eigen::Matrix3d R_reference_map = T_map_reference.linear().transpose();
+  const Vector6d start = map_error.head<6>();
+  const Vector6d change = map_error.tail<6>() - start;
+  const double min_variance = noise.min_sigma_m * noise.min_sigma_m;
+  const double model_variance = noise.model_sigma_m * noise.model_sigma_m;
   slice.on_planes = 0;
   for (std::size_t k = slice.begin; k < slice.end; ++k) {
     const std::size_t i = order_[k];
@@ -78,58 +83,43 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, Slice& slice) {
       row.patch = map_.find(cell);
     }
     if (row.patch == nullptr) {
+      row.w = 0.0;
       continue;
     }
     ++slice.on_planes;
     const mapping::Plane& plane = row.patch->plane;
     const Eigen::Vector3d n = R_reference_map * plane.normal;
     row.m << in_reference.cross(n), n;
-    row.e = plane.distance(in_map);
-    row.own = plane.variance;
-    row.common = plane.height_variance(in_map);
     row.phase = plane.phase;
+    row.e = plane.distance(in_map) - row.m.dot(start + row.phase * change);
+    row.own = std::max(plane.variance, min_variance);
+    row.in_common = plane.height_variance(in_map) + model_variance;
   }
 }
 
 void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error,
                            const PlaneNoise& noise, bool adapt) {
   R_map_reference_ = trajectory.reference().linear();
-  workers_.for_each(slices_.size(), 1, [&](std::size_t s) { place(trajectory, slices_[s]); });
+  workers_.for_each(slices_.size(), 1, [&](std::size_t s) { place(trajectory, map_error, noise, slices_[s]); });
   members_.assign(map_.patch_limit(), 0);
+  squares_.clear();
   for (const Row& row : rows_) {
     if (row.patch != nullptr) {
       ++members_[row.patch->id];
-    }
-  }
-  const Vector6d start = map_error.head<6>();
-  const Vector6d change = map_error.tail<6>() - start;
-  const double min_variance = noise.min_sigma_m * noise.min_sigma_m;
-  const double model_variance = noise.model_sigma_m * noise.model_sigma_m;
-  std::vector<double> squares;
-  for (Row& row : rows_) {
-    if (row.patch == nullptr) {
-      continue;
-    }
-    row.e -= row.m.dot(start + row.phase * change);
-    row.own = std::max(row.own, min_variance);
-    row.common = noise.repeated * (row.common + model_variance);
-    if (adapt) {
-      squares.push_back(row.e * row.e / (row.own + row.common / noise.repeated));
+      squares_.push_back(row.e * row.e / (row.own + row.in_common));
     }
   }
   const double kernel =
-      noise.kernel * (adapt && !squares.empty() ? std::max(1.0, kSigmaPerMad * std::sqrt(median(squares))) : 1.0);
+      noise.kernel * (adapt && !squares_.empty() ? std::max(1.0, kSigmaPerMad * std::sqrt(median(squares_))) : 1.0);
   workers_.for_each(slices_.size(), 1, [&](std::size_t s) {
     Slice& slice = slices_[s];
     for (std::size_t k = slice.begin; k < slice.end; ++k) {
       Row& row = rows_[k];
-      if (row.patch == nullptr) {
-        row.w = 0.0;
-        continue;
+      if (row.patch != nullptr) {
+        const double inside = std::max(0.0, 1.0 - row.e * row.e / (kernel * kernel * (row.own + row.in_common)));
+        row.all = row.own + noise.repeated * members_[row.patch->id] * row.in_common;
+        row.w = inside * inside / row.all;
       }
-      const double reach2 = kernel * kernel * (row.own + row.common / noise.repeated);
-      const double inside = std::max(0.0, 1.0 - row.e * row.e / reach2);
-      row.w = inside * inside / (row.own + members_[row.patch->id] * row.common);
     }
     sum(slice);
   });
@@ -156,7 +146,7 @@ void PlaneTerms::sum(Slice& slice) const {
     slice.E[1] += (row.phase * row.e) * wm;
     const mapping::Plane& plane = row.patch->plane;
     slice.noise += (row.w * plane.variance / plane.points) * plane.tangential;
-    const double robust = row.w * (row.own + members_[row.patch->id] * row.common);
+    const double robust = row.w * row.all;
     slice.matched += robust;
     slice.squares += robust * row.e * row.e;
   }

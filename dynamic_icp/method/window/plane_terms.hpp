@@ -65,8 +65,9 @@ class PlaneTerms {
   struct Row {
     Vector6d m = Vector6d::Zero();  ///< [X x n; n], reference frame
     double e = 0.0;                 ///< m
-    double own = 0.0;               ///< m^2
-    double common = 0.0;            ///< m^2
+    double own = 0.0;               ///< m^2, of the point
+    double in_common = 0.0;         ///< m^2, of all points on its patch
+    double all = 0.0;               ///< m^2, as one of these points
     double phase = 0.0;             ///< of the patch
     double w = 0.0;
     const mapping::Patch* patch = nullptr;
@@ -84,7 +85,8 @@ class PlaneTerms {
     std::size_t on_planes = 0;
   };
 
-  void place(const SplineTrajectory& trajectory, Slice& slice);
+  void place(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
+             Slice& slice);
   void sum(Slice& slice) const;
   void add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g,
                  Eigen::MatrixXd& U) const;
@@ -99,6 +101,7 @@ class PlaneTerms {
   std::vector<Row> rows_;                ///< in that order
   std::vector<std::uint64_t> found_in_;  ///< finest cell of each row
   std::vector<std::uint32_t> members_;   ///< points per patch
+  std::vector<double> squares_;          ///< e^2 over the variance of each row on a patch
   Eigen::Matrix3d R_map_reference_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  ///< directions of translation, reference frame
   Eigen::Matrix3d offset_information_ = Eigen::Matrix3d::Identity();

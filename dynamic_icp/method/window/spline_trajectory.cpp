@@ -165,10 +165,10 @@ bool SampledMotion::is_near(const SampledMotion& other, double velocity_mps, dou
 }
 
 SampledMotion::SampledMotion(const SplineTrajectory& trajectory, double first_s, double last_s)
-    : first_s_(first_s), step_s_(trajectory.knot_spacing() / kSlices) {
-  const auto steps = static_cast<std::size_t>(std::ceil(std::max(0.0, last_s - first_s) / step_s_));
+    : first_s_(first_s), per_step_(kSlices / trajectory.knot_spacing()) {
+  const auto steps = static_cast<std::size_t>(std::ceil(std::max(0.0, last_s - first_s) * per_step_));
   for (std::size_t k = 0; k <= steps; ++k) {
-    const TrajectoryPoint at = trajectory.at(first_s + static_cast<double>(k) * step_s_);
+    const TrajectoryPoint at = trajectory.at(first_s + static_cast<double>(k) / per_step_);
     velocity_.push_back(at.velocity);
     omega_.push_back(at.omega);
   }

@@ -99,7 +99,7 @@ class SampledMotion {
 
  private:
   [[nodiscard]] Eigen::Vector3d between(const std::vector<Eigen::Vector3d>& samples, double time_s) const {
-    const double x = std::clamp((time_s - first_s_) / step_s_, 0.0, static_cast<double>(samples.size() - 1));
+    const double x = std::clamp(per_step_ * (time_s - first_s_), 0.0, static_cast<double>(samples.size() - 1));
     const auto k = static_cast<std::size_t>(x);
     const std::size_t next = std::min(samples.size() - 1, k + 1);
     const double share = x - static_cast<double>(k);
@@ -107,7 +107,7 @@ class SampledMotion {
   }
 
   double first_s_;
-  double step_s_;
+  double per_step_;  ///< 1/s
   std::vector<Eigen::Vector3d> velocity_;
   std::vector<Eigen::Vector3d> omega_;
 };

@@ -15,13 +15,11 @@ constexpr std::size_t kBlock = 4096;
 constexpr std::size_t kCellBlock = 128;
 constexpr std::size_t kPlacingBlock = 512;
 
-/// One point as a cell of its own.
+/// One point as a cell of its own, for what it shares with others.
 DopplerCell point_of(const Scan& scan, std::size_t i) {
   const Channels& channels = scan.channels();
   DopplerCell point;
   point.u = scan.directions()[i];
-  point.range_m = scan.points()[i].norm();
-  point.intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
   point.line = channels.line.empty() ? DopplerCells::line_of(point.u) : channels.line[i];
   point.face = channels.face.empty() ? std::uint8_t{0} : channels.face[i];
   point.sensor = channels.sensor.empty() ? std::uint8_t{0} : channels.sensor[i];
@@ -117,12 +115,13 @@ void WindowEstimator::field_errors(const Scan& scan, const Workers& workers, std
   if (!field_ || !config_.learn_field) {
     return;
   }
+  const Channels& channels = scan.channels();
   workers.for_each(cells_.count(), kCellBlock, [&](std::size_t cell) {
     const double shared = field_->shared_columns(point_of(scan, cells_.points(cell).front())).dot(theta_);
     for (const std::uint32_t i : cells_.points(cell)) {
-      FieldColumns own;
-      field_->add_own_columns(point_of(scan, i), own);
-      errors[i] = shared + own.dot(theta_);
+      const std::size_t sensor = channels.sensor.empty() ? 0 : channels.sensor[i];
+      const double intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
+      errors[i] = shared + field_->own_error(sensor, scan.directions()[i], cells_.range_m(i), intensity, theta_);
     }
   });
 }
