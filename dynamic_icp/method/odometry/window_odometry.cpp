@@ -25,6 +25,8 @@
 namespace dynamic_icp::odometry {
 namespace {
 
+constexpr std::size_t kBlock = 4096;
+
 // How far the velocity of the sensor may be from the last one: m/s.
 constexpr double kVelocitySigma_mps = 0.5;
 constexpr double kAccelerationSigma_mps2 = 3.0;
@@ -122,14 +124,12 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
     assign(timed, config_.preprocess, workers_, whole, frame);
   }
   memory_.measured = whole.doppler();
-  estimator_.sort(whole, workers_);
-  estimator_.field_errors(whole, workers_, memory_.errors);
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    whole.shift_doppler(i, -memory_.errors[i]);
-  }
   workers_.both(
       [&] { preprocess::voxel_rows(whole, config_.preprocess.voxel, workers_, memory_.voxels, memory_.thinned); },
       [&] {
+        estimator_.sort(whole, workers_);
+        estimator_.field_errors(whole, workers_, memory_.errors);
+        workers_.for_each(whole.size(), kBlock, [&](std::size_t i) { whole.shift_doppler(i, -memory_.errors[i]); });
         ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
                                     memory_.rows);
         memory_.rows.on_support =
@@ -171,9 +171,8 @@ void WindowOdometry::separate_static_points() {
   if (is_relative && config_.ego_motion.filter.enabled) {
     const std::vector<std::uint8_t> creeps = ego_motion::creeping_cells(
         memory_.rows, ego_, estimator_.point_noise().value_or(ego_.inlier_rms_mps), config_.ego_motion.static_sigmas);
-    for (std::size_t i = 0; i < whole.size(); ++i) {
-      memory_.is_moving[i] |= creeps[memory_.sort.cell[i]];
-    }
+    workers_.for_each(whole.size(), kBlock,
+                      [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
   }
   static_points_ = whole.select(static_rows(memory_.thinned, memory_.is_moving));
 }
@@ -302,9 +301,8 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   }
   const Scan& whole = memory_.whole;
   estimator_.static_doppler(whole, workers_, memory_.predicted);
-  for (std::size_t i = 0; i < whole.size(); ++i) {
-    memory_.radial[i] = whole.doppler()[i] - memory_.predicted[i];
-  }
+  workers_.for_each(whole.size(), kBlock,
+                    [&](std::size_t i) { memory_.radial[i] = whole.doppler()[i] - memory_.predicted[i]; });
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(ego_), workers_, memory_.is_moving);
 }
 
