@@ -224,7 +224,9 @@ void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::
     const double squares = part.dot(group.inverse * part);
     // tr(K^-1 M M^T) = |root^T M|^2 with K^-1 = root root^T
     const auto M = covariance_root.middleRows(begin, n);
-    const double trace = group.K.isIdentity() ? M.squaredNorm() : (group.inverse_root.transpose() * M).squaredNorm();
+    const double trace = group.K.isIdentity()
+                             ? M.squaredNorm()
+                             : (group.inverse_root.triangularView<Eigen::Lower>().transpose() * M).squaredNorm();
     const double unknown = trace / (group.tau * group.tau);
     const double known = std::clamp(static_cast<double>(n) - unknown, 0.0, static_cast<double>(n));
     group.tau = std::clamp(std::sqrt((squares + kPriorTau * kPriorTau) / (known + 1.0)), kMinTau, kMaxTau);

@@ -2,17 +2,62 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/window/rest_factor.hpp"
 
-namespace dynamic_icp::window {
+#include <algorithm>
+#include <vector>
 
+namespace dynamic_icp::window {
+namespace {
+
+// Columns of the head that are treated alike.
+constexpr Eigen::Index kColumns = 24;
+
+/// Some columns of W, and the first row in which there is anything.
+struct Columns {
+  Eigen::Index begin = 0;
+  Eigen::Index count = 0;
+  Eigen::Index row = 0;
+};
+
+std::vector<Columns> columns_of(const Eigen::MatrixXd& W) {
+  std::vector<Columns> result;
+  for (Eigen::Index begin = 0; begin < W.cols(); begin += kColumns) {
+    Columns columns{begin, std::min(kColumns, W.cols() - begin), 0};
+    while (columns.row < W.rows() && W.row(columns.row).segment(begin, columns.count).isZero(0.0)) {
+      ++columns.row;
+    }
+    if (columns.row < W.rows()) {
+      result.push_back(columns);
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+/// The prior joins near coefficients alone: W begins the lower the later they are.
 void RestFactor::set_tail(const Eigen::MatrixXd& rows) {
   const Eigen::Index n = rows.rows();
   const Eigen::Index head = rows.cols() - n;
   tail_.compute(rows.rightCols(n));
   W_ = rows.leftCols(head);
-  tail_.matrixL().solveInPlace(W_);
   share_ = Eigen::MatrixXd::Zero(head, head);
-  if (n > 0) {
-    share_.selfadjointView<Eigen::Lower>().rankUpdate(W_.transpose());
+  const std::vector<Columns> parts = columns_of(W_);
+  for (const Columns& a : parts) {
+    const Eigen::Index left = n - a.row;
+    tail_.matrixLLT()
+        .bottomRightCorner(left, left)
+        .triangularView<Eigen::Lower>()
+        .solveInPlace(W_.block(a.row, a.begin, left, a.count));
+  }
+  for (const Columns& a : parts) {
+    for (const Columns& b : parts) {
+      if (b.begin <= a.begin) {
+        const Eigen::Index left = n - std::max(a.row, b.row);
+        share_.block(a.begin, b.begin, a.count, b.count).noalias() =
+            W_.bottomRows(left).middleCols(a.begin, a.count).transpose() *
+            W_.bottomRows(left).middleCols(b.begin, b.count);
+      }
+    }
   }
 }
 

@@ -171,10 +171,15 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   }
   stamp_variance_.keep();
   scan_error_variance_.keep();
-  learn_motion(last_s, stamp_s());
-  motion_prior_.keep();
-  compare_with_planes(false, *planes);
-  motion.planes = planes->quality();
+  workers.both(
+      [&] {
+        learn_motion(last_s, stamp_s());
+        motion_prior_.keep();
+      },
+      [&] {
+        compare_with_planes(false, *planes);
+        motion.planes = planes->quality();
+      });
   join(scan_terms(planes, first_new), workers);
   if (!elimination_.is_solvable() || !rest_factor_.is_solvable()) {
     motion.diverged = true;
@@ -233,24 +238,22 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
   motion.converged = false;
   double step = std::numeric_limits<double>::infinity();
   for (int k = 0; k < config_.max_iterations && !motion.converged; ++k, ++motion.iterations) {
-    if (motion.iterations < passes) {
-      const bool is_first = scans_ever_ < kFirstScans;
-      if (motion.iterations == 0 || is_first || !is_averaged_here()) {
-        average_doppler(scan, is_first, workers);
-      } else {
-        weigh_doppler(scan, workers);
-      }
-    }
-    if (motion.iterations < passes || step > kStraight) {
-      linearise();
-    }
     if (is_second && motion.iterations > 0) {
       lay_first_again(first_points, map, workers);
     }
     if (is_second || !planes) {
       planes.emplace(*scan.static_points, map, stamp_s(), config_.knot_spacing_s / kSlices, workers);
     }
-    compare_with_planes(true, *planes);
+    workers.both(
+        [&] {
+          if (motion.iterations < passes) {
+            renew_doppler(scan, motion.iterations == 0, workers);
+          }
+          if (motion.iterations < passes || step > kStraight) {
+            linearise();
+          }
+        },
+        [&] { compare_with_planes(true, *planes); });
     const Problem rest = scan_terms(planes, first_new);
     if (motion.iterations == 0) {
       factor_tail(rest);
@@ -284,6 +287,16 @@ void WindowEstimator::average_doppler(const WindowScan& scan, bool is_first_pass
                  workers);
   if (field_) {
     columns_ = field_->columns(cells_.cells(), workers);
+    weigh_doppler(scan, workers);
+  }
+}
+
+/// The Doppler at the trajectory of the moment.
+void WindowEstimator::renew_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers) {
+  const bool is_new = scans_ever_ < kFirstScans;
+  if (is_first_pass || is_new || !is_averaged_here()) {
+    average_doppler(scan, is_new, workers);
+  } else {
     weigh_doppler(scan, workers);
   }
 }
@@ -354,8 +367,7 @@ void WindowEstimator::join(const Problem& rest, const Workers& workers) {
   quadratic_->set(std::move(H), std::move(g));
   linearise_here();
   factor(rest);
-  learn_field();
-  learn_cell_variance(workers);
+  workers.both([&] { learn_field(); }, [&] { learn_cell_variance(workers); });
 }
 
 /// The rotation of the first scan is known now: its points are moved to where they were.

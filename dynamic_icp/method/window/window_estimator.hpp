@@ -121,6 +121,7 @@ class WindowEstimator {
   void iterate(const WindowScan& scan, const Scan& first_points, std::size_t first_new, mapping::PlaneMap& map,
                std::optional<PlaneTerms>& planes, WindowMotion& motion, const Workers& workers);
   void average_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers);
+  void renew_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers);
   [[nodiscard]] bool is_averaged_here() const;
   void weigh_doppler(const WindowScan& scan, const Workers& workers);
   [[nodiscard]] SampledMotion sampled_motion() const;
