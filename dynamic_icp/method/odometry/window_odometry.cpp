@@ -90,10 +90,10 @@ Frame WindowOdometry::process(const ScanView& raw) {
   clock.finish(Stage::kEgoMotion);
 
   if (found == FrameStatus::kFirst) {
-    begin(now, Eigen::Isometry3d::Identity(), {});
+    begin(now, Eigen::Isometry3d::Identity(), {Eigen::Vector3d::Zero(), config_.window.start_omega_rad_s});
   } else if (found == FrameStatus::kTimeGap) {
     predict_only(stamp_s, found, frame);
-    begin(now, frame.T_world_sensor, {});
+    begin(now, frame.T_world_sensor, {Eigen::Vector3d::Zero(), config_.window.start_omega_rad_s});
   } else {
     update(now, frame);
   }
@@ -191,7 +191,7 @@ window::WindowScan WindowOdometry::scan_at(double stamp_s) const {
 }
 
 void WindowOdometry::begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor,
-                           const std::optional<Eigen::Vector3d>& omega) {
+                           const window::StartOmega& omega) {
   map_.clear();
   usual_match_ = 0.0;
   estimator_.begin(now, T_map_sensor, ego_.velocity_sensor, omega, workers_);
@@ -238,12 +238,25 @@ void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
     const Eigen::Isometry3d predicted = motion::motion_of(last.omega, ego_.velocity_sensor, -dt_s);
     set_motion(frame, FrameStatus::kLost, T_world_sensor_, predicted);
     frame.alignment.covariance = Matrix6d(Vector6d::Constant(dt_s * dt_s).asDiagonal());
-    begin(now, frame.T_world_sensor, last.omega);
+    begin(now, frame.T_world_sensor, {last.omega, config_.window.start_omega_rad_s});
     return;
   }
   usual_match_ = is_second ? match(motion) : usual_match_ + kUsualMatchGain * (match(motion) - usual_match_);
   first_points_ = {};
   describe(motion, dt_s, frame);
+  renew_bent_map(now, is_second, frame);
+}
+
+/// Where the second scan does not show how the first one turned, that one bends the map, and all that follow fit
+/// themselves to it. The first scan whose rotation is known begins the map anew.
+void WindowOdometry::renew_bent_map(const window::WindowScan& now, bool is_second, const Frame& frame) {
+  const bool is_unknown = frame.status == FrameStatus::kDegenerate;
+  if (is_map_bent_ && !is_unknown) {
+    const motion::Twist twist = estimator_.twist();
+    const double variance = twist.covariance.topLeftCorner<3, 3>().trace() / 3.0;
+    begin(now, frame.T_world_sensor, {twist.angular, std::sqrt(variance)});
+  }
+  is_map_bent_ = is_unknown && (is_second || is_map_bent_);
 }
 
 /// What the frame says of a motion.

@@ -57,10 +57,10 @@ class WindowOdometry final : public Odometry {
   [[nodiscard]] ego_motion::VelocityFilterConfig filter_for(const ego_motion::EgoVelocity& ego) const;
   [[nodiscard]] window::WindowScan scan_at(double stamp_s) const;
   [[nodiscard]] ego_motion::EgoPrior ego_prior() const;
-  void begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor,
-             const std::optional<Eigen::Vector3d>& omega);
+  void begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor, const window::StartOmega& omega);
   void update(const window::WindowScan& now, Frame& frame);
   [[nodiscard]] std::optional<Eigen::Isometry3d> search_second(const window::WindowScan& now) const;
+  void renew_bent_map(const window::WindowScan& now, bool is_second, const Frame& frame);
   void describe(const window::WindowMotion& motion, double dt_s, Frame& frame) const;
   void predict_only(double stamp_s, FrameStatus status, Frame& frame) const;
   void judge_points(const window::WindowScan& now);
@@ -81,7 +81,8 @@ class WindowOdometry final : public Odometry {
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   double stamp_s_ = 0.0;
   double usual_match_ = 0.0;
-  int clear_scans_;  ///< since two motions explained the Doppler equally well
+  bool is_map_bent_ = false;  ///< its first scan was laid down without knowing how it turned
+  int clear_scans_;           ///< since two motions explained the Doppler equally well
 };
 
 }  // namespace dynamic_icp::odometry

@@ -88,11 +88,10 @@ void WindowEstimator::sort(const Scan& whole, const Workers& workers) {
 }
 
 void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor,
-                            const Eigen::Vector3d& velocity, const std::optional<Eigen::Vector3d>& omega,
-                            const Workers& workers) {
+                            const Eigen::Vector3d& velocity, const StartOmega& start, const Workers& workers) {
   const auto lay_trajectory = [&] {
     trajectory_.begin(scan.stamp_s + std::min(0.0, scan.begin_s), scan.stamp_s + std::max(0.0, scan.end_s),
-                      T_map_sensor, velocity, omega.value_or(Eigen::Vector3d::Zero()));
+                      T_map_sensor, velocity, start.omega);
   };
   lay_trajectory();
   take(scan);
@@ -115,26 +114,26 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
     quadratic_.emplace(theta_.size(), coefficients, config_.learn_vibration);
   }
   linearise_here();
-  if (!settle_first(scan, workers)) {
+  if (!settle_first(scan, start.sigma_rad_s, workers)) {
     theta_.setZero();  // what was known of the sensor does not fit
     quadratic_.emplace(theta_.size(), coefficients, config_.learn_vibration);
     lay_trajectory();
     linearise_here();
-    settle_first(scan, workers);
+    settle_first(scan, start.sigma_rad_s, workers);
   }
-  join(start_terms(scan), workers);
+  join(start_terms(scan, start.sigma_rad_s), workers);
   find_twist();
   ++scans_ever_;
 }
 
 /// Fits the first scan; whether that worked.
-bool WindowEstimator::settle_first(const WindowScan& scan, const Workers& workers) {
+bool WindowEstimator::settle_first(const WindowScan& scan, double omega_sigma_rad_s, const Workers& workers) {
   for (int pass = 0; pass < kStartPasses; ++pass) {
     if (pass < kFirstPasses) {
       average_doppler(scan, pass == 0, workers);
     }
     linearise();
-    const Problem rest = start_terms(scan);
+    const Problem rest = start_terms(scan, omega_sigma_rad_s);
     factor_tail(rest);
     if (!(solve(rest) < kMaxCoordinate_m)) {
       return false;

@@ -50,6 +50,12 @@ struct WindowMotion {
   bool diverged = false;  ///< a step or the covariance is not finite, or a step beyond the reach of any scan
 };
 
+/// What is known of the angular velocity of the first scan in a map.
+struct StartOmega {
+  Eigen::Vector3d omega = Eigen::Vector3d::Zero();  ///< rad/s, sensor axes
+  double sigma_rad_s = 0.0;                         ///< of each axis
+};
+
 /// One estimator: the trajectory of the sensor in continuous time over the last two scans, the error field of its
 /// Doppler and the error of the map, from Doppler and planes together. See docs/derivations/window.md.
 ///
@@ -74,7 +80,7 @@ class WindowEstimator {
   /// The first scan in a map; nothing of the past is kept but the error field. Velocities in sensor axes at the stamp.
   /// Throws UsageError when the calibration is that of another sensor.
   void begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor, const Eigen::Vector3d& velocity,
-             const std::optional<Eigen::Vector3d>& omega, const Workers& workers);
+             const StartOmega& start, const Workers& workers);
 
   /// The next scan. `start` is its pose where it is known better than by going on evenly (the second scan in a map).
   /// The second scan shows how the first one turned: `map` is laid anew then.
@@ -116,7 +122,7 @@ class WindowEstimator {
   static LearnedVariance::Prior scan_error_prior(double sigma_mps);
   void take(const WindowScan& scan);
   void linearise_here();
-  bool settle_first(const WindowScan& scan, const Workers& workers);
+  bool settle_first(const WindowScan& scan, double omega_sigma_rad_s, const Workers& workers);
   void advance(const WindowScan& scan);
   void iterate(const WindowScan& scan, const Scan& first_points, std::size_t first_new, mapping::PlaneMap& map,
                std::optional<PlaneTerms>& planes, WindowMotion& motion, const Workers& workers);
@@ -137,7 +143,7 @@ class WindowEstimator {
   [[nodiscard]] Eigen::VectorXd linear_gradient();
   [[nodiscard]] double scan_error_variance() const;
   [[nodiscard]] Problem terms_of_rest(const PlaneTerms* planes, std::size_t first_new, double stamp_variance) const;
-  [[nodiscard]] Problem start_terms(const WindowScan& scan) const;
+  [[nodiscard]] Problem start_terms(const WindowScan& scan, double omega_sigma_rad_s) const;
   [[nodiscard]] Problem scan_terms(const std::optional<PlaneTerms>& planes, std::size_t first_new) const;
   void tie_map_to_first_sweep(Problem& problem) const;
   [[nodiscard]] Eigen::MatrixXd displacement_rows(double time_s, const Layout& layout) const;

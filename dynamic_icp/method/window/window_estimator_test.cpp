@@ -145,7 +145,8 @@ DriveRun drive(const Drive& drive, int scans, const WindowConfig& config = {}, i
     now.static_points = drive.has_planes ? &scan : &nothing;
     if (k == 0) {
       first_points = *now.static_points;
-      run.estimator.begin(now, Eigen::Isometry3d::Identity(), twist(0.0).tail<3>(), std::nullopt, workers);
+      run.estimator.begin(now, Eigen::Isometry3d::Identity(), twist(0.0).tail<3>(),
+                          {Vector3d::Zero(), WindowConfig{}.start_omega_rad_s}, workers);
     } else {
       run.steps.push_back(
           step_of(run.estimator.update(now, first_points, map, std::nullopt, workers), run.estimator, k));
@@ -294,7 +295,7 @@ TEST(WindowEstimator, BeginsAnewWithWhatItLearned) {
   const std::vector<std::uint8_t> is_moving(scan.size(), 0);
   WindowScan now{10.0 * kPeriod_s, 0.0, kPeriod_s, &scan, &measured, &is_moving, &scan};
   run.estimator.sort(scan, Workers(1));
-  run.estimator.begin(now, path(1.0), twist(1.0).tail<3>(), Vector3d(twist(1.0).head<3>()), Workers(1));
+  run.estimator.begin(now, path(1.0), twist(1.0).tail<3>(), {twist(1.0).head<3>(), 0.01}, Workers(1));
   EXPECT_EQ(run.estimator.scans(), 1);
   EXPECT_LT((run.estimator.theta() - before).norm(), 0.1 * before.norm());
   EXPECT_LT((run.estimator.trajectory().pose(1.0).translation() - path(1.0).translation()).norm(), 1e-4);

@@ -86,7 +86,7 @@ WindowEstimator::Problem WindowEstimator::terms_of_rest(const PlaneTerms* planes
 }
 
 /// The terms of the first scan: where and when it is, and what is known of its motion.
-WindowEstimator::Problem WindowEstimator::start_terms(const WindowScan& scan) const {
+WindowEstimator::Problem WindowEstimator::start_terms(const WindowScan& scan, double omega_sigma_rad_s) const {
   Problem problem = terms_of_rest(nullptr, 0, kStartStamp_s * kStartStamp_s);
   const TrajectoryPoint point = trajectory_.at(scan.stamp_s);
   const double h = trajectory_.knot_spacing();
@@ -114,7 +114,7 @@ WindowEstimator::Problem WindowEstimator::start_terms(const WindowScan& scan) co
     }
   };
   add(point.weight, sigmas(kStartRotation, kStartPosition_m), coefficients_0_);
-  add(point.slope, sigmas(config_.start_omega_rad_s, kStartVelocity_mps), coefficients_0_);
+  add(point.slope, sigmas(omega_sigma_rad_s, kStartVelocity_mps), coefficients_0_);
   add(curvature, sigmas(kStartAlpha_rad_s2, kStartAcceleration_mps2), coefficients_0_);
   return problem;
 }
