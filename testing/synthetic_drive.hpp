@@ -10,17 +10,18 @@
 
 #include <Eigen/Cholesky>
 
-#include "dynamic_icp/method/odometry/map_odometry.hpp"
+#include "dynamic_icp/method/odometry/odometry.hpp"
 
 #include "testing/synthetic_street.hpp"
 
-// Drives through synthetic scenes with the map odometry, and how far it is from their equations.
+// Drives through synthetic scenes, and how far it is from their equations.
 namespace dynamic_icp::odometry::synthetic {
 
 constexpr double kPeriod_s = 0.1;
 
-inline MapOdometryConfig with_ablation(std::string_view name = "none") {
-  MapOdometryConfig config;
+template <class PipelineConfig>
+PipelineConfig with_ablation(std::string_view name = "none") {
+  PipelineConfig config;
   apply_ablation(config, name);
   return config;
 }
@@ -41,11 +42,11 @@ struct Drive {
 
   [[nodiscard]] RawScan scan(int k) const { return scan_at(world, path, sensor, k * period_s, seed).raw; }
 
-  [[nodiscard]] std::vector<Frame> run(const MapOdometryConfig& config, int scans, int threads = 1) const {
-    MapOdometry odometry(config, threads);
+  [[nodiscard]] std::vector<Frame> run(const Config& config, int scans, int threads = 1) const {
+    const auto odometry = make_odometry(config, {}, threads);
     std::vector<Frame> frames;
     for (int k = 0; k < scans; ++k) {
-      frames.push_back(odometry.process(scan(k)));
+      frames.push_back(odometry->process(scan(k)));
     }
     return frames;
   }

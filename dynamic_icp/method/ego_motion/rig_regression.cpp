@@ -279,7 +279,7 @@ EgoPrior as_ego_prior(const RigPrior& prior) {
   return single;
 }
 
-Eigen::Vector3d first_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
+AngularVelocity first_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
                                        std::span<const EgoVelocity> of_sensors) {
   Matrix6d information = Matrix6d::Zero();
   information.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / (kUnknownVelocity_mps * kUnknownVelocity_mps));
@@ -292,10 +292,11 @@ Eigen::Vector3d first_angular_velocity(std::span<const Eigen::Isometry3d> mounti
     information += J.transpose() * weight * J;
     right += J.transpose() * weight * of_sensors[k].velocity_sensor;
   }
-  return information.ldlt().solve(right).tail<3>();
+  const Matrix6d covariance = information.ldlt().solve(Matrix6d::Identity());
+  return {(covariance * right).tail<3>(), covariance.bottomRightCorner<3, 3>()};
 }
 
-Eigen::Vector3d first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
+AngularVelocity first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
                                        const DriftConfig& drift, const Workers& workers) {
   std::vector<EgoVelocity> of_sensors;
   for (const std::vector<std::uint32_t>& rows : rows_by_sensor(scan)) {

@@ -69,11 +69,11 @@ struct RigEstimate {
 
 /// Angular velocity of a rig of which nothing is known, from the velocities that each of its sensors shows alone:
 /// v_k = v + omega x l_k, with omega near zero where the lever arms leave it open.
-Eigen::Vector3d first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
+AngularVelocity first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
                                        const DriftConfig& drift, const Workers& workers);
 
 /// The same where these velocities are known already: one per mounting, in the axes of the common frame.
-Eigen::Vector3d first_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
+AngularVelocity first_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
                                        std::span<const EgoVelocity> of_sensors);
 
 /// Fits v, a, omega, alpha and b jointly to the rows near `start`, the velocity that the consensus regression found in

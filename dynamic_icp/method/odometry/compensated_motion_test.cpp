@@ -46,11 +46,16 @@ TEST(CompensatedMotion, AVelocityIsThatOfTheMotion) {
   EXPECT_NEAR(propagate(found, 0.1).covariance(1, 1), 1e-2 + 0.09, 1e-12) << "3 m/s^2 for 0.1 s are 0.3 m/s";
 }
 
-TEST(CompensatedMotion, TheMapOdometryFollowsALivelyDriveAndItsObjects) {
+template <class PipelineConfig>
+class CompensatedMotionWithAMap : public testing::Test {};
+using Pipelines = testing::Types<WindowOdometryConfig, MapOdometryConfig>;
+TYPED_TEST_SUITE(CompensatedMotionWithAMap, Pipelines);
+
+TYPED_TEST(CompensatedMotionWithAMap, FollowsALivelyDriveAndItsObjects) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
     const Drive drive{street_with_cars(), agile(10.0), sensor};
-    MapOdometry odometry(with_ablation(), 2);
-    const std::vector<Frame> frames = run(drive, odometry, 16);
+    const auto odometry = make_odometry(with_ablation<TypeParam>(), {}, 2);
+    const std::vector<Frame> frames = run(drive, *odometry, 16);
     const MotionError error = rms_error(drive, frames, 3);
     EXPECT_LT(error.move_m, 0.02) << sensor.sweep_s;
     EXPECT_LT(error.turn_deg, 0.1) << sensor.sweep_s;
@@ -66,10 +71,10 @@ TEST(CompensatedMotion, TheMapOdometryFollowsALivelyDriveAndItsObjects) {
   }
 }
 
-TEST(CompensatedMotion, ATunnelIsHonestAboutWhatItDoesNotKnow) {
+TYPED_TEST(CompensatedMotionWithAMap, ATunnelIsHonestAboutWhatItDoesNotKnow) {
   const Drive drive{tunnel(), circle(12.0, 0.0), {}};
-  MapOdometry odometry(with_ablation(), 1);
-  const std::vector<Frame> frames = run(drive, odometry, 6);
+  const auto odometry = make_odometry(with_ablation<TypeParam>(), {}, 1);
+  const std::vector<Frame> frames = run(drive, *odometry, 6);
   EXPECT_EQ(frames.back().status, FrameStatus::kDegenerate) << "smooth walls hold nothing along the way";
 }
 
@@ -107,7 +112,7 @@ TEST(CompensatedMotion, DopplerIcpIsLeftWithItsGeometry) {
 }
 
 TEST(CompensatedMotion, IsSaid) {
-  for (const Config& config : {Config(PaperConfig{}), Config(MapOdometryConfig{})}) {
+  for (const Config& config : {Config(PaperConfig{}), Config(MapOdometryConfig{}), Config(WindowOdometryConfig{})}) {
     SensorContext context;
     EXPECT_TRUE(make_odometry(config, context, 1)->assumptions().empty());
     context.doppler_kind = DopplerKind::kCompensated;

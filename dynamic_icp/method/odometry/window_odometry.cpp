@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <utility>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
@@ -21,6 +22,7 @@
 #include "dynamic_icp/method/odometry/map_agreement.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
 #include "dynamic_icp/method/registration/gauss_newton.hpp"
+#include "dynamic_icp/method/registration/translation_search.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
@@ -42,6 +44,12 @@ constexpr double kTraffic_mps = 3.0;
 
 // How far the second scan may be from where the first velocity leads.
 constexpr double kSecondPosition_m = 0.05;
+constexpr double kSearchedPosition_m = 0.2;  // where no Doppler tells
+
+/// The motion of the sensor as it was last.
+window::TrajectoryPoint end_of(const window::SplineTrajectory& trajectory) {
+  return trajectory.at(trajectory.interval_begin(trajectory.coefficients().size() - 3));
+}
 
 double match(const window::WindowMotion& motion) {
   return motion.points > 0 ? motion.planes.matched / static_cast<double>(motion.points) : 0.0;
@@ -90,10 +98,10 @@ Frame WindowOdometry::process(const ScanView& raw) {
   clock.finish(Stage::kEgoMotion);
 
   if (found == FrameStatus::kFirst) {
-    begin(now, Eigen::Isometry3d::Identity(), {Eigen::Vector3d::Zero(), config_.window.start_omega_rad_s});
+    begin(now, Eigen::Isometry3d::Identity(), start_omega());
   } else if (found == FrameStatus::kTimeGap) {
     predict_only(stamp_s, found, frame);
-    begin(now, frame.T_world_sensor, {Eigen::Vector3d::Zero(), config_.window.start_omega_rad_s});
+    begin(now, frame.T_world_sensor, start_omega());
   } else {
     update(now, frame);
   }
@@ -130,6 +138,7 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
         estimator_.sort(whole, workers_);
         estimator_.field_errors(whole, workers_, memory_.errors);
         workers_.for_each(whole.size(), kBlock, [&](std::size_t i) { whole.shift_doppler(i, -memory_.errors[i]); });
+        take_out_lever_arms();
         ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
                                     memory_.rows);
         memory_.rows.on_support =
@@ -138,15 +147,28 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
   frame.points_used = memory_.thinned.size();
 }
 
+/// What the rotation adds to the Doppler of the sensors of a rig: the consensus is about one velocity.
+void WindowOdometry::take_out_lever_arms() {
+  Scan& whole = memory_.whole;
+  lever_arms_.reset();
+  if (!whole.is_of_rig() || whole.doppler_kind() != DopplerKind::kRelative) {
+    return;
+  }
+  rig_rotation_ =
+      ego_motion::first_angular_velocity(whole, config_.ego_motion.consensus, config_.ego_motion.drift, workers_);
+  lever_arms_.emplace();
+  lever_arms_->omega = estimator_.scans() > 0 ? end_of(estimator_.trajectory()).omega : rig_rotation_.omega;
+  lever_arms_->bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(whole.mountings().size()));
+  ego_motion::reduce_to_origin(whole, *lever_arms_, workers_);
+}
+
 ego_motion::EgoPrior WindowOdometry::ego_prior() const {
   ego_motion::EgoPrior prior;
   if (estimator_.scans() == 0) {
     prior = ego_motion::first_prior(config_.ego_motion.drift);
   } else {
-    const window::SplineTrajectory& trajectory = estimator_.trajectory();
-    const double end_s = trajectory.interval_begin(trajectory.coefficients().size() - 3);
     prior.has_velocity = true;
-    prior.mean.head<3>() = trajectory.at(end_s).velocity;
+    prior.mean.head<3>() = end_of(estimator_.trajectory()).velocity;
     prior.covariance =
         ego_motion::Vector7d(
             ego_motion::Vector7d{{kVelocitySigma_mps, kVelocitySigma_mps, kVelocitySigma_mps, kAccelerationSigma_mps2,
@@ -158,12 +180,24 @@ ego_motion::EgoPrior WindowOdometry::ego_prior() const {
   return prior;
 }
 
+/// Where no Doppler tells: the velocity at the end of the trajectory.
+ego_motion::EgoVelocity WindowOdometry::velocity_before() const {
+  ego_motion::EgoVelocity ego = unknown_velocity();
+  if (estimator_.scans() > 1) {
+    ego.velocity_sensor = end_of(estimator_.trajectory()).velocity;
+  }
+  return ego;
+}
+
 /// What is static, by the velocity that most of the scene agrees on.
 void WindowOdometry::separate_static_points() {
   const Scan& whole = memory_.whole;
   const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
   ego_ = is_relative ? ego_motion::estimate_velocity(memory_.rows, ego_prior(), config_.ego_motion.consensus, workers_)
-                     : unknown_velocity();
+                     : velocity_before();
+  if (lever_arms_) {
+    ego_.rotation = rig_rotation_;
+  }
   clear_scans_ = ego_.status == ego_motion::EgoVelocityStatus::kAmbiguous ? 0 : std::min(kClearScans, clear_scans_ + 1);
   const ego_motion::EgoVelocity in_doppler = is_relative ? ego_ : static_frame(whole);
   ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
@@ -173,6 +207,9 @@ void WindowOdometry::separate_static_points() {
         memory_.rows, ego_, estimator_.point_noise().value_or(ego_.inlier_rms_mps), config_.ego_motion.static_sigmas);
     workers_.for_each(whole.size(), kBlock,
                       [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
+  }
+  if (lever_arms_) {
+    ego_motion::reduce_to_origin(memory_.whole, *lever_arms_, workers_, -1.0);
   }
   static_points_ = whole.select(static_rows(memory_.thinned, memory_.is_moving));
 }
@@ -198,6 +235,11 @@ void WindowOdometry::begin(const window::WindowScan& now, const Eigen::Isometry3
   first_points_ = static_points_;
 }
 
+/// Before the first scan in a map.
+window::StartOmega WindowOdometry::start_omega() const {
+  return {lever_arms_ ? lever_arms_->omega : Eigen::Vector3d::Zero(), config_.window.start_omega_rad_s};
+}
+
 /// Where the second scan is: its rotation is not known yet.
 std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::WindowScan& now) const {
   const double dt_s = now.stamp_s - estimator_.stamp_s();
@@ -210,10 +252,21 @@ std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::Win
   prior.covariance = rotation.covariance;
   prior.sweep.velocity = ego_.velocity_sensor - ego_.reference_time_s * ego_.acceleration_sensor;
   prior.sweep.acceleration = ego_.acceleration_sensor;
+  double position_sigma_m = kSecondPosition_m;
+  if (now.measured == nullptr) {
+    const registration::PreparedTarget target = registration::search_target(static_points_, workers_);
+    const registration::InitialTranslation translation =
+        registration::search_translation(first_points_, target.target(), dt_s, {}, workers_);
+    if (!translation.is_unambiguous) {
+      return std::nullopt;
+    }
+    prior.sweep.velocity = motion::mean_twist(translation.T_target_source.inverse(), dt_s).tail<3>();
+    position_sigma_m = kSearchedPosition_m;
+  }
   const Eigen::Vector3d half = 0.5 * dt_s * prior.sweep.velocity;
   prior.displacement_fixed = T_map_last * half;
   prior.displacement_rotated = half;
-  prior.translation_covariance = kSecondPosition_m * kSecondPosition_m * Eigen::Matrix3d::Identity();
+  prior.translation_covariance = position_sigma_m * position_sigma_m * Eigen::Matrix3d::Identity();
   const mapping::MapAlignment found =
       mapping::search_and_align(*now.static_points, map_, prior, config_.map_align, workers_);
   if (found.diverged || found.matched < kMinAgreement * static_cast<double>(found.on_planes)) {
@@ -227,8 +280,7 @@ void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
   if (estimator_.scans() == 1 && config_.search_start) {
     start = search_second(now);
   }
-  const window::SplineTrajectory& trajectory = estimator_.trajectory();
-  const window::TrajectoryPoint last = trajectory.at(trajectory.interval_begin(trajectory.coefficients().size() - 3));
+  const window::TrajectoryPoint last = end_of(estimator_.trajectory());
   const double dt_s = now.stamp_s - estimator_.stamp_s();
   const bool is_second = estimator_.scans() == 1;
   const window::WindowMotion motion = estimator_.update(now, first_points_, map_, start, workers_);
@@ -307,6 +359,8 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   ego_.velocity_sensor = sweep.velocity_at(ego_.reference_time_s);
   ego_.acceleration_sensor = sweep.acceleration;
   ego_.covariance = estimator_.twist().covariance.bottomRightCorner<3, 3>();
+  ego_.bias_mps = std::accumulate(memory_.errors.begin(), memory_.errors.end(), 0.0) /
+                  static_cast<double>(std::max<std::size_t>(1, memory_.errors.size()));
   if (now.measured == nullptr) {
     ego_.status = ego_motion::EgoVelocityStatus::kFromMotion;
     ego_.unobservable.setZero();

@@ -8,6 +8,7 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
+#include "dynamic_icp/method/ego_motion/rig_regression.hpp"
 #include "dynamic_icp/method/mapping/map_alignment.hpp"
 #include "dynamic_icp/method/mapping/plane_map.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
@@ -56,9 +57,12 @@ class WindowOdometry final : public Odometry {
   void separate_static_points();
   [[nodiscard]] ego_motion::VelocityFilterConfig filter_for(const ego_motion::EgoVelocity& ego) const;
   [[nodiscard]] window::WindowScan scan_at(double stamp_s) const;
+  void take_out_lever_arms();
   [[nodiscard]] ego_motion::EgoPrior ego_prior() const;
+  [[nodiscard]] ego_motion::EgoVelocity velocity_before() const;
   void begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor, const window::StartOmega& omega);
   void update(const window::WindowScan& now, Frame& frame);
+  [[nodiscard]] window::StartOmega start_omega() const;
   [[nodiscard]] std::optional<Eigen::Isometry3d> search_second(const window::WindowScan& now) const;
   void renew_bent_map(const window::WindowScan& now, bool is_second, const Frame& frame);
   void describe(const window::WindowMotion& motion, double dt_s, Frame& frame) const;
@@ -73,6 +77,8 @@ class WindowOdometry final : public Odometry {
   ScanMemory memory_;
   Scan static_points_;
   ego_motion::EgoVelocity ego_;
+  ego_motion::AngularVelocity rig_rotation_;          ///< of a rig, by its Doppler alone
+  std::optional<ego_motion::RigDoppler> lever_arms_;  ///< out of a rig's Doppler while static points are found
   mapping::PlaneMap map_;
   window::WindowEstimator estimator_;
   Scan first_points_;  ///< the only scan in the map, until the next one shows how it turned

@@ -45,7 +45,7 @@ double WindowEstimator::learn_stamps() {
 
 /// And what all Doppler values of a scan have in common.
 double WindowEstimator::learn_scan_errors() {
-  if (!doppler_) {
+  if (!doppler_ || !config_.use_doppler) {
     return 0.0;
   }
   const Eigen::VectorXd by_rest = scan_error_.by_unknowns.tail(rest_factor_.size());

@@ -1,13 +1,10 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/method/odometry/rig_velocity.hpp"
 
 #include <vector>
 
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
-
-#include "dynamic_icp/method/odometry/map_odometry.hpp"
 
 #include "testing/synthetic_drive.hpp"
 #include "testing/synthetic_rig.hpp"
@@ -17,25 +14,32 @@ namespace {
 
 using namespace synthetic;
 
+/// What both pipelines with a map must do.
+template <class PipelineConfig>
+class RigWithAMap : public testing::Test {};
+using Pipelines = testing::Types<WindowOdometryConfig, MapOdometryConfig>;
+TYPED_TEST_SUITE(RigWithAMap, Pipelines);
+
 RawScan rig_scan(const Drive& drive, const Mountings& mountings, const std::vector<double>& bias_mps, int k) {
   return synthetic::rig_scan(drive.world, drive.path, drive.sensor, mountings, bias_mps, k * drive.period_s,
                              drive.seed);
 }
 
+template <class PipelineConfig>
 std::vector<Frame> run(const Drive& drive, const Mountings& mountings, const std::vector<double>& bias_mps, int scans) {
-  MapOdometry odometry(with_ablation(), 2);
+  const auto odometry = make_odometry(with_ablation<PipelineConfig>(), {}, 2);
   std::vector<Frame> frames;
   for (int k = 0; k < scans; ++k) {
-    frames.push_back(odometry.process(rig_scan(drive, mountings, bias_mps, k)));
+    frames.push_back(odometry->process(rig_scan(drive, mountings, bias_mps, k)));
   }
   return frames;
 }
 
-TEST(RigVelocity, LeverArmsDoNotPullInABend) {
+TYPED_TEST(RigWithAMap, LeverArmsDoNotPullInABend) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
     // 8 m/s and 0.6 rad/s: a sensor 1.5 m ahead of the origin moves sideways by 0.9 m/s, 9 cm a scan.
     const Drive drive{street(), circle(8.0, 0.6), sensor};
-    const std::vector<Frame> frames = run(drive, kFrontPair, {}, 12);
+    const std::vector<Frame> frames = run<TypeParam>(drive, kFrontPair, {}, 12);
     const MotionError error = rms_error(drive, frames, 2);
     EXPECT_LT(error.move_m, 0.004) << sensor.sweep_s;
     EXPECT_LT(error.turn_deg, 0.05) << sensor.sweep_s;
@@ -44,10 +48,10 @@ TEST(RigVelocity, LeverArmsDoNotPullInABend) {
   }
 }
 
-TEST(RigVelocity, TheDopplerAloneShowsTheRotationAsWellAsItSays) {
+TYPED_TEST(RigWithAMap, TheDopplerAloneShowsTheRotationAsWellAsItSays) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
     const Drive drive{street_with_cars(), agile(10.0), sensor};
-    const std::vector<Frame> frames = run(drive, kAround, {}, 20);
+    const std::vector<Frame> frames = run<TypeParam>(drive, kAround, {}, 20);
     double nees = 0.0;
     for (int k = 4; k < 20; ++k) {
       const ego_motion::AngularVelocity& rotation = frames[static_cast<std::size_t>(k)].ego.rotation.value();
@@ -60,23 +64,23 @@ TEST(RigVelocity, TheDopplerAloneShowsTheRotationAsWellAsItSays) {
   }
 }
 
-TEST(RigVelocity, ScansWithoutMountingsInBetweenAreOfTheSameFrame) {
+TEST(MapOdometry, ScansWithoutMountingsInBetweenAreOfTheSameFrame) {
   const Drive drive{street(), circle(8.0, 0.0), Sensor{}};
-  MapOdometry odometry(with_ablation(), 2);
+  const auto odometry = make_odometry(with_ablation<MapOdometryConfig>(), {}, 2);
   std::vector<Frame> frames;
   for (int k = 0; k < 8; ++k) {
     RawScan raw = rig_scan(drive, kFrontPair, {}, k);
     if (k >= 4) {
       raw.mountings.clear();  // a driver that forgets them; straight on, lever arms do not show
     }
-    frames.push_back(odometry.process(raw));
+    frames.push_back(odometry->process(raw));
   }
   EXPECT_LT(rms_error(drive, frames, 2).move_m, 0.004);
 }
 
-TEST(RigVelocity, EachSensorMayHaveAnErrorOfItsOwn) {
+TYPED_TEST(RigWithAMap, EachSensorMayHaveAnErrorOfItsOwn) {
   const Drive drive{street(), circle(8.0, 0.3), Sensor{}};
-  const std::vector<Frame> frames = run(drive, kAround, {0.2, -0.1, 0.05, 0.15}, 16);
+  const std::vector<Frame> frames = run<TypeParam>(drive, kAround, {0.2, -0.1, 0.05, 0.15}, 16);
   EXPECT_LT(rms_error(drive, frames, 6).move_m, 0.004);
 }
 
