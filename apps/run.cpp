@@ -192,7 +192,7 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
                   runs::MapWriter::kMinVoxelSize_m, runs::MapWriter::kMaxVoxelSize_m, options->settings.map_voxel_m))
       ->needs(save_map);
   add_option(*command, "--calibration", options->settings.calibration, "FILE",
-             "What was learned of this sensor in another run with --preset window: its calibration.yaml");
+             "What was learned of this sensor in another run with --preset default: its calibration.yaml");
   command->add_flag("--report", options->report,
                     "Write report.html into the results, and the labels that it shows (--save-labels)");
   command->add_flag("--force", options->settings.replace, "Replace an earlier run in DIR, which may hold nothing else");

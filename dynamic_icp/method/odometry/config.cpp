@@ -267,9 +267,9 @@ void check(const Config& config) {
 
 const std::vector<Pipeline>& pipelines() {
   using registration::GeometryTerm;
-  static const std::vector<Pipeline> all = {{"dynamic-icp", "default", MapOdometryConfig{}},
+  static const std::vector<Pipeline> all = {{"dynamic-icp", "default", WindowOdometryConfig{}},
                                             {"dynamic-icp", "paper", PaperConfig{}},
-                                            {"dynamic-icp", "window", WindowOdometryConfig{}},
+                                            {"dynamic-icp", "fast", MapOdometryConfig{}},
                                             {"doppler-icp", "", DopplerIcpConfig{}},
                                             {"point-to-point", "", icp(GeometryTerm::kPointToPoint)},
                                             {"point-to-plane", "", icp(GeometryTerm::kPointToPlane)},

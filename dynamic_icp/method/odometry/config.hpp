@@ -79,7 +79,8 @@ struct EgoMotionConfig {
   double static_sigmas = 4.0;  ///< a point moves only beyond so many standard deviations of the static Doppler
 };
 
-/// Dynamic-ICP beyond the paper, with a local map: preset `default`.
+/// Dynamic-ICP beyond the paper as a chain of filters, for sensors with a constant Doppler error at most: preset
+/// `fast`.
 struct MapOdometryConfig {
   PreprocessConfig preprocess;
   EgoMotionConfig ego_motion;
@@ -100,7 +101,7 @@ struct MapOdometryConfig {
 ConfigFields fields(MapOdometryConfig& config);
 void check(const MapOdometryConfig& config);
 
-/// Dynamic-ICP with one estimator of motion and Doppler errors: preset `window`.
+/// Dynamic-ICP with one estimator of motion and Doppler errors: preset `default`.
 struct WindowOdometryConfig {
   PreprocessConfig preprocess;
   EgoMotionConfig ego_motion;
@@ -168,7 +169,7 @@ ConfigFields fields(KissIcpConfig& config);
 void check(const KissIcpConfig& config);
 
 /// The configuration of any pipeline; `Config{}` is preset `default`.
-using Config = std::variant<MapOdometryConfig, PaperConfig, WindowOdometryConfig, ScanToScanIcpConfig, DopplerIcpConfig,
+using Config = std::variant<WindowOdometryConfig, MapOdometryConfig, PaperConfig, ScanToScanIcpConfig, DopplerIcpConfig,
                             KissIcpConfig>;
 
 ConfigFields fields(Config& config);
@@ -177,7 +178,7 @@ void check(const Config& config);
 /// A pipeline as a user calls it.
 struct Pipeline {
   std::string_view method;
-  std::string_view preset;  ///< "default" or "paper" for dynamic-icp; empty for methods that have no presets
+  std::string_view preset;  ///< "default", "fast" or "paper" for dynamic-icp; empty for methods that have no presets
   Config config;
 };
 
@@ -193,16 +194,16 @@ std::span<const std::pair<std::string_view, std::string_view>> renamed_keys();
 std::vector<std::string_view> preset_names();
 
 /// The configuration of a method by name. The preset is that of dynamic-icp: "default" is the best this program can do;
-/// "paper" is the paper's method with its published values and nothing added. Throws UsageError with the known names
-/// for any other.
+/// "fast" takes less time and expects a sensor whose Doppler is off by a constant at most; "paper" is the paper's
+/// method with its published values and nothing added. Throws UsageError with the known names for any other.
 Config configuration(std::string_view method, std::string_view preset = "default");
 
 /// Switches a part off: "none"; as in the paper's ablation study "no-vf" (no velocity filter: all points count as
 /// static), "no-dpp" (no prediction: moving points are left out; with the local map: no tracking), "no-dr" (no Doppler
-/// term in the alignment); with the local map also "no-consensus" (Huber regression of the ego velocity), "no-bias" (no
-/// Doppler bias), "no-deskew", "no-map" (only the last scan), "no-search" (first pair from one start);
-/// with preset "window" also "no-planes", "no-support" and "no-vibration". Throws UsageError for other names, and for
-/// parts the pipeline does not have.
+/// term in the alignment); with the local map also "no-bias" (no error of the Doppler is looked for), "no-deskew",
+/// "no-map" (only the last scan), "no-search" (first pair from one start); with preset "default" "no-planes",
+/// "no-support" and "no-vibration", with preset "fast" "no-consensus" (Huber regression of the ego velocity). Throws
+/// UsageError for other names, and for parts the pipeline does not have.
 void apply_ablation(Config& config, std::string_view name);
 void apply_ablation(PaperConfig& config, std::string_view name);
 void apply_ablation(MapOdometryConfig& config, std::string_view name);

@@ -67,7 +67,7 @@ std::vector<std::string> texts(Config config) {
 
 TEST(OdometryConfig, AnEmptyOneIsPresetDefault) {
   EXPECT_EQ(texts({}), texts(configuration("dynamic-icp")));
-  EXPECT_TRUE(std::holds_alternative<MapOdometryConfig>(Config{}));
+  EXPECT_TRUE(std::holds_alternative<WindowOdometryConfig>(Config{}));
   EXPECT_TRUE(std::holds_alternative<PaperConfig>(configuration("dynamic-icp", "paper")));
 }
 

@@ -24,7 +24,7 @@
 
 namespace dynamic_icp::odometry {
 
-/// Preset `default` of Dynamic-ICP. The Doppler of the static scene gives the velocity, and the velocities of three
+/// Preset `fast` of Dynamic-ICP. The Doppler of the static scene gives the velocity, and the velocities of three
 /// scans the translation from one to the next; the static points, aligned to a local map of planes, give the turn and
 /// hold the position. Moving objects are tracked beside it. See docs/method.md, "Beyond the paper".
 ///

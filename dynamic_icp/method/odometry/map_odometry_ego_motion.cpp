@@ -1,7 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 
-// Preset `default`: the velocity of the sensor from its Doppler, and what is static.
+// Preset `fast`: the velocity of the sensor from its Doppler, and what is static.
 #include <algorithm>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"

@@ -63,7 +63,7 @@ std::unique_ptr<Odometry> make_odometry(const Config& config, const SensorContex
   }
   if (context.calibration && !std::holds_alternative<WindowOdometryConfig>(config)) {
     throw UsageError(
-        "a calibration of the sensor is for preset 'window' of dynamic-icp alone: no other method learns one");
+        "a calibration of the sensor is for preset 'default' of dynamic-icp alone: no other method learns one");
   }
   return std::visit(Maker{context, threads}, config);
 }

@@ -39,7 +39,7 @@ struct SensorContext {
   std::optional<Eigen::Isometry3d> T_vehicle_sensor;  ///< mounting of the sensor, where the recording has it
   /// What the Doppler of the scans will be, for `assumptions`; each scan says itself what is done with it.
   DopplerKind doppler_kind = DopplerKind::kRelative;
-  /// What was learned of this sensor in another recording; for preset `window`. With that of another sensor the first
+  /// What was learned of this sensor in another recording; for preset `default`. With that of another sensor the first
   /// scan throws UsageError.
   std::optional<window::SensorCalibration> calibration = {};
 };

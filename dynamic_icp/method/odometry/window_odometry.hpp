@@ -21,7 +21,7 @@
 
 namespace dynamic_icp::odometry {
 
-/// Preset `window` of Dynamic-ICP: one estimator of trajectory, error field of the Doppler and map error, from Doppler
+/// Preset `default` of Dynamic-ICP: one estimator of trajectory, error field of the Doppler and map error, from Doppler
 /// and planes together (window_estimator.hpp). A consensus regression finds what is static; moving objects are tracked
 /// beside it.
 ///
