@@ -46,7 +46,7 @@ TEST_F(CommandLine, KeysOfTheLastReleaseAreReadWithANote) {
 
 TEST_F(CommandLine, ASwitchMayBringInKeys) {
   const std::string key = "ego_motion.regression.max_iterations";
-  run_and_summarise("--max-frames 2 --ablation no-consensus --set " + key + "=7 " + street().string());
+  run_and_summarise("--max-frames 2 --preset fast --ablation no-consensus --set " + key + "=7 " + street().string());
   EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"][key], 7);
 }
 

@@ -83,8 +83,8 @@ TEST_F(Output, ForceReplacesAllThatTheProgramWrites) {
     write_file(out + "/report.html", "as report makes it");
   }
   ASSERT_EQ(run(street().string(), out, "--force").status, kDone);
-  EXPECT_EQ(names_in(out),
-            (std::vector<std::string>{"frames.jsonl", "objects.jsonl", "run.json", "summary.json", "trajectory.tum"}));
+  EXPECT_EQ(names_in(out), (std::vector<std::string>{"calibration.yaml", "frames.jsonl", "objects.jsonl", "run.json",
+                                                     "summary.json", "trajectory.tum"}));
   for (const char* layout : {"dicp", "npz", "pcd", "ply"}) {
     const Outcome converted = run_program("convert --quiet --force " + street().string() + " --to " + layout +
                                           " --output " + at("converted"));
@@ -165,7 +165,7 @@ TEST_F(Output, AnEmptyMountPointIsFilled) {
     const Outcome made = run(street().string(), disk_.string(), more);
     EXPECT_EQ(made.status, kDone) << made.text;
   }
-  EXPECT_EQ(names_in(disk_).size(), 5u);
+  EXPECT_EQ(names_in(disk_).size(), 6u);
   expect(run(street().string(), disk_.string()), kFailed, "--force");
 }
 
@@ -178,7 +178,7 @@ TEST_F(Output, TheFolderOfTheShellStaysWhereItIs) {
     EXPECT_EQ(made.status, kDone) << made.text;
     EXPECT_TRUE(json::accept(made.text)) << made.text;
   }
-  EXPECT_EQ(names_in(folder_ / "here").size(), 5u);
+  EXPECT_EQ(names_in(folder_ / "here").size(), 6u);
 }
 
 TEST_F(Output, ClosedStreamsAreNoPlaceForFiles) {

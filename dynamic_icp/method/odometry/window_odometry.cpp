@@ -42,6 +42,9 @@ constexpr double kMaxSweep_s = 0.5;
 constexpr int kClearScans = 5;
 constexpr double kTraffic_mps = 3.0;
 
+// Where less of the second scan fits the map of the first, one scan alone makes no map.
+constexpr double kMapOfOneScan = 0.1;
+
 // How far the second scan may be from where the first velocity leads.
 constexpr double kSecondPosition_m = 0.05;
 constexpr double kSearchedPosition_m = 0.2;  // where no Doppler tells
@@ -230,6 +233,7 @@ window::WindowScan WindowOdometry::scan_at(double stamp_s) const {
 void WindowOdometry::begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor,
                            const window::StartOmega& omega) {
   map_.clear();
+  is_map_renewed_ = false;
   usual_match_ = 0.0;
   estimator_.begin(now, T_map_sensor, ego_.velocity_sensor, omega, workers_);
   first_points_ = static_points_;
@@ -303,12 +307,15 @@ void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
 /// themselves to it. The first scan whose rotation is known begins the map anew.
 void WindowOdometry::renew_bent_map(const window::WindowScan& now, bool is_second, const Frame& frame) {
   const bool is_unknown = frame.status == FrameStatus::kDegenerate;
-  if (is_map_bent_ && !is_unknown) {
+  if (is_second) {
+    is_map_bent_ = is_unknown && !is_map_renewed_ && usual_match_ > kMapOfOneScan;
+  } else if (is_map_bent_ && !is_unknown) {
     const motion::Twist twist = estimator_.twist();
     const double variance = twist.covariance.topLeftCorner<3, 3>().trace() / 3.0;
     begin(now, frame.T_world_sensor, {twist.angular, std::sqrt(variance)});
+    is_map_bent_ = false;
+    is_map_renewed_ = true;
   }
-  is_map_bent_ = is_unknown && (is_second || is_map_bent_);
 }
 
 /// What the frame says of a motion.

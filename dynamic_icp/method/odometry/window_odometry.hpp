@@ -87,8 +87,9 @@ class WindowOdometry final : public Odometry {
   Eigen::Isometry3d T_world_sensor_ = Eigen::Isometry3d::Identity();
   double stamp_s_ = 0.0;
   double usual_match_ = 0.0;
-  bool is_map_bent_ = false;  ///< its first scan was laid down without knowing how it turned
-  int clear_scans_;           ///< since two motions explained the Doppler equally well
+  bool is_map_bent_ = false;     ///< its first scan was laid down without knowing how it turned
+  bool is_map_renewed_ = false;  ///< it began anew for that
+  int clear_scans_;              ///< since two motions explained the Doppler equally well
 };
 
 }  // namespace dynamic_icp::odometry
