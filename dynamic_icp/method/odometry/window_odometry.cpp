@@ -4,14 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numeric>
 #include <utility>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
-#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
-#include "dynamic_icp/method/ego_motion/creeping_cells.hpp"
 #include "dynamic_icp/method/ego_motion/support_plane.hpp"
-#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/mapping/rotation_search.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/motion/motion_uncertainty.hpp"
@@ -29,17 +25,10 @@ namespace {
 
 constexpr std::size_t kBlock = 4096;
 
-// How far the velocity of the sensor may be from the last one: m/s.
-constexpr double kVelocitySigma_mps = 0.5;
-constexpr double kAccelerationSigma_mps2 = 3.0;
-constexpr double kNoBias_mps = 1e-3;
-
 // No sensor sweeps for longer.
 constexpr double kMaxSweep_s = 0.5;
 
-// Traffic that most of a scan shows is followed as if it stood, and then prefers itself: so many scans must be clear
-// before a motion counts as that of the sensor. Till then it may be that of the traffic, m/s.
-constexpr int kClearScans = 5;
+// The velocity of traffic that may be followed for that of the sensor, m/s.
 constexpr double kTraffic_mps = 3.0;
 
 // Where less of the second scan fits the map of the first, one scan alone makes no map.
@@ -48,11 +37,6 @@ constexpr double kMapOfOneScan = 0.1;
 // How far the second scan may be from where the first velocity leads.
 constexpr double kSecondPosition_m = 0.05;
 constexpr double kSearchedPosition_m = 0.2;  // where no Doppler tells
-
-/// The motion of the sensor as it was last.
-window::TrajectoryPoint end_of(const window::SplineTrajectory& trajectory) {
-  return trajectory.at(trajectory.interval_begin(trajectory.coefficients().size() - 3));
-}
 
 double match(const window::WindowMotion& motion) {
   return motion.points > 0 ? motion.planes.matched / static_cast<double>(motion.points) : 0.0;
@@ -150,73 +134,6 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
   frame.points_used = memory_.thinned.size();
 }
 
-/// What the rotation adds to the Doppler of the sensors of a rig: the consensus is about one velocity.
-void WindowOdometry::take_out_lever_arms() {
-  Scan& whole = memory_.whole;
-  lever_arms_.reset();
-  if (!whole.is_of_rig() || whole.doppler_kind() != DopplerKind::kRelative) {
-    return;
-  }
-  rig_rotation_ =
-      ego_motion::first_angular_velocity(whole, config_.ego_motion.consensus, config_.ego_motion.drift, workers_);
-  lever_arms_.emplace();
-  lever_arms_->omega = estimator_.scans() > 0 ? end_of(estimator_.trajectory()).omega : rig_rotation_.omega;
-  lever_arms_->bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(whole.mountings().size()));
-  ego_motion::reduce_to_origin(whole, *lever_arms_, workers_);
-}
-
-ego_motion::EgoPrior WindowOdometry::ego_prior() const {
-  ego_motion::EgoPrior prior;
-  if (estimator_.scans() == 0) {
-    prior = ego_motion::first_prior(config_.ego_motion.drift);
-  } else {
-    prior.has_velocity = true;
-    prior.mean.head<3>() = end_of(estimator_.trajectory()).velocity;
-    prior.covariance =
-        ego_motion::Vector7d(
-            ego_motion::Vector7d{{kVelocitySigma_mps, kVelocitySigma_mps, kVelocitySigma_mps, kAccelerationSigma_mps2,
-                                  kAccelerationSigma_mps2, kAccelerationSigma_mps2, kNoBias_mps}}
-                .cwiseAbs2())
-            .asDiagonal();
-  }
-  prior.covariance(6, 6) = kNoBias_mps * kNoBias_mps;
-  return prior;
-}
-
-/// Where no Doppler tells: the velocity at the end of the trajectory.
-ego_motion::EgoVelocity WindowOdometry::velocity_before() const {
-  ego_motion::EgoVelocity ego = unknown_velocity();
-  if (estimator_.scans() > 1) {
-    ego.velocity_sensor = end_of(estimator_.trajectory()).velocity;
-  }
-  return ego;
-}
-
-/// What is static, by the velocity that most of the scene agrees on.
-void WindowOdometry::separate_static_points() {
-  const Scan& whole = memory_.whole;
-  const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
-  ego_ = is_relative ? ego_motion::estimate_velocity(memory_.rows, ego_prior(), config_.ego_motion.consensus, workers_)
-                     : velocity_before();
-  if (lever_arms_) {
-    ego_.rotation = rig_rotation_;
-  }
-  clear_scans_ = ego_.status == ego_motion::EgoVelocityStatus::kAmbiguous ? 0 : std::min(kClearScans, clear_scans_ + 1);
-  const ego_motion::EgoVelocity in_doppler = is_relative ? ego_ : static_frame(whole);
-  ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
-  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(in_doppler), workers_, memory_.is_moving);
-  if (is_relative && config_.ego_motion.filter.enabled) {
-    const std::vector<std::uint8_t> creeps = ego_motion::creeping_cells(
-        memory_.rows, ego_, estimator_.point_noise().value_or(ego_.inlier_rms_mps), config_.ego_motion.static_sigmas);
-    workers_.for_each(whole.size(), kBlock,
-                      [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
-  }
-  if (lever_arms_) {
-    ego_motion::reduce_to_origin(memory_.whole, *lever_arms_, workers_, -1.0);
-  }
-  static_points_ = whole.select(static_rows(memory_.thinned, memory_.is_moving));
-}
-
 window::WindowScan WindowOdometry::scan_at(double stamp_s) const {
   window::WindowScan scan;
   const motion::TimeSpan span = motion::time_span(memory_.whole);
@@ -244,8 +161,8 @@ window::StartOmega WindowOdometry::start_omega() const {
   return {lever_arms_ ? lever_arms_->omega : Eigen::Vector3d::Zero(), config_.window.start_omega_rad_s};
 }
 
-/// Where the second scan is: its rotation is not known yet.
-std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::WindowScan& now) const {
+/// Where a scan is whose rotation is not known yet: the second one in a map, and as long as none showed it.
+std::optional<Eigen::Isometry3d> WindowOdometry::search_rotation(const window::WindowScan& now) const {
   const double dt_s = now.stamp_s - estimator_.stamp_s();
   const Eigen::Isometry3d T_map_last = estimator_.trajectory().pose(estimator_.stamp_s());
   mapping::MotionPrior prior;
@@ -257,7 +174,7 @@ std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::Win
   prior.sweep.velocity = ego_.velocity_sensor - ego_.reference_time_s * ego_.acceleration_sensor;
   prior.sweep.acceleration = ego_.acceleration_sensor;
   double position_sigma_m = kSecondPosition_m;
-  if (now.measured == nullptr) {
+  if (now.measured == nullptr && estimator_.scans() == 1) {
     const registration::PreparedTarget target = registration::search_target(static_points_, workers_);
     const registration::InitialTranslation translation =
         registration::search_translation(first_points_, target.target(), dt_s, {}, workers_);
@@ -281,10 +198,10 @@ std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::Win
 
 void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
   std::optional<Eigen::Isometry3d> start;
-  if (estimator_.scans() == 1 && config_.search_start) {
-    start = search_second(now);
+  if ((estimator_.scans() == 1 || is_map_bent_) && config_.search_start) {
+    start = search_rotation(now);
   }
-  const window::TrajectoryPoint last = end_of(estimator_.trajectory());
+  const window::TrajectoryPoint last = estimator_.trajectory().at_end();
   const double dt_s = now.stamp_s - estimator_.stamp_s();
   const bool is_second = estimator_.scans() == 1;
   const window::WindowMotion motion = estimator_.update(now, first_points_, map_, start, workers_);
@@ -358,34 +275,6 @@ void WindowOdometry::predict_only(double stamp_s, FrameStatus status, Frame& fra
   covariance.diagonal().head<3>().setConstant(turned_rad * turned_rad);
   covariance.diagonal().tail<3>().setConstant(moved_m * moved_m);
   frame.alignment.covariance = covariance;
-}
-
-/// The velocity as it is known now, and what moves against it.
-void WindowOdometry::judge_points(const window::WindowScan& now) {
-  const motion::SweepMotion sweep = sweep_of(now);
-  ego_.velocity_sensor = sweep.velocity_at(ego_.reference_time_s);
-  ego_.acceleration_sensor = sweep.acceleration;
-  ego_.covariance = estimator_.twist().covariance.bottomRightCorner<3, 3>();
-  ego_.bias_mps = std::accumulate(memory_.errors.begin(), memory_.errors.end(), 0.0) /
-                  static_cast<double>(std::max<std::size_t>(1, memory_.errors.size()));
-  if (now.measured == nullptr) {
-    ego_.status = ego_motion::EgoVelocityStatus::kFromMotion;
-    ego_.unobservable.setZero();
-    return;
-  }
-  const Scan& whole = memory_.whole;
-  estimator_.static_doppler(whole, workers_, memory_.predicted);
-  workers_.for_each(whole.size(), kBlock,
-                    [&](std::size_t i) { memory_.radial[i] = whole.doppler()[i] - memory_.predicted[i]; });
-  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(ego_), workers_, memory_.is_moving);
-}
-
-/// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
-ego_motion::VelocityFilterConfig WindowOdometry::filter_for(const ego_motion::EgoVelocity& ego) const {
-  ego_motion::VelocityFilterConfig filter = config_.ego_motion.filter;
-  const double noise_mps = estimator_.point_noise().value_or(ego.inlier_rms_mps);
-  filter.tau_0_mps = std::max(filter.tau_0_mps, config_.ego_motion.static_sigmas * noise_mps);
-  return filter;
 }
 
 /// The trajectory during the scan as an even acceleration.

@@ -38,6 +38,10 @@ class WindowOdometry final : public Odometry {
   [[nodiscard]] std::optional<window::SensorCalibration> calibration() const override;
 
  private:
+  /// Traffic that most of a scan shows is followed as if it stood, and then prefers itself: so many scans must be clear
+  /// before a motion counts as that of the sensor.
+  static constexpr int kClearScans = 5;
+
   /// Of the scan at hand. The memory is used again for the next one.
   struct ScanMemory {
     Scan whole;  ///< what is in range; Doppler without the error that is known
@@ -63,7 +67,7 @@ class WindowOdometry final : public Odometry {
   void begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor, const window::StartOmega& omega);
   void update(const window::WindowScan& now, Frame& frame);
   [[nodiscard]] window::StartOmega start_omega() const;
-  [[nodiscard]] std::optional<Eigen::Isometry3d> search_second(const window::WindowScan& now) const;
+  [[nodiscard]] std::optional<Eigen::Isometry3d> search_rotation(const window::WindowScan& now) const;
   void renew_bent_map(const window::WindowScan& now, bool is_second, const Frame& frame);
   void describe(const window::WindowMotion& motion, double dt_s, Frame& frame) const;
   void predict_only(double stamp_s, FrameStatus status, Frame& frame) const;

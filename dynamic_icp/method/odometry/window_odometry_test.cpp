@@ -45,5 +45,21 @@ TEST(WindowOdometry, SaysThatItMayFollowTheTraffic) {
   }
 }
 
+// A plain does not show the yaw: its scans are laid down turned, and bend what the next ones find.
+TEST(WindowOdometry, ABentMapIsLeftBehind) {
+  const Drive on_plain{plain(), circle(8.0, 0.5), sweeping()};
+  const Drive in_street{street(), circle(8.0, 0.5), sweeping()};
+  WindowOdometry odometry({}, {}, 1);
+  for (int k = 0; k < 10; ++k) {
+    const Frame frame = odometry.process(k < 2 ? on_plain.scan(k) : in_street.scan(k));
+    if (k == 1) {
+      EXPECT_EQ(frame.status, FrameStatus::kDegenerate);
+    } else if (k >= 8) {
+      EXPECT_EQ(verdict(frame.status), "ok") << k;
+      EXPECT_LT(error_of(in_street, frame, k - 1, k).turn_deg, 0.02) << k;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dynamic_icp::odometry

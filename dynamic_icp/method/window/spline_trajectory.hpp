@@ -57,6 +57,9 @@ class SplineTrajectory {
   std::vector<Matrix6d> move_reference(double time_s);
 
   [[nodiscard]] TrajectoryPoint at(double time_s) const;
+
+  /// Where the last knot interval ends: as the sensor moved last.
+  [[nodiscard]] TrajectoryPoint at_end() const { return at(interval_begin(c_.size() - 3)); }
   [[nodiscard]] Eigen::Isometry3d pose(double time_s) const;  ///< T_map_sensor
 
   [[nodiscard]] const Eigen::Isometry3d& reference() const { return T_map_reference_; }

@@ -1,0 +1,122 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+
+// Preset `default`: what stands and what moves, by the Doppler.
+#include <algorithm>
+#include <numeric>
+
+#include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
+#include "dynamic_icp/method/ego_motion/creeping_cells.hpp"
+#include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/odometry/compensated_motion.hpp"
+#include "dynamic_icp/method/odometry/frame_steps.hpp"
+#include "dynamic_icp/method/odometry/window_odometry.hpp"
+
+namespace dynamic_icp::odometry {
+namespace {
+
+constexpr std::size_t kBlock = 4096;
+
+// How far the velocity of the sensor may be from the last one: m/s.
+constexpr double kVelocitySigma_mps = 0.5;
+constexpr double kAccelerationSigma_mps2 = 3.0;
+constexpr double kNoBias_mps = 1e-3;
+
+}  // namespace
+
+/// What the rotation adds to the Doppler of the sensors of a rig: the consensus is about one velocity.
+void WindowOdometry::take_out_lever_arms() {
+  Scan& whole = memory_.whole;
+  lever_arms_.reset();
+  if (!whole.is_of_rig() || whole.doppler_kind() != DopplerKind::kRelative) {
+    return;
+  }
+  rig_rotation_ =
+      ego_motion::first_angular_velocity(whole, config_.ego_motion.consensus, config_.ego_motion.drift, workers_);
+  lever_arms_.emplace();
+  lever_arms_->omega = estimator_.scans() > 0 ? estimator_.trajectory().at_end().omega : rig_rotation_.omega;
+  lever_arms_->bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(whole.mountings().size()));
+  ego_motion::reduce_to_origin(whole, *lever_arms_, workers_);
+}
+
+ego_motion::EgoPrior WindowOdometry::ego_prior() const {
+  ego_motion::EgoPrior prior;
+  if (estimator_.scans() == 0) {
+    prior = ego_motion::first_prior(config_.ego_motion.drift);
+  } else {
+    prior.has_velocity = true;
+    prior.mean.head<3>() = estimator_.trajectory().at_end().velocity;
+    prior.covariance =
+        ego_motion::Vector7d(
+            ego_motion::Vector7d{{kVelocitySigma_mps, kVelocitySigma_mps, kVelocitySigma_mps, kAccelerationSigma_mps2,
+                                  kAccelerationSigma_mps2, kAccelerationSigma_mps2, kNoBias_mps}}
+                .cwiseAbs2())
+            .asDiagonal();
+  }
+  prior.covariance(6, 6) = kNoBias_mps * kNoBias_mps;
+  return prior;
+}
+
+/// Where no Doppler tells: the velocity at the end of the trajectory.
+ego_motion::EgoVelocity WindowOdometry::velocity_before() const {
+  ego_motion::EgoVelocity ego = unknown_velocity();
+  if (estimator_.scans() > 1) {
+    ego.velocity_sensor = estimator_.trajectory().at_end().velocity;
+  }
+  return ego;
+}
+
+/// What is static, by the velocity that most of the scene agrees on.
+void WindowOdometry::separate_static_points() {
+  const Scan& whole = memory_.whole;
+  const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
+  ego_ = is_relative ? ego_motion::estimate_velocity(memory_.rows, ego_prior(), config_.ego_motion.consensus, workers_)
+                     : velocity_before();
+  if (lever_arms_) {
+    ego_.rotation = rig_rotation_;
+  }
+  clear_scans_ = ego_.status == ego_motion::EgoVelocityStatus::kAmbiguous ? 0 : std::min(kClearScans, clear_scans_ + 1);
+  const ego_motion::EgoVelocity in_doppler = is_relative ? ego_ : static_frame(whole);
+  ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
+  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(in_doppler), workers_, memory_.is_moving);
+  if (is_relative && config_.ego_motion.filter.enabled) {
+    const std::vector<std::uint8_t> creeps = ego_motion::creeping_cells(
+        memory_.rows, ego_, estimator_.point_noise().value_or(ego_.inlier_rms_mps), config_.ego_motion.static_sigmas);
+    workers_.for_each(whole.size(), kBlock,
+                      [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
+  }
+  if (lever_arms_) {
+    ego_motion::reduce_to_origin(memory_.whole, *lever_arms_, workers_, -1.0);
+  }
+  static_points_ = whole.select(static_rows(memory_.thinned, memory_.is_moving));
+}
+
+/// The velocity as it is known now, and what moves against it.
+void WindowOdometry::judge_points(const window::WindowScan& now) {
+  const motion::SweepMotion sweep = sweep_of(now);
+  ego_.velocity_sensor = sweep.velocity_at(ego_.reference_time_s);
+  ego_.acceleration_sensor = sweep.acceleration;
+  ego_.covariance = estimator_.twist().covariance.bottomRightCorner<3, 3>();
+  ego_.bias_mps = std::accumulate(memory_.errors.begin(), memory_.errors.end(), 0.0) /
+                  static_cast<double>(std::max<std::size_t>(1, memory_.errors.size()));
+  if (now.measured == nullptr) {
+    ego_.status = ego_motion::EgoVelocityStatus::kFromMotion;
+    ego_.unobservable.setZero();
+    return;
+  }
+  const Scan& whole = memory_.whole;
+  estimator_.static_doppler(whole, workers_, memory_.predicted);
+  workers_.for_each(whole.size(), kBlock,
+                    [&](std::size_t i) { memory_.radial[i] = whole.doppler()[i] - memory_.predicted[i]; });
+  ego_motion::dynamic_mask(whole, memory_.radial, filter_for(ego_), workers_, memory_.is_moving);
+}
+
+/// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
+ego_motion::VelocityFilterConfig WindowOdometry::filter_for(const ego_motion::EgoVelocity& ego) const {
+  ego_motion::VelocityFilterConfig filter = config_.ego_motion.filter;
+  const double noise_mps = estimator_.point_noise().value_or(ego.inlier_rms_mps);
+  filter.tau_0_mps = std::max(filter.tau_0_mps, config_.ego_motion.static_sigmas * noise_mps);
+  return filter;
+}
+
+}  // namespace dynamic_icp::odometry
