@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <numbers>
 #include <string_view>
+#include <type_traits>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -24,6 +25,12 @@ PipelineConfig with_ablation(std::string_view name = "none") {
   PipelineConfig config;
   apply_ablation(config, name);
   return config;
+}
+
+/// Of two limits that of a pipeline.
+template <class PipelineConfig>
+constexpr double limit(double of_default, double of_fast) {
+  return std::is_same_v<PipelineConfig, MapOdometryConfig> ? of_fast : of_default;
 }
 
 inline Sensor sweeping() {
