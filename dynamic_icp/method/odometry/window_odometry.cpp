@@ -161,8 +161,8 @@ window::StartOmega WindowOdometry::start_omega() const {
   return {lever_arms_ ? lever_arms_->omega : Eigen::Vector3d::Zero(), config_.window.start_omega_rad_s};
 }
 
-/// Where a scan is whose rotation is not known yet: the second one in a map, and as long as none showed it.
-std::optional<Eigen::Isometry3d> WindowOdometry::search_rotation(const window::WindowScan& now) const {
+/// Where the second scan is: its rotation is not known yet.
+std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::WindowScan& now) const {
   const double dt_s = now.stamp_s - estimator_.stamp_s();
   const Eigen::Isometry3d T_map_last = estimator_.trajectory().pose(estimator_.stamp_s());
   mapping::MotionPrior prior;
@@ -174,7 +174,7 @@ std::optional<Eigen::Isometry3d> WindowOdometry::search_rotation(const window::W
   prior.sweep.velocity = ego_.velocity_sensor - ego_.reference_time_s * ego_.acceleration_sensor;
   prior.sweep.acceleration = ego_.acceleration_sensor;
   double position_sigma_m = kSecondPosition_m;
-  if (now.measured == nullptr && estimator_.scans() == 1) {
+  if (now.measured == nullptr) {
     const registration::PreparedTarget target = registration::search_target(static_points_, workers_);
     const registration::InitialTranslation translation =
         registration::search_translation(first_points_, target.target(), dt_s, {}, workers_);
@@ -198,8 +198,8 @@ std::optional<Eigen::Isometry3d> WindowOdometry::search_rotation(const window::W
 
 void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
   std::optional<Eigen::Isometry3d> start;
-  if ((estimator_.scans() == 1 || is_map_bent_) && config_.search_start) {
-    start = search_rotation(now);
+  if (estimator_.scans() == 1 && config_.search_start) {
+    start = search_second(now);
   }
   const window::TrajectoryPoint last = estimator_.trajectory().at_end();
   const double dt_s = now.stamp_s - estimator_.stamp_s();

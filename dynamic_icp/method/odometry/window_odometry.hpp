@@ -67,7 +67,7 @@ class WindowOdometry final : public Odometry {
   void begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor, const window::StartOmega& omega);
   void update(const window::WindowScan& now, Frame& frame);
   [[nodiscard]] window::StartOmega start_omega() const;
-  [[nodiscard]] std::optional<Eigen::Isometry3d> search_rotation(const window::WindowScan& now) const;
+  [[nodiscard]] std::optional<Eigen::Isometry3d> search_second(const window::WindowScan& now) const;
   void renew_bent_map(const window::WindowScan& now, bool is_second, const Frame& frame);
   void describe(const window::WindowMotion& motion, double dt_s, Frame& frame) const;
   void predict_only(double stamp_s, FrameStatus status, Frame& frame) const;
