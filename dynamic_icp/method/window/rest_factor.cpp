@@ -80,6 +80,9 @@ Eigen::VectorXd RestFactor::solve(const Eigen::VectorXd& b) const {
 }
 
 Eigen::MatrixXd RestFactor::covariance_root(Eigen::MatrixXd sums) const {
+  if (sums.cols() == 0) {
+    return sums;  // no memory, in which no block begins
+  }
   auto head = sums.topRows(W_.cols());
   auto tail = sums.bottomRows(W_.rows());
   tail_.matrixL().solveInPlace(tail);

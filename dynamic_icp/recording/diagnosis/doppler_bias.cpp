@@ -107,8 +107,9 @@ Finding doppler_bias(const Evidence& evidence) {
   } else if (is_told) {
     finding.verdict = Verdict::kSuspicious;
     finding.sentence = fmt::format(
-        "all Doppler is off by {:+.2f} m/s (+- {:.2f}); presets default and fast take that out by themselves, others do not", bias,
-        error);
+        "all Doppler is off by {:+.2f} m/s (+- {:.2f}); presets default and fast take that out by themselves, others "
+        "do not",
+        bias, error);
   } else if (error < kWellKnown_mps) {
     finding.verdict = Verdict::kOk;
     finding.sentence = fmt::format("no constant error beyond {:.2f} m/s", kWorthReporting_mps);

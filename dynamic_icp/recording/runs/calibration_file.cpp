@@ -30,7 +30,8 @@ std::string list_of(const std::vector<double>& values) { return fmt::format("[{}
 
 std::string calibration_text(const SensorCalibration& calibration) {
   std::string text =
-      "# What preset default learned of a sensor: errors of its Doppler (m/s, to be subtracted from what it measures),\n"
+      "# What preset default learned of a sensor: errors of its Doppler (m/s, to be subtracted from what it "
+      "measures),\n"
       "# their standard deviations, and how they depend on each other. Another recording of this sensor may begin with "
       "it.\n"
       "version: 1\n";
