@@ -10,6 +10,7 @@
 #include <vector>
 
 #include <Eigen/Cholesky>
+#include <gtest/gtest.h>
 
 #include "dynamic_icp/method/odometry/odometry.hpp"
 
@@ -19,6 +20,9 @@
 namespace dynamic_icp::odometry::synthetic {
 
 constexpr double kPeriod_s = 0.1;
+
+/// For typed tests of what both pipelines with a map must do.
+using PipelinesWithAMap = testing::Types<WindowOdometryConfig, MapOdometryConfig>;
 
 template <class PipelineConfig>
 PipelineConfig with_ablation(std::string_view name = "none") {

@@ -279,8 +279,8 @@ EgoPrior as_ego_prior(const RigPrior& prior) {
   return single;
 }
 
-AngularVelocity first_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
-                                       std::span<const EgoVelocity> of_sensors) {
+AngularVelocity rig_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
+                                     std::span<const EgoVelocity> of_sensors) {
   Matrix6d information = Matrix6d::Zero();
   information.topLeftCorner<3, 3>().diagonal().setConstant(1.0 / (kUnknownVelocity_mps * kUnknownVelocity_mps));
   information.bottomRightCorner<3, 3>().diagonal().setConstant(1.0 / (kStartRotation_rad_s * kStartRotation_rad_s));
@@ -296,13 +296,13 @@ AngularVelocity first_angular_velocity(std::span<const Eigen::Isometry3d> mounti
   return {(covariance * right).tail<3>(), covariance.bottomRightCorner<3, 3>()};
 }
 
-AngularVelocity first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
-                                       const DriftConfig& drift, const Workers& workers) {
+AngularVelocity rig_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
+                                     const DriftConfig& drift, const Workers& workers) {
   std::vector<EgoVelocity> of_sensors;
   for (const std::vector<std::uint32_t>& rows : rows_by_sensor(scan)) {
     of_sensors.push_back(estimate_velocity(scan.select(rows), first_prior(drift), config, workers));
   }
-  return first_angular_velocity(scan.mountings(), of_sensors);
+  return rig_angular_velocity(scan.mountings(), of_sensors);
 }
 
 RigEstimate estimate_rig_motion(const Scan& scan, const RigDoppler& reduced, const EgoVelocity& start,

@@ -69,12 +69,12 @@ struct RigEstimate {
 
 /// Angular velocity of a rig of which nothing is known, from the velocities that each of its sensors shows alone:
 /// v_k = v + omega x l_k, with omega near zero where the lever arms leave it open.
-AngularVelocity first_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
-                                       const DriftConfig& drift, const Workers& workers);
+AngularVelocity rig_angular_velocity(const Scan& scan, const ConsensusRegressionConfig& config,
+                                     const DriftConfig& drift, const Workers& workers);
 
 /// The same where these velocities are known already: one per mounting, in the axes of the common frame.
-AngularVelocity first_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
-                                       std::span<const EgoVelocity> of_sensors);
+AngularVelocity rig_angular_velocity(std::span<const Eigen::Isometry3d> mountings,
+                                     std::span<const EgoVelocity> of_sensors);
 
 /// Fits v, a, omega, alpha and b jointly to the rows near `start`, the velocity that the consensus regression found in
 /// `scan`, which is reduced to the origin by `reduced`. Tukey's kernel; residuals of one sensor may depend on each

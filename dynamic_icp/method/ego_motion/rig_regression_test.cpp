@@ -78,7 +78,7 @@ RigEstimate estimate(const Rig& rig, std::uint32_t seed) {
   RigDoppler reduced = truth_of(rig);
   reduced.bias_mps.setZero();
   reduced.alpha.setZero();
-  reduced.omega = first_angular_velocity(scan, {}, {}, Workers(1)).omega;
+  reduced.omega = rig_angular_velocity(scan, {}, {}, Workers(1)).omega;
   reduce_to_origin(scan, reduced, Workers(1));
   const RigPrior prior = first_rig_prior({}, rig.lever_arms.size());
   const EgoVelocity start = estimate_velocity(scan, as_ego_prior(prior), {}, Workers(1));
@@ -103,9 +103,9 @@ TEST(ReduceToOrigin, LeavesTheDopplerOfTheOrigin) {
   }
 }
 
-TEST(FirstAngularVelocity, IsFoundWithoutAnyPrior) {
+TEST(RigAngularVelocity, IsFoundWithoutAnyPrior) {
   const Scan scan = Scan::from_raw(scan_of(Rig{}, 2));
-  EXPECT_LT((first_angular_velocity(scan, {}, {}, Workers(1)).omega - Rig{}.omega).norm(), 0.1);
+  EXPECT_LT((rig_angular_velocity(scan, {}, {}, Workers(1)).omega - Rig{}.omega).norm(), 0.1);
 }
 
 TEST(RigRegression, ErrorsAreAsLargeAsStated) {

@@ -48,8 +48,7 @@ TEST(CompensatedMotion, AVelocityIsThatOfTheMotion) {
 
 template <class PipelineConfig>
 class CompensatedMotionWithAMap : public testing::Test {};
-using Pipelines = testing::Types<WindowOdometryConfig, MapOdometryConfig>;
-TYPED_TEST_SUITE(CompensatedMotionWithAMap, Pipelines);
+TYPED_TEST_SUITE(CompensatedMotionWithAMap, PipelinesWithAMap);
 
 TYPED_TEST(CompensatedMotionWithAMap, FollowsALivelyDriveAndItsObjects) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {

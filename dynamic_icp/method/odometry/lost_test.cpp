@@ -17,8 +17,7 @@ using namespace synthetic;
 /// What both pipelines with a map must do.
 template <class PipelineConfig>
 class LostWithAMap : public testing::Test {};
-using Pipelines = testing::Types<WindowOdometryConfig, MapOdometryConfig>;
-TYPED_TEST_SUITE(LostWithAMap, Pipelines);
+TYPED_TEST_SUITE(LostWithAMap, PipelinesWithAMap);
 
 TYPED_TEST(LostWithAMap, LosesItsWayAndFindsItAgain) {
   const Drive here{street(), circle(10.0, 0.2), {}};

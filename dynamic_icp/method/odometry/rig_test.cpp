@@ -17,8 +17,7 @@ using namespace synthetic;
 /// What both pipelines with a map must do.
 template <class PipelineConfig>
 class RigWithAMap : public testing::Test {};
-using Pipelines = testing::Types<WindowOdometryConfig, MapOdometryConfig>;
-TYPED_TEST_SUITE(RigWithAMap, Pipelines);
+TYPED_TEST_SUITE(RigWithAMap, PipelinesWithAMap);
 
 RawScan rig_scan(const Drive& drive, const Mountings& mountings, const std::vector<double>& bias_mps, int k) {
   return synthetic::rig_scan(drive.world, drive.path, drive.sensor, mountings, bias_mps, k * drive.period_s,

@@ -40,7 +40,7 @@ ego_motion::RigEstimate RigVelocity::estimate(Scan& scan, ego_motion::DopplerRow
   reduced.reference_time_s = rows.reference_time_s;
   reduced.bias_mps = prior.mean.tail(static_cast<Eigen::Index>(sensors));
   reduced.omega = expected ? Eigen::Vector3d(angular.mean.head<3>())
-                           : ego_motion::first_angular_velocity(scan, config.consensus, config.drift, workers).omega;
+                           : ego_motion::rig_angular_velocity(scan, config.consensus, config.drift, workers).omega;
   reduced.alpha = angular.mean.tail<3>();
 
   ego_motion::reduce_to_origin(scan, reduced, workers);

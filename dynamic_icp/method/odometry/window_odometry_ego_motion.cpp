@@ -32,7 +32,7 @@ void WindowOdometry::take_out_lever_arms() {
     return;
   }
   rig_rotation_ =
-      ego_motion::first_angular_velocity(whole, config_.ego_motion.consensus, config_.ego_motion.drift, workers_);
+      ego_motion::rig_angular_velocity(whole, config_.ego_motion.consensus, config_.ego_motion.drift, workers_);
   lever_arms_.emplace();
   lever_arms_->omega = estimator_.scans() > 0 ? estimator_.trajectory().at_end().omega : rig_rotation_.omega;
   lever_arms_->bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(whole.mountings().size()));

@@ -27,7 +27,7 @@ constexpr double kStep = 1e-4;
 constexpr int kMinIterations = 3;
 
 // The second scan, which shows how the first one turned, may take so many times as many steps.
-constexpr int kSecondShare = 3;
+constexpr int kSecondTimes = 3;
 
 // After a shorter one the Doppler need not be linearised anew: eliminating theta costs more than all the rest.
 constexpr double kStraight = 1e-3;
@@ -237,7 +237,7 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
                               const Workers& workers) {
   const bool is_second = scans_ == 1;
   const int passes = scans_ever_ < kFirstScans ? kFirstPasses : kPasses;
-  const int limit = is_second ? kSecondShare * config_.max_iterations : config_.max_iterations;
+  const int limit = is_second ? kSecondTimes * config_.max_iterations : config_.max_iterations;
   motion.converged = false;
   double step = std::numeric_limits<double>::infinity();
   for (int k = 0; k < limit && !motion.converged; ++k, ++motion.iterations) {

@@ -75,7 +75,7 @@ void take_out_lever_arms(Scan& scan, ScanLook& look, const Workers& workers) {
       velocities.push_back(sensor.ego);
     }
     ego_motion::RigDoppler rig;
-    rig.omega = ego_motion::first_angular_velocity(look.mountings, velocities).omega;
+    rig.omega = ego_motion::rig_angular_velocity(look.mountings, velocities).omega;
     rig.bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scan.mountings().size()));
     ego_motion::reduce_to_origin(scan, rig, workers);
   }
