@@ -27,19 +27,25 @@ constexpr std::size_t kEnoughOnSupport = 20;
 
 /// How far the Doppler of a cell is from that of the static scene, m/s, and the variance of that by noise alone.
 struct CellDoppler {
-  std::vector<double> mean;
+  std::vector<double> off;
   std::vector<double> variance;
 };
 
-CellDoppler doppler_of_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps) {
+CellDoppler doppler_of_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps, double moving_mps) {
   CellDoppler result;
   for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
     double sum = 0.0;
+    double count = 0.0;
     for (std::size_t row = rows.first[cell]; row < rows.first[cell + 1]; ++row) {
-      sum += rows.s[row] + rows.u(row).dot(ego.velocity_sensor + rows.dt[row] * ego.acceleration_sensor) - ego.bias_mps;
+      const Eigen::Vector3d velocity = ego.velocity_sensor + rows.dt[row] * ego.acceleration_sensor;
+      const double off = rows.s[row] + rows.u(row).dot(velocity) - ego.bias_mps;
+      if (std::abs(off) < moving_mps) {
+        sum += off;
+        count += 1.0;
+      }
     }
-    const auto count = static_cast<double>(rows.first[cell + 1] - rows.first[cell]);
-    result.mean.push_back(sum / count);
+    count = std::max(1.0, count);
+    result.off.push_back(sum / count);
     result.variance.push_back(noise_mps * noise_mps / count);
   }
   return result;
@@ -112,23 +118,23 @@ void spread(const DopplerRows& rows, const std::vector<double>& sigmas_off, std:
 }  // namespace
 
 std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps,
-                                         double sigmas) {
-  const CellDoppler doppler = doppler_of_cells(rows, ego, noise_mps);
-  std::vector<double> static_means;
+                                         double moving_mps, double sigmas) {
+  const CellDoppler doppler = doppler_of_cells(rows, ego, noise_mps, moving_mps);
+  std::vector<double> static_off;
   std::vector<double> static_variances;
   for (const std::size_t cell : likely_static(rows)) {
-    static_means.push_back(std::abs(doppler.mean[cell]));
+    static_off.push_back(std::abs(doppler.off[cell]));
     static_variances.push_back(doppler.variance[cell]);
   }
   std::vector<std::uint8_t> creeps(rows.cells(), 0);
-  if (static_means.empty()) {
+  if (static_off.empty()) {
     return creeps;
   }
-  const double scatter = kSigmaPerMad * median(static_means);
+  const double scatter = kSigmaPerMad * median(static_off);
   const double off = std::max(kSurface_mps * kSurface_mps, scatter * scatter - median(static_variances));
   std::vector<double> sigmas_off(rows.cells());
   for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
-    sigmas_off[cell] = doppler.mean[cell] / std::sqrt(off + doppler.variance[cell]);
+    sigmas_off[cell] = doppler.off[cell] / std::sqrt(off + doppler.variance[cell]);
     creeps[cell] = std::abs(sigmas_off[cell]) > sigmas ? 1 : 0;
   }
   if (static_cast<double>(std::ranges::count(creeps, 1)) > kCrowded * static_cast<double>(rows.cells())) {

@@ -44,12 +44,14 @@ ConfigFields fields(PlaneRule& rule) {
 }
 
 std::optional<Plane> fit_plane(const Moments& moments, const Eigen::Vector3d& origin, double edge_m,
-                               const PlaneRule& rule) {
+                               const PlaneRule& rule, const RangeNoise& noise) {
   if (moments.weight < rule.min_points) {
     return std::nullopt;
   }
   const Eigen::Vector3d mean = moments.first / moments.weight;
-  const Eigen::Matrix3d scatter = scatter_around(mean, moments);
+  const Eigen::Vector3d line_of_sight = (origin + mean - noise.position).normalized();
+  const Eigen::Matrix3d scatter =
+      scatter_around(mean, moments) - noise.variance * line_of_sight * line_of_sight.transpose();
   // In closed form: its errors are a billionth of the largest eigenvalue, and a plane is told by a hundredth.
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> eigen;
   eigen.computeDirect(scatter);
@@ -62,7 +64,9 @@ std::optional<Plane> fit_plane(const Moments& moments, const Eigen::Vector3d& or
   plane.mean = origin + mean;
   plane.normal = eigen.eigenvectors().col(0);
   plane.tangential = inverse_within_plane(scatter, plane.normal);
-  plane.variance = std::max(values[0], 0.0) * moments.weight / (moments.weight - kParameters);
+  const double across = plane.normal.dot(line_of_sight);
+  const double scattered = values[0] + noise.variance * across * across;  // n^T S n
+  plane.variance = std::max(scattered, 0.0) * moments.weight / (moments.weight - kParameters);
   plane.points = moments.weight;
   plane.phase = moments.phase / moments.weight;
   return plane;

@@ -39,6 +39,13 @@ struct Moments {
   }
 };
 
+/// How points err along the line of sight. A plane that is seen at a grazing angle tilts towards the beam: with m lines
+/// of points on the ground the scatter of their ranges looks like a slope.
+struct RangeNoise {
+  Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, where the sensor is, in map axes
+  double variance = 0.0;                               ///< m^2, of the range of a point
+};
+
 /// What counts as a plane.
 struct PlaneRule {
   double min_points = 6.0;     ///< fewer (with forgetting: their weight) make no plane
@@ -68,9 +75,10 @@ struct Plane {
   }
 };
 
-/// The plane through points with the given moments, relative to `origin`, in a cell with the edge `edge_m`. Nothing
-/// where they make none.
+/// The plane through points with the given moments, relative to `origin`, in a cell with the edge `edge_m`: the scatter
+/// without what the noise of ranges adds to it, S - variance b b^T with b the line of sight, has the normal as its
+/// smallest axis. Nothing where the points make no plane.
 std::optional<Plane> fit_plane(const Moments& moments, const Eigen::Vector3d& origin, double edge_m,
-                               const PlaneRule& rule);
+                               const PlaneRule& rule, const RangeNoise& noise = {});
 
 }  // namespace dynamic_icp::mapping

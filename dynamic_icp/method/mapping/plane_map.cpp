@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamic_icp/method/base/quantile.hpp"
+
 namespace dynamic_icp::mapping {
 namespace {
 
@@ -21,6 +23,15 @@ constexpr std::size_t kTidyPeriod = 16;
 
 // The table of the coarsest cells is made anew when it is larger than this and less than half of it is in use.
 constexpr std::size_t kManyRoots = 1024;
+
+// How far ranges err is seen on patches of so many points that the beams meet at a steep angle (|cos|), when there are so
+// many of them. Any surface scatters more than the ranges do: the smoothest patches of the smoothest scan tell, and the
+// estimate rises by a hundredth a scan only.
+constexpr double kTellingPoints = 20.0;
+constexpr double kSteep = 0.4;
+constexpr std::size_t kTellingPatches = 10;
+constexpr double kSmoothest = 0.1;
+constexpr double kRise = 1.01;
 
 using Coordinates = Eigen::Matrix<std::int64_t, 3, 1>;
 
@@ -78,7 +89,9 @@ void PlaneMap::add(std::span<const Eigen::Vector3d> points, const Eigen::Vector3
     add_point(points[i], phases.empty() ? 0.0 : phases[i]);
   }
   drop_cells(position);
+  range_noise_.position = position;
   fit_planes(workers);
+  learn_range_noise();
 }
 
 /// Adds a point to the cells of all levels around it.
@@ -144,7 +157,7 @@ void PlaneMap::fit_level(double edge_m, const Workers& workers) {
     const auto [number, key] = fitting_[i];
     Cell& cell = cells_[number];
     const std::optional<Plane> plane =
-        fit_plane(moments_[number], spatial::cell_centre(key, edge_m), edge_m, config_.plane);
+        fit_plane(moments_[number], spatial::cell_centre(key, edge_m), edge_m, config_.plane, range_noise_);
     Patch& patch = patches_[cell.patch];
     if (plane) {
       patch.plane = *plane;
@@ -153,7 +166,26 @@ void PlaneMap::fit_level(double edge_m, const Workers& workers) {
     }
     cell.is_stale = false;
   });
+  for (const Fitting& fitting : fitting_) {
+    const Plane& plane = patches_[cells_[fitting.cell].patch].plane;
+    const double facing = plane.normal.dot((plane.mean - range_noise_.position).normalized());
+    if (plane.points >= kTellingPoints && std::abs(facing) > kSteep) {
+      range_variances_.push_back(plane.variance / (facing * facing));
+    }
+  }
 }
+
+/// Too low an estimate leaves a part of the tilt, too high a one tilts planes the other way.
+void PlaneMap::learn_range_noise() {
+  if (range_variances_.size() >= kTellingPatches) {
+    const double seen = quantile(range_variances_, kSmoothest);
+    const double before = range_noise_.variance;
+    range_noise_.variance = before > 0.0 ? std::min(seen, kRise * before) : seen;
+  }
+  range_variances_.clear();
+}
+
+double PlaneMap::range_sigma_m() const { return std::sqrt(range_noise_.variance); }
 
 /// From the cells just fitted to the parts that are now asked for, and changed since they were fitted.
 void PlaneMap::go_down() {

@@ -65,7 +65,10 @@ class PlaneMap {
 
   [[nodiscard]] bool empty() const { return scans_ == 0; }
 
-  /// Forgets everything.
+  /// Standard deviation of the ranges (m): of points on surfaces that face the sensor. Zero until it saw enough.
+  [[nodiscard]] double range_sigma_m() const;
+
+  /// Forgets everything but how far ranges err.
   void clear();
 
  private:
@@ -90,6 +93,7 @@ class PlaneMap {
   void fit_planes(const Workers& workers);
   void fit_level(double edge_m, const Workers& workers);
   void go_down();
+  void learn_range_noise();
   void drop_cells(const Eigen::Vector3d& position);
   void drop_old_parts(std::uint32_t cell);
   void release(std::uint32_t cell);
@@ -111,6 +115,8 @@ class PlaneMap {
   std::vector<Cell> cells_;
   std::vector<Moments> moments_;  ///< of each cell, relative to its centre
   std::vector<Patch> patches_;
+  RangeNoise range_noise_;
+  std::vector<double> range_variances_;  ///< m^2, by each patch that faces the sensor, of the scan at hand
   std::vector<std::uint32_t> free_cells_;
   std::vector<std::uint32_t> free_patches_;
   std::vector<Fitting> fitting_;  ///< of one level

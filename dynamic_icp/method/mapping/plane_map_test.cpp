@@ -68,6 +68,32 @@ TEST(PlaneMap, DividesACellThatHoldsAnEdge) {
   EXPECT_NEAR(std::abs(wall->plane.normal.x()), 1.0, 1e-6);
 }
 
+TEST(PlaneMap, LearnsHowFarRangesErrFromSurfacesThatFaceTheSensor) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(-15.0, 15.0);
+  const auto scan = [&](double sigma_m) {
+    std::vector<Vector3d> points;
+    for (int i = 0; i < 20000; ++i) {
+      // A wall ahead, some patches of it rough, and the ground at a grazing angle.
+      const Vector3d on_wall(20.9, uniform(random), std::abs(uniform(random)));
+      const double rough_m = std::sin(0.7 * on_wall.y()) > 0.5 ? 0.05 * normal(random) : 0.0;
+      points.push_back(on_wall + (sigma_m * normal(random) + rough_m) * on_wall.normalized());
+      const Vector3d on_ground(15.0 + 0.3 * uniform(random), uniform(random), -2.0);
+      points.push_back(on_ground + sigma_m * normal(random) * on_ground.normalized());
+    }
+    return points;
+  };
+  PlaneMap map({});
+  EXPECT_EQ(map.range_sigma_m(), 0.0);
+  for (int k = 0; k < 3; ++k) {
+    map.add(scan(0.03), Vector3d::Zero(), kOneThread);
+  }
+  EXPECT_NEAR(map.range_sigma_m(), 0.03, 0.003);
+  map.clear();
+  EXPECT_NEAR(map.range_sigma_m(), 0.03, 0.003) << "the sensor stays the same";
+}
+
 /// The definition, point by point: the coarsest cell around a place whose points lie in a plane. Points fade from one
 /// scan with points in the cell to the next; what no scan meets for twice the memory is forgotten.
 std::optional<Plane> plane_by_definition(const std::vector<std::vector<Vector3d>>& scans, const Vector3d& place,

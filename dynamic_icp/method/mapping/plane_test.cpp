@@ -48,6 +48,53 @@ TEST(Moments, OfTwoSetsAddUp) {
   EXPECT_LT((all.second - first.second - second.second).norm(), 1e-12);
 }
 
+/// Lines of points on the ground that a sensor 2 m above it sees 12 m ahead; their ranges err by `sigma_m`.
+Moments lines_on_the_ground(int lines, double sigma_m, unsigned seed, Vector3d& origin, Vector3d& sensor) {
+  sensor = Vector3d(-30.0, 5.0, 2.0);
+  origin = sensor + Vector3d(12.0, 0.0, -2.0);
+  std::mt19937 random(seed);
+  std::normal_distribution<double> normal;
+  Moments sums;
+  for (int line = 0; line < lines; ++line) {
+    for (int i = 0; i < 40; ++i) {
+      const Vector3d on_ground = origin + Vector3d(0.5 * (line - 0.5 * (lines - 1)), 0.05 * (i - 20), 0.0);
+      const Vector3d line_of_sight = (on_ground - sensor).normalized();
+      sums.add(on_ground + sigma_m * normal(random) * line_of_sight - origin);
+    }
+  }
+  return sums;
+}
+
+TEST(FitPlane, NoiseOfRangesTiltsNoPlaneThatIsSeenAtAGrazingAngle) {
+  constexpr double kRange_m = 0.05;
+  constexpr int kTrials = 400;
+  double slope = 0.0;
+  double slope_squares = 0.0;
+  double slope_of_scatter = 0.0;
+  double variance = 0.0;
+  for (unsigned k = 0; k < kTrials; ++k) {
+    Vector3d origin;
+    Vector3d sensor;
+    const Moments sums = lines_on_the_ground(2, kRange_m, k, origin, sensor);
+    const auto plane = fit_plane(sums, origin, 2.0, {}, {sensor, kRange_m * kRange_m});
+    const auto tilted = fit_plane(sums, origin, 2.0, {});
+    ASSERT_TRUE(plane && tilted);
+    const double dz_dx = -plane->normal.x() / plane->normal.z();
+    slope += dz_dx / kTrials;
+    slope_squares += dz_dx * dz_dx / kTrials;
+    slope_of_scatter += -tilted->normal.x() / tilted->normal.z() / kTrials;
+    variance += plane->variance / kTrials;
+  }
+  // Two lines 0.5 m apart: the slope that the noise adds is -sigma^2 sin cos / (0.25 m)^2.
+  const double sine = 2.0 / std::sqrt(148.0);
+  const double cosine = 12.0 / std::sqrt(148.0);
+  EXPECT_NEAR(slope_of_scatter, -kRange_m * kRange_m * sine * cosine / 0.0625, 1e-3);
+  EXPECT_LT(std::abs(slope), 4.0 * std::sqrt(slope_squares / kTrials) + 2e-4);
+  EXPECT_LT(std::abs(slope), 0.15 * std::abs(slope_of_scatter));
+  // Points err across the plane by what the line of sight does.
+  EXPECT_NEAR(std::sqrt(variance), kRange_m * sine, 0.2 * kRange_m * sine);
+}
+
 TEST(FitPlane, FindsNormalMeanAndNoise) {
   const Surface patch;
   const auto plane = fit_plane(patch.moments(4000, 0.3, 0.2, 0.01), patch.origin, patch.edge_m, {});

@@ -80,8 +80,9 @@ void WindowOdometry::separate_static_points() {
   ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(in_doppler), workers_, memory_.is_moving);
   if (is_relative && config_.ego_motion.filter.enabled) {
+    const double noise_mps = estimator_.point_noise().value_or(ego_.inlier_rms_mps);
     const std::vector<std::uint8_t> creeps = ego_motion::creeping_cells(
-        memory_.rows, ego_, estimator_.point_noise().value_or(ego_.inlier_rms_mps), config_.ego_motion.static_sigmas);
+        memory_.rows, ego_, noise_mps, filter_for(ego_).tau_0_mps, config_.ego_motion.static_sigmas);
     workers_.for_each(whole.size(), kBlock,
                       [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
   }

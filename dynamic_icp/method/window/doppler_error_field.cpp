@@ -32,7 +32,7 @@ constexpr double kStartTau = 0.05;
 constexpr double kStartVelocityTau = 0.1;
 constexpr double kMinTau = 2e-4;
 constexpr double kMaxTau = 0.3;
-constexpr double kPriorTau = 0.004;  // counts like one column that was seen
+constexpr double kPriorTau = 0.001;  // counts like one column that was seen
 
 /// exp(-|i - j| / length)
 Eigen::MatrixXd exponential_kernel(std::size_t size, double length) {
