@@ -16,7 +16,7 @@ constexpr double kMinKnown = 0.02;
 
 }  // namespace
 
-VariancePosterior::VariancePosterior(const Prior& prior) {
+VariancePosterior::VariancePosterior(const Prior& prior) : by_differences_(prior.by_differences) {
   const double low = std::log(prior.min_sigma);
   const double step = (std::log(prior.max_sigma) - low) / static_cast<double>(kSteps - 1);
   const double scale_variance = prior.scale * prior.scale;
@@ -31,11 +31,16 @@ VariancePosterior::VariancePosterior(const Prior& prior) {
 double VariancePosterior::propose(double estimate, double posterior_variance) {
   // With the share that the data know of x, they alone say x = estimate / known with the variance q (1 - known) / known.
   const double known = std::clamp(1.0 - posterior_variance / variance_, kMinKnown, 1.0);
-  const double measured = estimate / known;
-  const double variance = variance_ * (1.0 - known) / known;
+  now_ = {estimate / known, variance_ * (1.0 - known) / known};
+  Measurement seen = *now_;
+  double unknowns = by_differences_ && !last_ ? 0.0 : 1.0;
+  if (by_differences_ && last_) {
+    seen = {now_->value - last_->value, now_->variance + last_->variance};
+    unknowns = 2.0;
+  }
   for (std::size_t k = 0; k < kSteps; ++k) {
-    const double expected = q_[k] + variance;
-    next_seen_[k] = kMemory * seen_[k] - 0.5 * (std::log(expected) + measured * measured / expected);
+    const double expected = unknowns * q_[k] + seen.variance;
+    next_seen_[k] = kMemory * seen_[k] - 0.5 * (std::log(expected) + seen.value * seen.value / expected);
   }
   const double before = variance_;
   renew();

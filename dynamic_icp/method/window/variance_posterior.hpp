@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <optional>
 
 namespace dynamic_icp::window {
 
@@ -17,6 +18,7 @@ class VariancePosterior {
     double min_sigma = 0.1;  ///< the grid is between these
     double max_sigma = 10.0;
     double counts = 0.0;  ///< as if so many unknowns of standard deviation `scale` had been seen
+    bool by_differences = false;  ///< what is alike in two scans is no noise, but an error of what they are compared with
   };
 
   explicit VariancePosterior(const Prior& prior);
@@ -29,10 +31,18 @@ class VariancePosterior {
   double propose(double estimate, double posterior_variance);
 
   /// The evidence of the last `propose` becomes part of the past.
-  void keep() { seen_ = next_seen_; }
+  void keep() {
+    seen_ = next_seen_;
+    last_ = now_;
+  }
 
  private:
   static constexpr std::size_t kSteps = 32;
+
+  struct Measurement {
+    double value = 0.0;
+    double variance = 0.0;  ///< without q
+  };
 
   void renew();
 
@@ -40,6 +50,9 @@ class VariancePosterior {
   std::array<double, kSteps> prior_{};      ///< log density
   std::array<double, kSteps> seen_{};       ///< log likelihood of the past, faded
   std::array<double, kSteps> next_seen_{};  ///< with that of the scan at hand
+  bool by_differences_;
+  std::optional<Measurement> last_;
+  std::optional<Measurement> now_;
   double variance_ = 1.0;
 };
 

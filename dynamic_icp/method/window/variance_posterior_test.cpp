@@ -65,6 +65,29 @@ TEST(VariancePosterior, WhatIsKnownOfAnotherDriveCounts) {
   EXPECT_NEAR(std::sqrt(VariancePosterior(known).value()), 5.0, 1.0);
 }
 
+TEST(VariancePosterior, ByDifferencesWhatIsAlikeIsNoNoise) {
+  VariancePosterior::Prior prior = kPrior;
+  prior.by_differences = true;
+  double log_sum = 0.0;
+  constexpr int kRuns = 200;
+  for (unsigned run = 0; run < kRuns; ++run) {
+    log_sum += std::log(learned(4.0, 60, VariancePosterior(prior), run));
+  }
+  EXPECT_NEAR(std::sqrt(std::exp(log_sum / kRuns)), 4.0, 0.8) << "noise is learned as before";
+  VariancePosterior drift(prior);
+  VariancePosterior taken_for_noise(kPrior);
+  for (VariancePosterior* posterior : {&drift, &taken_for_noise}) {
+    for (int k = 0; k < 30; ++k) {
+      const double q = posterior->value();
+      const double gain = q / (q + kMeasured * kMeasured);
+      posterior->propose(gain * 0.2 * k, (1.0 - gain) * q);
+      posterior->keep();
+    }
+  }
+  EXPECT_LT(std::sqrt(drift.value()), kMeasured);
+  EXPECT_GT(std::sqrt(taken_for_noise.value()), 2.0);
+}
+
 TEST(VariancePosterior, ABetterEstimateReplacesTheOneBefore) {
   VariancePosterior once(kPrior);
   VariancePosterior again(kPrior);

@@ -70,7 +70,7 @@ Matrix12d twice(const Matrix6d& A) {
 }  // namespace
 
 VariancePosterior::Prior WindowEstimator::stamp_prior(double sigma_s, double counts) {
-  return {.scale = sigma_s, .min_sigma = 5e-6, .max_sigma = 3e-3, .counts = counts};
+  return {.scale = sigma_s, .min_sigma = 5e-6, .max_sigma = 3e-3, .counts = counts, .by_differences = true};
 }
 
 VariancePosterior::Prior WindowEstimator::scan_error_prior(double sigma_mps, double counts) {
