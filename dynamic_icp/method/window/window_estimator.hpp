@@ -195,7 +195,7 @@ class WindowEstimator {
   MotionPrior motion_prior_;
   VariancePosterior stamp_variance_;       ///< s^2
   VariancePosterior scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common
-  double cell_variance_ = 1e-4;          ///< (m/s)^2
+  double cell_variance_ = 1e-4;            ///< (m/s)^2
   double model_sigma_m_ = 0.003;
   double stamp_s_ = 0.0;
   double begin_s_ = 0.0;
