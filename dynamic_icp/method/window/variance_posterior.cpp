@@ -29,7 +29,8 @@ VariancePosterior::VariancePosterior(const Prior& prior) : by_differences_(prior
 }
 
 double VariancePosterior::propose(double estimate, double posterior_variance) {
-  // With the share that the data know of x, they alone say x = estimate / known with the variance q (1 - known) / known.
+  // With the share that the data know of x, they alone say x = estimate / known with the variance q (1 - known) /
+  // known.
   const double known = std::clamp(1.0 - posterior_variance / variance_, kMinKnown, 1.0);
   now_ = {estimate / known, variance_ * (1.0 - known) / known};
   Measurement seen = *now_;

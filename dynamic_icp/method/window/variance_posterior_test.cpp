@@ -41,9 +41,7 @@ TEST(VariancePosterior, IsFarBelowTheNoiseWhereNothingVaries) {
   EXPECT_LT(std::sqrt(learned(0.0, 60)), 0.3 * kMeasured);
 }
 
-TEST(VariancePosterior, AFewScansShowALargeOne) {
-  EXPECT_GT(std::sqrt(learned(20.0, 3)), 5.0);
-}
+TEST(VariancePosterior, AFewScansShowALargeOne) { EXPECT_GT(std::sqrt(learned(20.0, 3)), 5.0); }
 
 TEST(VariancePosterior, WithoutEvidenceItStaysBelowItsScale) {
   VariancePosterior posterior(kPrior);
