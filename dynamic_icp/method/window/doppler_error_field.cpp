@@ -33,6 +33,7 @@ constexpr double kStartVelocityTau = 0.1;
 constexpr double kMinTau = 2e-4;
 constexpr double kMaxTau = 0.3;
 constexpr double kPriorTau = 0.001;  // counts like one column that was seen
+constexpr double kConstantScale = 0.005;
 
 /// exp(-|i - j| / length)
 Eigen::MatrixXd exponential_kernel(std::size_t size, double length) {
@@ -127,7 +128,11 @@ DopplerErrorField::DopplerErrorField(const FieldShape& shape) : shape_(shape) {
                           kStartTau, true);
       c.line = shape.lines > 0 ? add_group("line", identity(shape.lines), kStartTau, true) : 0;
       c.face = shape.faces > 1 ? add_group("face", identity(shape.faces), kStartTau, true)
-                               : add_group("velocity", identity(1), kStartVelocityTau, false);
+                               : add_group("constant", identity(1), kStartTau, true);
+      if (shape.faces <= 1) {
+        groups_.back().posterior.emplace(
+            VariancePosterior::Prior{.scale = kConstantScale, .min_sigma = kMinTau, .max_sigma = 1.0});
+      }
     }
     c.range = add_group("range and intensity", identity(3), kStartTau, true);
     c.velocity = add_group("velocity", identity(3), kStartVelocityTau, false);
@@ -221,6 +226,11 @@ void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::
     const auto begin = static_cast<Eigen::Index>(group.begin);
     const Eigen::Index n = group.K.rows();
     const auto part = theta.segment(begin, n);
+    if (group.posterior) {
+      group.posterior->propose(part[0], covariance_root.row(begin).squaredNorm());
+      group.tau = std::sqrt(group.posterior->value());
+      continue;
+    }
     const double squares = part.dot(group.inverse * part);
     // tr(K^-1 M M^T) = |root^T M|^2 with K^-1 = root root^T
     const auto M = covariance_root.middleRows(begin, n);

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -12,6 +13,7 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/window/doppler_cells.hpp"
+#include "dynamic_icp/method/window/variance_posterior.hpp"
 #include "dynamic_icp/method/window/window_config.hpp"
 
 namespace dynamic_icp::window {
@@ -41,13 +43,13 @@ struct FieldColumns {
 ///
 ///   azimuth     piecewise constant over the field of view, exponential kernel: steps as well as smooth shapes
 ///   cross       bilinear in azimuth and elevation
-///   line, face  a constant each, where the scan has them
+///   line, face  a constant each, where the scan has them; without faces one constant
 ///   range       linear, and near the sensor; intensity: linear
 ///   velocity    columns -u: the part of the error that looks like a motion of the sensor
 ///
 /// A priori theta_g ~ N(0, tau_g^2 K_g) in each group g. The scale tau_g is learned from what the data show of the
-/// group; that of the velocity-like part follows those of the directions, because what can be seen of an error tells
-/// how large the part is that cannot.
+/// group (of the constant, which may well be large or zero, with a wide prior); that of the velocity-like part follows
+/// those of the directions, because what can be seen of an error tells how large the part is that cannot.
 class DopplerErrorField {
  public:
   explicit DopplerErrorField(const FieldShape& shape);
@@ -95,6 +97,7 @@ class DopplerErrorField {
     Eigen::MatrixXd inverse_root;  ///< L with the inverse L L^T
     double tau = 0.05;             ///< m/s
     bool is_learned = true;
+    std::optional<VariancePosterior> posterior = {};  ///< of tau^2, of a group of one column
     [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(K.rows()); }
   };
   [[nodiscard]] const std::vector<Group>& groups() const { return groups_; }
