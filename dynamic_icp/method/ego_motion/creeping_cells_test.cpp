@@ -165,7 +165,8 @@ TEST(CreepingCells, WhereTheSupportIsKnownFarThingsNeedNotStand) {
     scene.add_cell(sector, 12.0, 40, 0.0);
     scene.add_cell(sector, 20.0, 40, 0.4);
   }
-  EXPECT_EQ(count(creeping_cells(scene.rows, scene.ego, kNoise_mps, kMoving_mps, kSigmas)), 0U) << "as if the sensor erred";
+  EXPECT_EQ(count(creeping_cells(scene.rows, scene.ego, kNoise_mps, kMoving_mps, kSigmas)), 0U)
+      << "as if the sensor erred";
   for (std::size_t cell = 0; cell < scene.rows.cells(); ++cell) {
     scene.rows.on_support.push_back(cell % 2 == 0 ? 1 : 0);
   }

@@ -24,9 +24,9 @@ constexpr std::size_t kTidyPeriod = 16;
 // The table of the coarsest cells is made anew when it is larger than this and less than half of it is in use.
 constexpr std::size_t kManyRoots = 1024;
 
-// How far ranges err is seen on patches of so many points that the beams meet at a steep angle (|cos|), when there are so
-// many of them. Any surface scatters more than the ranges do: the smoothest patches of the smoothest scan tell, and the
-// estimate rises by a hundredth a scan only.
+// How far ranges err is seen on patches of so many points that the beams meet at a steep angle (|cos|), when there are
+// so many of them. Any surface scatters more than the ranges do: the smoothest patches of the smoothest scan tell, and
+// the estimate rises by a hundredth a scan only.
 constexpr double kTellingPoints = 20.0;
 constexpr double kSteep = 0.4;
 constexpr std::size_t kTellingPatches = 10;

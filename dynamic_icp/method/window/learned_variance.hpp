@@ -20,8 +20,8 @@ class LearnedVariance {
 
   [[nodiscard]] double value() const { return variance_; }
 
-  /// From the unknowns of a scan, by MacKay's fixed point q = sum x^2 / sum (1 - posterior variance / q): `squares` over
-  /// `known`. May be called again with better estimates before `keep`.
+  /// From the unknowns of a scan, by MacKay's fixed point q = sum x^2 / sum (1 - posterior variance / q): `squares`
+  /// over `known`. May be called again with better estimates before `keep`.
   void update(double squares, double known);
 
   /// The evidence of the last `update` becomes part of the past.

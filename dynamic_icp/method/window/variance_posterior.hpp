@@ -18,7 +18,8 @@ class VariancePosterior {
     double min_sigma = 0.1;  ///< the grid is between these
     double max_sigma = 10.0;
     double counts = 0.0;  ///< as if so many unknowns of standard deviation `scale` had been seen
-    bool by_differences = false;  ///< what is alike in two scans is no noise, but an error of what they are compared with
+    bool by_differences =
+        false;  ///< what is alike in two scans is no noise, but an error of what they are compared with
   };
 
   explicit VariancePosterior(const Prior& prior);
