@@ -227,7 +227,7 @@ void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::
     const Eigen::Index n = group.K.rows();
     const auto part = theta.segment(begin, n);
     if (group.posterior) {
-      group.posterior->propose(part[0], covariance_root.row(begin).squaredNorm());
+      group.posterior->update(part[0], covariance_root.row(begin).squaredNorm());
       group.tau = std::sqrt(group.posterior->value());
       continue;
     }

@@ -28,6 +28,14 @@ LearnedVariance::LearnedVariance(const Prior& prior)
       next_squares_(squares_),
       next_counts_(counts_) {}
 
+double LearnedVariance::propose(double estimate, double posterior_variance) {
+  // With the share k that the data know of x, the measurement alone was x / k with the variance q (1 - k) / k.
+  const double known = std::clamp(1.0 - posterior_variance / variance_, 0.0, 1.0);
+  next_squares_ = kMemory * squares_ + estimate * estimate - variance_ * known * (1.0 - known);
+  next_counts_ = kMemory * counts_ + known * known;
+  return renew(next_squares_, next_counts_);
+}
+
 void LearnedVariance::keep() {
   squares_ = next_squares_;
   counts_ = next_counts_;
@@ -36,15 +44,21 @@ void LearnedVariance::keep() {
 void LearnedVariance::update(double squares, double known) {
   next_squares_ = kMemory * squares_ + squares;
   next_counts_ = kMemory * counts_ + known;
-  const double ratio = std::clamp((next_squares_ + followed_squares_) / (next_counts_ + followed_counts_) / variance_,
-                                  1.0 / kMaxChange, kMaxChange);
-  const double moved = variance_ * (ratio > kMuchMore ? std::pow(ratio, kOvershoot) : ratio);
-  variance_ = std::clamp(moved, min_variance_, max_variance_);
+  renew(next_squares_, next_counts_);
 }
 
 void LearnedVariance::follow(double variance, double counts) {
   followed_squares_ = counts * variance;
   followed_counts_ = counts;
+}
+
+double LearnedVariance::renew(double squares, double counts) {
+  const double before = variance_;
+  const double ratio =
+      std::clamp((squares + followed_squares_) / (counts + followed_counts_) / variance_, 1.0 / kMaxChange, kMaxChange);
+  const double moved = variance_ * (ratio > kMuchMore ? std::pow(ratio, kOvershoot) : ratio);
+  variance_ = std::clamp(moved, min_variance_, max_variance_);
+  return variance_ / before - 1.0;
 }
 
 }  // namespace dynamic_icp::window

@@ -20,12 +20,16 @@ class LearnedVariance {
 
   [[nodiscard]] double value() const { return variance_; }
 
-  /// From the unknowns of a scan, by MacKay's fixed point q = sum x^2 / sum (1 - posterior variance / q): `squares`
-  /// over `known`. May be called again with better estimates before `keep`.
-  void update(double squares, double known);
+  /// From one unknown of a scan, its estimate and posterior variance, by Fisher's scoring: exact where the unknown is
+  /// measured on its own. May be called again with a better estimate before `keep`. By which share q grew.
+  double propose(double estimate, double posterior_variance);
 
-  /// The evidence of the last `update` becomes part of the past.
+  /// The evidence of the last `propose` becomes part of the past.
   void keep();
+
+  /// From several unknowns of a scan that depend on each other, by MacKay's fixed point
+  /// q = sum x^2 / sum (1 - posterior variance / q): `squares` over `known`. May be called again before `keep`.
+  void update(double squares, double known);
 
   /// q is held near a variance: so many unknowns of it that do not fade count besides those seen.
   void follow(double variance, double counts);
@@ -33,6 +37,8 @@ class LearnedVariance {
   [[nodiscard]] double counts() const { return next_counts_; }  ///< unknowns seen, faded
 
  private:
+  double renew(double squares, double counts);
+
   double variance_ = 1.0;
   double min_variance_ = 0.0;
   double max_variance_ = 1.0;

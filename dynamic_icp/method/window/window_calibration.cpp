@@ -12,9 +12,6 @@
 namespace dynamic_icp::window {
 namespace {
 
-// The deviations of another drive count like so many scans.
-constexpr double kCalibrationCounts = 2.0;
-
 // The first scan of a recording does not show all directions.
 constexpr double kSameView_rad = 0.15;
 
@@ -102,8 +99,8 @@ void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
   theta_ = theta;
   quadratic_.emplace(n, 0, config_.learn_vibration);
   quadratic_->set_field(Q, g);
-  stamp_variance_ = VariancePosterior(stamp_prior(calibration.stamp_sigma_s, kCalibrationCounts));
-  scan_error_variance_ = VariancePosterior(scan_error_prior(calibration.scan_error_mps, kCalibrationCounts));
+  stamp_variance_ = LearnedVariance(stamp_prior(calibration.stamp_sigma_s));
+  scan_error_variance_ = LearnedVariance(scan_error_prior(calibration.scan_error_mps));
   is_calibrated_ = true;
 }
 

@@ -19,7 +19,7 @@ ConfigFields fields(WindowConfig& config) {
       {"start_omega_rad_s", &config.start_omega_rad_s, 1e-3, 1e3, "rad/s",
        "standard deviation of the angular velocity of the first scan"},
       {"start_stamp_sigma_s", &config.start_stamp_sigma_s, 1e-7, 1.0, "s",
-       "up to this standard deviation errors of stamps are as likely as none before any was seen"},
+       "standard deviation of the stamps of scans before it is learned"},
       {"min_sigma_m", &config.min_sigma_m, 0.0, 10.0, "m", "smallest standard deviation of a point from its plane"},
       {"model_sigma_m", &config.model_sigma_m, 0.0, 10.0, "m",
        "standard deviation of a patch from a plane before it is learned"},

@@ -20,7 +20,7 @@ struct WindowConfig {
   double start_jerk_rad_s3 = 6.0;
   double start_vibration_m = 2e-4;    ///< standard deviation of the vibration before it is learned
   double start_omega_rad_s = 0.3;     ///< standard deviation of the rotation of the first scan
-  double start_stamp_sigma_s = 5e-5;  ///< up to here errors of stamps are as likely as none before any was seen
+  double start_stamp_sigma_s = 5e-5;  ///< standard deviation of stamps before it is learned
   double min_sigma_m = 0.005;         ///< smallest standard deviation of a point from its plane
   double model_sigma_m = 0.003;       ///< of a patch from a plane before it is learned
   double repeated_patches = 2.5;      ///< the error of a patch comes again in so many scans

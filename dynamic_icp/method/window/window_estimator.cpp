@@ -69,12 +69,12 @@ Matrix12d twice(const Matrix6d& A) {
 
 }  // namespace
 
-VariancePosterior::Prior WindowEstimator::stamp_prior(double sigma_s, double counts) {
-  return {.scale = sigma_s, .min_sigma = 5e-6, .max_sigma = 3e-3, .counts = counts, .by_differences = true};
+LearnedVariance::Prior WindowEstimator::stamp_prior(double sigma_s) {
+  return {.sigma = sigma_s, .counts = 2.0, .min_sigma = 1e-5, .max_sigma = 3e-3};
 }
 
-VariancePosterior::Prior WindowEstimator::scan_error_prior(double sigma_mps, double counts) {
-  return {.scale = sigma_mps, .min_sigma = 5e-4, .max_sigma = 0.5, .counts = counts};
+LearnedVariance::Prior WindowEstimator::scan_error_prior(double sigma_mps) {
+  return {.sigma = sigma_mps, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
 }
 
 WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_scans)
@@ -82,8 +82,8 @@ WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_s
       map_memory_scans_(std::max(kMinScans, map_memory_scans)),
       trajectory_(config.knot_spacing_s),
       motion_prior_(config),
-      stamp_variance_(stamp_prior(config.start_stamp_sigma_s, 0.0)),
-      scan_error_variance_(scan_error_prior(kScanError_mps, 0.0)),
+      stamp_variance_(stamp_prior(config.start_stamp_sigma_s)),
+      scan_error_variance_(scan_error_prior(kScanError_mps)),
       model_sigma_m_(config.model_sigma_m) {}
 
 void WindowEstimator::sort(const Scan& whole, const Workers& workers) {

@@ -18,11 +18,11 @@
 #include "dynamic_icp/method/window/doppler_error_field.hpp"
 #include "dynamic_icp/method/window/doppler_terms.hpp"
 #include "dynamic_icp/method/window/field_elimination.hpp"
+#include "dynamic_icp/method/window/learned_variance.hpp"
 #include "dynamic_icp/method/window/motion_prior.hpp"
 #include "dynamic_icp/method/window/plane_terms.hpp"
 #include "dynamic_icp/method/window/rest_factor.hpp"
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
-#include "dynamic_icp/method/window/variance_posterior.hpp"
 #include "dynamic_icp/method/window/window_config.hpp"
 #include "dynamic_icp/method/window/window_quadratic.hpp"
 
@@ -118,8 +118,8 @@ class WindowEstimator {
     Eigen::VectorXd g;
   };
 
-  static VariancePosterior::Prior stamp_prior(double sigma_s, double counts);
-  static VariancePosterior::Prior scan_error_prior(double sigma_mps, double counts);
+  static LearnedVariance::Prior stamp_prior(double sigma_s);
+  static LearnedVariance::Prior scan_error_prior(double sigma_mps);
   void take(const WindowScan& scan);
   void linearise_here();
   bool settle_first(const WindowScan& scan, double omega_sigma_rad_s, const Workers& workers);
@@ -193,9 +193,9 @@ class WindowEstimator {
   motion::Twist twist_;
   Eigen::MatrixXd field_covariance_root_;
   MotionPrior motion_prior_;
-  VariancePosterior stamp_variance_;       ///< s^2
-  VariancePosterior scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common
-  double cell_variance_ = 1e-4;            ///< (m/s)^2
+  LearnedVariance stamp_variance_;       ///< s^2
+  LearnedVariance scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common
+  double cell_variance_ = 1e-4;          ///< (m/s)^2
   double model_sigma_m_ = 0.003;
   double stamp_s_ = 0.0;
   double begin_s_ = 0.0;
