@@ -39,8 +39,8 @@ struct Moments {
   }
 };
 
-/// How points err along the line of sight. A plane that is seen at a grazing angle tilts towards the beam: with m lines
-/// of points on the ground the scatter of their ranges looks like a slope.
+/// How points err along the line of sight. A plane that is seen at a grazing angle tilts towards the beam: on the
+/// ground the scatter of ranges looks like a slope.
 struct RangeNoise {
   Eigen::Vector3d position = Eigen::Vector3d::Zero();  ///< m, where the sensor is, in map axes
   double variance = 0.0;                               ///< m^2, of the range of a point
