@@ -12,13 +12,13 @@
 namespace dynamic_icp::window {
 namespace {
 
-constexpr std::size_t kCellBlock = 256;
+constexpr std::size_t kFieldBlock = 256;
 
 constexpr std::size_t kAzimuths = 48;
 constexpr std::size_t kCrossAzimuths = 12;
 constexpr std::size_t kCrossElevations = 4;
 constexpr std::size_t kRigAzimuths = 16;  // of each of several sensors
-constexpr std::size_t kMaxLines = 128;
+constexpr std::size_t kMaxFieldLines = 128;
 constexpr double kCorrelation_rad = 0.35;  // of the error in azimuth
 constexpr double kMargin_rad = 0.02;
 
@@ -96,7 +96,7 @@ FieldShape DopplerErrorField::shape_of(const std::vector<DopplerCell>& cells, st
   }
   const double spread = std::sqrt(std::max(0.0, intensity_squares - shape.intensity_mean * shape.intensity_mean));
   shape.intensity_scale = spread > 0.0 ? 1.0 / spread : 0.0;
-  shape.lines = sensors > 1 || shape.lines > kMaxLines ? 0 : shape.lines;
+  shape.lines = sensors > 1 || shape.lines > kMaxFieldLines ? 0 : shape.lines;
   for (std::size_t s = 0; s < sensors; ++s) {
     double azimuth_low = 4.0, azimuth_high = -4.0, elevation_low = 2.0, elevation_high = -2.0;
     for (const DopplerCell& cell : cells) {
@@ -130,8 +130,7 @@ DopplerErrorField::DopplerErrorField(const FieldShape& shape) : shape_(shape) {
       c.face = shape.faces > 1 ? add_group("face", identity(shape.faces), kStartTau, true)
                                : add_group("constant", identity(1), kStartTau, true);
       if (shape.faces <= 1) {
-        groups_.back().posterior.emplace(
-            VariancePosterior::Prior{.scale = kConstantScale, .min_sigma = kMinTau, .max_sigma = 1.0});
+        groups_.back().tau_prior = VariancePrior{.scale = kConstantScale, .min_sigma = kMinTau, .max_sigma = 1.0};
       }
     }
     c.range = add_group("range and intensity", identity(3), kStartTau, true);
@@ -149,7 +148,7 @@ FieldColumns DopplerErrorField::columns(const DopplerCell& cell) const {
 std::vector<FieldColumns> DopplerErrorField::columns(const std::vector<DopplerCell>& cells,
                                                      const Workers& workers) const {
   std::vector<FieldColumns> result(cells.size());
-  workers.for_each(cells.size(), kCellBlock, [&](std::size_t k) { result[k] = columns(cells[k]); });
+  workers.for_each(cells.size(), kFieldBlock, [&](std::size_t k) { result[k] = columns(cells[k]); });
   return result;
 }
 
@@ -226,9 +225,9 @@ void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::
     const auto begin = static_cast<Eigen::Index>(group.begin);
     const Eigen::Index n = group.K.rows();
     const auto part = theta.segment(begin, n);
-    if (group.posterior) {
-      group.posterior->update(part[0], covariance_root.row(begin).squaredNorm());
-      group.tau = std::sqrt(group.posterior->value());
+    if (group.tau_prior) {
+      group.tau = std::sqrt(posterior_variance(
+          *group.tau_prior, {part[0], covariance_root.row(begin).squaredNorm(), group.tau * group.tau}));
       continue;
     }
     const double squares = part.dot(group.inverse * part);
