@@ -16,24 +16,23 @@ for target in "${targets[@]}"; do
   [[ " ${known[*]} " == *" $target "* ]] || { echo "unknown target '$target'; known are: ${known[*]}" >&2; exit 2; }
 done
 
-scripts/install_dependencies.sh fuzzing
+scripts/install_dependencies.sh fuzzing tests
 
-build=build-fuzz
+build=build-method
+results=build-fuzz
 echo "== Configuring and building"
-cmake -S . -B $build -G Ninja -DCMAKE_BUILD_TYPE=RelWithDebInfo -DCMAKE_CXX_COMPILER=clang++ \
-  -DDYNAMIC_ICP_BUILD_FUZZERS=ON -DDYNAMIC_ICP_BUILD_TESTS=OFF -DDYNAMIC_ICP_BUILD_APPS=OFF \
-  -DDYNAMIC_ICP_SANITIZE=address,undefined | grep -iE 'warning|error' || true
-cmake --build $build --target fuzzers
-$build/fuzz/fuzz_seeds $build/seeds
-mkdir -p $build/findings
+cmake --preset method | grep -iE 'warning|error' || true
+cmake --build --preset method --target fuzzers
+$build/fuzz/fuzz_seeds "$results/seeds"
+mkdir -p "$results/findings"
 
 run() {  # target
-  mkdir -p "$build/corpus/$1"
+  mkdir -p "$results/corpus/$1"
   if "$build/fuzz/fuzz_$1" -max_total_time="$seconds" -seed="${SEED:-1}" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=8192 \
-    -artifact_prefix="$build/findings/$1-" "$build/corpus/$1" "$build/seeds/$1" >"$build/$1.log" 2>&1; then
-    echo "$1: $(grep -E '^Done' "$build/$1.log" || echo done)"
+    -artifact_prefix="$results/findings/$1-" "$results/corpus/$1" "$results/seeds/$1" >"$results/$1.log" 2>&1; then
+    echo "$1: $(grep -E '^Done' "$results/$1.log" || echo done)"
   else
-    echo "$1: FINDING, see $build/$1.log"
+    echo "$1: FINDING, see $results/$1.log"
     return 1
   fi
 }

@@ -19,6 +19,8 @@
 
 namespace dynamic_icp::tracking {
 
+inline constexpr double kScanPeriod_s = 0.1;
+
 // A world for tests: boxes that move on level ground, 1.5 m below the origin, before a distant wall, and a sensor that
 // may move, turn, be tilted and sweep. Every point is where a ray meets a surface; every Doppler is that of the
 // material point over ground.

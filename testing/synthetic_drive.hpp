@@ -14,6 +14,7 @@
 
 #include "dynamic_icp/method/odometry/odometry.hpp"
 
+#include "testing/dense_algebra.hpp"
 #include "testing/synthetic_street.hpp"
 
 // Drives through synthetic scenes, and how far it is from their equations.
@@ -102,7 +103,7 @@ inline Vector6d twist_error(const Drive& drive, const Frame& frame, int k) {
 
 /// Squared error over its stated variance: about the number of unknowns where the covariance is right.
 inline double nis(const Vector6d& error, const Matrix6d& covariance) {
-  return error.dot(covariance.ldlt().solve(error));
+  return dense::normalised_squared(error, covariance);
 }
 
 inline bool same_bits(const Frame& a, const Frame& b) {

@@ -16,10 +16,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kWrongUsage = 2;
-
 class BadInput : public ProgramTest {
  protected:
   /// A copy of the first scans of the street that the test may damage.

@@ -18,10 +18,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kWrongUsage = 2;
-
 class Output : public ProgramTest {
  protected:
   [[nodiscard]] std::string at(const std::string& name) const { return (folder_ / name).string(); }

@@ -8,9 +8,6 @@
 namespace dynamic_icp::tests {
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kWrongUsage = 2;
-
 class OversizedInput : public ProgramTest {
  protected:
   void SetUp() override {

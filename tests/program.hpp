@@ -12,6 +12,11 @@ namespace dynamic_icp::tests {
 
 namespace fs = std::filesystem;
 
+// Exit statuses.
+inline constexpr int kDone = 0;
+inline constexpr int kFailed = 1;
+inline constexpr int kWrongUsage = 2;
+
 /// What a run of the program gave.
 struct Outcome {
   int status = -1;   ///< exit status; 128 + the signal when it was killed

@@ -9,6 +9,9 @@
 
 namespace dynamic_icp {
 
+/// The block of a loop that does little for each point.
+inline constexpr std::size_t kPointBlock = 4096;
+
 /// A limited number of threads that run loops over fixed blocks. It is passed to whoever needs it: there is no global
 /// setting, and two objects with different limits do not disturb each other.
 ///

@@ -10,8 +10,6 @@
 namespace dynamic_icp {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
-
 enum class Verdict { kKept, kNonFinite, kImplausible, kZeroRange, kOutOfRange, kFlagged };
 
 /// What becomes of one record.
@@ -108,8 +106,8 @@ void Scan::assign(const ScanView& raw, const RangeLimits& limits, const Workers&
   mountings_.assign(raw.mountings.begin(), raw.mountings.end());
   resize(n, raw);
   // Each block fills the beginning of its own rows; gaps, which are rare, are closed afterwards.
-  std::vector<Dropped> counts(Workers::block_count(n, kBlock));
-  workers.for_blocks(n, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  std::vector<Dropped> counts(Workers::block_count(n, kPointBlock));
+  workers.for_blocks(n, kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::size_t row = begin;
     for (std::size_t i = begin; i < end; ++i) {
       const Record record = evaluate(raw, i, limits, window);
@@ -136,8 +134,8 @@ void Scan::assign(const ScanView& raw, const RangeLimits& limits, const Workers&
   std::size_t rows = 0;
   for (std::size_t block = 0; block < counts.size(); ++block) {
     const Dropped& lost = counts[block];
-    const std::size_t begin = block * kBlock;
-    const std::size_t kept = std::min(n, begin + kBlock) - begin - lost.total();
+    const std::size_t begin = block * kPointBlock;
+    const std::size_t kept = std::min(n, begin + kPointBlock) - begin - lost.total();
     for_each_column([&](auto& column) { move_within(column, begin, rows, kept); });
     rows += kept;
     sum += lost;

@@ -17,7 +17,7 @@ using spatial::Neighbour;
 
 constexpr std::size_t kLeavesPerBlock = 32;
 constexpr std::size_t kMaxNeighbours = 16;
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnbounded = std::numeric_limits<double>::infinity();
 
 /// What was found around one point: positions and squared distances, the point itself among them.
 struct Found {
@@ -36,7 +36,7 @@ using Places = std::array<std::uint32_t, kMaxRanked>;
 DYNAMIC_ICP_INLINE bool order_by_rank(std::span<const double> squared, Places& places) {
   const std::size_t n = squared.size();
   std::array<double, kMaxRanked> values;
-  values.fill(kInfinity);
+  values.fill(kUnbounded);
   std::copy_n(squared.data(), n, values.begin());
   std::size_t sum_of_ranks = 0;
   for (std::size_t begin = 0; begin < n; begin += simd::kLanes) {
@@ -117,12 +117,12 @@ void keep_dense_neighbours(CoreDistances& cores, std::size_t position) {
 CoreDistances core_distances(const KdTree& tree, std::span<const Eigen::Vector3d> points, std::size_t min_samples,
                              const Workers& workers) {
   CoreDistances cores;
-  cores.squared.assign(tree.leaf_count() * KdTree::kLeafSize, kInfinity);
+  cores.squared.assign(tree.leaf_count() * KdTree::kLeafSize, kUnbounded);
   std::fill_n(cores.squared.begin(), tree.size(), 0.0);
   cores.neighbours_each = std::min(min_samples, kMaxNeighbours);
   cores.neighbours.resize(points.size() * cores.neighbours_each);
   workers.for_blocks(tree.leaf_count(), kLeavesPerBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-    spatial::Neighbourhoods found(tree, min_samples + 1, kInfinity);
+    spatial::Neighbourhoods found(tree, min_samples + 1, kUnbounded);
     for (std::size_t leaf = begin; leaf < end; ++leaf) {
       found.search(leaf);
       simd::run([&]() DYNAMIC_ICP_KERNEL {

@@ -20,7 +20,7 @@ namespace {
 
 using Members = std::vector<std::size_t>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kFar = std::numeric_limits<double>::infinity();
 
 struct Link {
   double weight;
@@ -50,7 +50,7 @@ std::vector<Link> matrix_tree(const Points& points, std::size_t min_samples) {
     const std::tuple key_b(b.x(), b.y(), b.z(), link.second);
     return std::tuple(link.weight, link.length, std::min(key_a, key_b), std::max(key_a, key_b));
   };
-  std::vector<Link> best(n, Link{kInfinity, kInfinity, 0, 0});
+  std::vector<Link> best(n, Link{kFar, kFar, 0, 0});
   std::vector<bool> inside(n, false);
   std::vector<Link> tree;
   for (std::size_t last = 0; tree.size() + 1 < n;) {

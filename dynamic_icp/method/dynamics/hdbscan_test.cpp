@@ -16,7 +16,7 @@
 namespace dynamic_icp::dynamics {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNever = std::numeric_limits<double>::infinity();
 
 TEST(Hdbscan, FewPointsAreNoise) {
   const Points points{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {5, 5, 5}, {5, 5, 6}};
@@ -194,7 +194,7 @@ TEST(Hdbscan, RefusesWrongConfigurationsAndPoints) {
   EXPECT_THROW(hdbscan(points, HdbscanConfig{1, 10, false}, Workers(1)), UsageError);
   EXPECT_THROW(hdbscan(points, HdbscanConfig{30, 0, false}, Workers(1)), UsageError);
   EXPECT_THROW(hdbscan(Points(), HdbscanConfig{0, 10, false}, Workers(1)), UsageError);
-  for (const double bad : {kInfinity, std::numeric_limits<double>::quiet_NaN(), 1e160}) {
+  for (const double bad : {kNever, std::numeric_limits<double>::quiet_NaN(), 1e160}) {
     points[17].y() = bad;
     EXPECT_THROW(hdbscan(points, HdbscanConfig{}, Workers(1)), DataError);
   }

@@ -9,6 +9,8 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::dynamics {
 namespace {
 
@@ -62,8 +64,8 @@ TEST(ObjectVelocity, EqualsTheOrthogonalLeastSquaresSolution) {
     U.row(i) = c.scan.directions()[static_cast<std::size_t>(i)];
   }
   const Eigen::Map<const Eigen::VectorXd> s(c.compensated.data(), 80);
-  const Vector3d expected = U.colPivHouseholderQr().solve(s);
-  const Eigen::VectorXd singular = U.bdcSvd().singularValues();
+  const Vector3d expected = dense::least_squares(U, s);
+  const Eigen::VectorXd singular = dense::singular_values(U);
   const ObjectEstimate object = only_object(c);
   EXPECT_LT((object.velocity_sensor - expected).norm(), 1e-9);
   EXPECT_NEAR(object.smallest_singular_value, singular[2], 1e-9);

@@ -285,7 +285,7 @@ EgoVelocity nothing_but_prior(std::size_t points, const EgoPrior& prior, const C
 }
 
 /// False when rows that hardly determine the motion have carried it away from anything that moves.
-bool is_plausible(const EgoVelocity& ego) {
+bool is_plausible_motion(const EgoVelocity& ego) {
   return ego.velocity_sensor.norm() <= kMaxDoppler_mps && ego.acceleration_sensor.norm() <= kMaxAcceleration_mps2 &&
          ego.joint_covariance.allFinite();
 }
@@ -362,7 +362,7 @@ EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, co
   if (result.inliers > 0) {
     result.inlier_rms_mps = std::sqrt(fit.sums.inlier_squared / static_cast<double>(result.inliers));
   }
-  if (!is_plausible(result)) {
+  if (!is_plausible_motion(result)) {
     result = expected;
     result.reference_time_s = rows.reference_time_s;
     result.status = EgoVelocityStatus::kAmbiguous;

@@ -13,6 +13,7 @@
 #include "dynamic_icp/method/ego_motion/ego_filter.hpp"
 
 #include "testing/crowded_road.hpp"
+#include "testing/dense_algebra.hpp"
 
 namespace dynamic_icp::ego_motion {
 namespace {
@@ -68,7 +69,7 @@ TEST(ConsensusRegression, IsCloseToLeastSquaresInAStaticScene) {
     J.row(i) << -scan.directions()[static_cast<std::size_t>(i)].transpose(), 1.0;
     s[i] = scan.doppler()[static_cast<std::size_t>(i)];
   }
-  const Eigen::Vector4d expected = J.colPivHouseholderQr().solve(s);
+  const Eigen::Vector4d expected = dense::least_squares(J, s);
   const EgoVelocity ego = estimate(scan);
   // Tukey's estimate differs from least squares by a fraction of the standard deviation of either.
   const Eigen::Matrix4d covariance = 0.05 * 0.05 * (J.transpose() * J).inverse();

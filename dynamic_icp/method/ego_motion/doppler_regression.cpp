@@ -8,10 +8,10 @@
 namespace dynamic_icp::ego_motion {
 namespace {
 
-constexpr std::size_t kUnknowns = 3;
+constexpr std::size_t kVelocityUnknowns = 3;
 
 /// False when lines of sight that hardly determine the velocity have carried it away from anything that moves.
-bool is_plausible(const EgoVelocity& ego) {
+bool is_plausible_velocity(const EgoVelocity& ego) {
   return ego.velocity_sensor.norm() <= kMaxDoppler_mps && ego.covariance.allFinite();
 }
 
@@ -43,7 +43,7 @@ EgoVelocity estimate_velocity(const Scan& scan, const Eigen::Vector3d& prior_sen
   EgoVelocity result;
   result.velocity_sensor = prior_sensor;
   result.points = scan.size();
-  if (scan.size() < kUnknowns) {
+  if (scan.size() < kVelocityUnknowns) {
     result.status = EgoVelocityStatus::kTooFewPoints;
     result.unobservable.setIdentity();
     return result;
@@ -64,7 +64,7 @@ EgoVelocity estimate_velocity(const Scan& scan, const Eigen::Vector3d& prior_sen
   result.iterations = scene.iterations;
   result.inliers = scene.inliers;
   result.inlier_rms_mps = scene.inlier_rms_mps;
-  return is_plausible(result) ? result : undetermined(prior_sensor, scan.size(), result.iterations);
+  return is_plausible_velocity(result) ? result : undetermined(prior_sensor, scan.size(), result.iterations);
 }
 
 }  // namespace dynamic_icp::ego_motion

@@ -8,6 +8,8 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::ego_motion {
 namespace {
 
@@ -60,7 +62,7 @@ TEST(DopplerRegression, IsOrdinaryLeastSquaresWhereAllResidualsAreSmall) {
     U.row(i) = scan.directions()[static_cast<std::size_t>(i)];
     s[i] = scan.doppler()[static_cast<std::size_t>(i)];
   }
-  const Vector3d expected = U.colPivHouseholderQr().solve(-s);
+  const Vector3d expected = dense::least_squares(U, -s);
   const EgoVelocity ego = estimate(scan);
   EXPECT_LT((ego.velocity_sensor - expected).norm(), 1e-5);
   // Then the covariance is the textbook one, s^2 (U^T U)^-1.

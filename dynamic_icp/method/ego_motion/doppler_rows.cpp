@@ -13,7 +13,6 @@ namespace {
 
 constexpr std::size_t kEnoughCells = 300;
 constexpr int kMaxHalvings = 6;
-constexpr std::size_t kBlock = 4096;
 
 // Edge of a direction sector on the unit cube, three to six degrees. What errs together,
 // the surfaces of one object, falls into one sector or a few.
@@ -34,7 +33,7 @@ std::uint64_t sector_key(const Eigen::Vector3d& u) {
 void place_in_cells(const Scan& scan, double cell_size_m, const Workers& workers, spatial::CellOrder& order) {
   order.keys.resize(scan.size());
   const double per_cell = 1.0 / cell_size_m;
-  workers.for_each(scan.size(), kBlock,
+  workers.for_each(scan.size(), kPointBlock,
                    [&](std::size_t i) { order.keys[i] = spatial::clamped_cell_key(per_cell * scan.points()[i]); });
   order.sort();
 }
@@ -83,7 +82,7 @@ void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& worker
   }
   rows.range.resize(order.cells());
   rows.key.resize(order.cells());
-  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+  workers.for_each(scan.size(), kPointBlock, [&](std::size_t i) {
     const std::uint32_t row = order.place(i);
     rows.ux[row] = scan.directions()[i].x();
     rows.uy[row] = scan.directions()[i].y();

@@ -8,8 +8,6 @@
 namespace dynamic_icp::ego_motion {
 namespace {
 
-constexpr double kCalibratedVariance = 0.005 * 0.005;  // (m/s)^2, of a sensor that counts as calibrated
-
 /// Logarithm of the normal density at a distance from its mean, without the constant that cancels.
 double log_density(double distance, double variance) {
   return -0.5 * (distance * distance / variance + std::log(variance));

@@ -7,6 +7,9 @@
 
 namespace dynamic_icp::ego_motion {
 
+/// (m/s)^2, of the Doppler error of a sensor that counts as calibrated.
+inline constexpr double kCalibratedVariance = 0.005 * 0.005;
+
 struct DriftConfig {
   double start_acceleration_mps2 = 3.0;  ///< standard deviation of the acceleration at the first scan
   double start_bias_mps = 0.2;           ///< standard deviation of the Doppler bias at the first scan

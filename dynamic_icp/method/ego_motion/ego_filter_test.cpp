@@ -8,6 +8,8 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::ego_motion {
 namespace {
 
@@ -42,7 +44,7 @@ TEST(EgoFilter, CarriesTheCovarianceOfSampledMotions) {
   const EgoPrior prior = predict(ego, kDt, config);
   std::mt19937 random(2);
   std::normal_distribution<double> normal;
-  const Matrix7d root = ego.joint_covariance.llt().matrixL();
+  const Matrix7d root = dense::cholesky_root(ego.joint_covariance);
   Matrix7d sum = Matrix7d::Zero();
   constexpr int kDraws = 40000;
   for (int k = 0; k < kDraws; ++k) {

@@ -17,13 +17,11 @@
 namespace dynamic_icp::ego_motion {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
-constexpr int kMaxSteps = 20;
+constexpr int kMaxRigSteps = 20;
 constexpr double kStepTolerance_mps = 3e-4;
 constexpr double kUnknownVelocity_mps = 30.0;
 constexpr double kUnknownRotation_rad_s = 10.0;
-constexpr double kStartRotation_rad_s = 0.5;           // of a vehicle at its first scan
-constexpr double kCalibratedVariance = 0.005 * 0.005;  // (m/s)^2, as for a single sensor (ego_filter.cpp)
+constexpr double kStartRotation_rad_s = 0.5;  // of a vehicle at its first scan
 
 // The unknowns X = [v; a; omega; alpha; b_1 .. b_K], the last three as changes of what was taken out of the Doppler.
 constexpr Eigen::Index kOmega = 6;
@@ -153,7 +151,7 @@ Priors priors_of(const RigPrior& rig, const AngularMotion& expected, const RigDo
 RigSums minimise(std::vector<SensorRows>& sensors, const Priors& priors, double max_noise_mps, const Workers& workers,
                  Eigen::VectorXd& X) {
   RigSums sums = sum_rig(sensors, X, max_noise_mps, workers);
-  for (int step = 0; step < kMaxSteps; ++step) {
+  for (int step = 0; step < kMaxRigSteps; ++step) {
     const Eigen::MatrixXd information = sums.information + priors.information;
     const Eigen::VectorXd change = -information.ldlt().solve(sums.gradient + priors.information * (X - priors.mean));
     const bool is_done = !sums.widened && change.head<3>().norm() < kStepTolerance_mps;
@@ -190,7 +188,7 @@ AngularInformation angular_information(const RigSums& sums, const Priors& priors
 }
 
 /// False when rows that hardly determine the motion have carried it away from anything that moves.
-bool is_plausible(const Eigen::VectorXd& X, const Eigen::MatrixXd& covariance) {
+bool is_plausible_rig(const Eigen::VectorXd& X, const Eigen::MatrixXd& covariance) {
   return X.allFinite() && covariance.allFinite() && covariance.diagonal().minCoeff() > 0.0 &&
          X.head<3>().norm() <= kMaxDoppler_mps && X.segment<3>(3).norm() <= kMaxAcceleration_mps2 &&
          X.segment<3>(kOmega).norm() <= kUnknownRotation_rad_s;
@@ -236,7 +234,7 @@ std::vector<std::vector<std::uint32_t>> rows_by_sensor(const Scan& scan) {
 }
 
 void reduce_to_origin(Scan& scan, const RigDoppler& rig, const Workers& workers, double sign) {
-  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+  workers.for_each(scan.size(), kPointBlock, [&](std::size_t i) {
     const std::uint8_t k = scan.channels().sensor[i];
     const double dt = scan.has_times() ? scan.times()[i] - rig.reference_time_s : 0.0;
     const Eigen::Vector3d of_lever_arm = (rig.omega + dt * rig.alpha).cross(scan.mountings()[k].translation());
@@ -327,7 +325,7 @@ RigEstimate estimate_rig_motion(const Scan& scan, const RigDoppler& reduced, con
   const Eigen::MatrixXd covariance = Eigen::MatrixXd(sums.information + priors.information)
                                          .ldlt()
                                          .solve(Eigen::MatrixXd::Identity(X.size(), X.size()));
-  if (!is_plausible(X, covariance)) {
+  if (!is_plausible_rig(X, covariance)) {
     return result;
   }
   result.rotation = angular_information(sums, priors, X, reduced);

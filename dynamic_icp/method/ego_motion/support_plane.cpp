@@ -28,8 +28,8 @@ constexpr double kBeyond_m = -0.5;
 // The side of a vehicle is long, but not wide: standard deviation along the shorter direction. And a plane of few
 // points is one by chance.
 constexpr double kMinWidth_m = 2.0;
-constexpr double kMinShare = 0.1;
-constexpr std::size_t kMinPoints = 30;
+constexpr double kMinPlaneShare = 0.1;
+constexpr std::size_t kMinPlanePoints = 30;
 
 struct Count {
   std::size_t on = 0;
@@ -87,7 +87,7 @@ std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points)
 
 std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d>& points) {
   const std::vector<Eigen::Vector3d> few = thinned(points);
-  if (few.size() < kMinPoints) {
+  if (few.size() < kMinPlanePoints) {
     return std::nullopt;
   }
   const RandomSource random(0);
@@ -111,7 +111,7 @@ std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d
       }
     }
   }
-  if (most < std::max(kMinPoints, static_cast<std::size_t>(kMinShare * static_cast<double>(few.size())))) {
+  if (most < std::max(kMinPlanePoints, static_cast<std::size_t>(kMinPlaneShare * static_cast<double>(few.size())))) {
     return std::nullopt;
   }
   return fitted(best, few);

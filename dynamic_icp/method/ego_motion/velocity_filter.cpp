@@ -5,11 +5,7 @@
 #include <cmath>
 
 namespace dynamic_icp::ego_motion {
-namespace {
-
-constexpr std::size_t kBlock = 4096;
-
-}  // namespace
+namespace {}  // namespace
 
 ConfigFields fields(VelocityFilterConfig& config) {
   return {
@@ -31,7 +27,7 @@ std::vector<double> compensated_doppler(const Scan& scan, const Eigen::Vector3d&
 void compensated_doppler(const Scan& scan, const EgoVelocity& ego, const Workers& workers,
                          std::vector<double>& compensated) {
   compensated.resize(scan.size());
-  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+  workers.for_each(scan.size(), kPointBlock, [&](std::size_t i) {
     const double after = scan.has_times() ? scan.times()[i] - ego.reference_time_s : 0.0;
     const Eigen::Vector3d velocity = ego.velocity_sensor + after * ego.acceleration_sensor;
     compensated[i] = scan.doppler()[i] - ego.bias_mps + scan.directions()[i].dot(velocity);
@@ -49,7 +45,7 @@ void dynamic_mask(const Scan& scan, const std::vector<double>& compensated, cons
                   const Workers& workers, std::vector<std::uint8_t>& mask) {
   mask.assign(scan.size(), 0);
   if (config.enabled) {
-    workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+    workers.for_each(scan.size(), kPointBlock, [&](std::size_t i) {
       const double beyond = std::abs(compensated[i]) - config.tau_0_mps;
       const bool moves = beyond > 0.0 && beyond > config.kappa_per_s * scan.points()[i].norm();
       mask[i] = moves ? 1 : 0;

@@ -7,6 +7,8 @@
 #include <Eigen/QR>
 #include <gtest/gtest.h>
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::estimation {
 namespace {
 
@@ -40,7 +42,7 @@ Problem random_problem(unsigned seed, Eigen::Index n) {
 TEST(NormalEquations, AgreeWithTheOrthogonalSolution) {
   const Problem problem = random_problem(1, 200);
   const Eigen::VectorXd root = problem.w.cwiseSqrt();
-  const Vector6d expected = (root.asDiagonal() * problem.J).colPivHouseholderQr().solve(-root.cwiseProduct(problem.e));
+  const Vector6d expected = dense::least_squares(root.asDiagonal() * problem.J, -root.cwiseProduct(problem.e));
   const Solution solution = solve(problem.equations(), 40.0, kRankTolerance);
   EXPECT_TRUE(solution.degenerate.empty());
   EXPECT_LT((solution.xi - expected).norm(), 1e-12);

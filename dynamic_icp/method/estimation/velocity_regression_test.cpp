@@ -13,6 +13,8 @@
 
 #include "dynamic_icp/method/base/random_source.hpp"
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::estimation {
 namespace {
 
@@ -58,7 +60,7 @@ Vector3d newton_minimum(const Rows& rows, Vector3d v) {
         hessian += u * u.transpose();
       }
     }
-    v -= hessian.partialPivLu().solve(gradient);
+    v -= dense::solve(hessian, gradient);
   }
   return v;
 }
@@ -84,7 +86,7 @@ TEST(VelocityRegression, IsLeastSquaresInOneStepWithoutAThreshold) {
     U.row(i) = rows.directions[static_cast<std::size_t>(i)];
   }
   const Eigen::Map<const Eigen::VectorXd> r(rows.range_rates.data(), 120);
-  const Vector3d expected = U.colPivHouseholderQr().solve(r);
+  const Vector3d expected = dense::least_squares(U, r);
   const VelocityRegression fit =
       regress(rows, std::nullopt, {.huber_delta_mps = std::numeric_limits<double>::infinity(), .rank = Rank::kFull});
   EXPECT_EQ(fit.iterations, 1);

@@ -7,7 +7,7 @@
 namespace dynamic_icp::mapping {
 namespace {
 
-constexpr std::size_t kBlock = PlaneRows::kMost;
+constexpr std::size_t kFitBlock = PlaneRows::kMost;
 
 // A patch tells of itself with so many points on it.
 constexpr std::uint32_t kInformativePoints = 5;
@@ -29,7 +29,7 @@ void PlaneFit::associate(const Eigen::Isometry3d& T_map_sensor, const motion::Sw
   stride_ = stride;
   const motion::Deskewer deskewer(sweep, span_);
   const std::size_t count = Workers::block_count(scan_.size(), stride);
-  workers_.for_each(count, kBlock, [&](std::size_t k) {
+  workers_.for_each(count, kFitBlock, [&](std::size_t k) {
     const std::size_t i = k * stride;
     const Eigen::Vector3d& point = scan_.points()[i];
     at_stamp_[i] = scan_.has_times() ? deskewer.at_stamp(point, scan_.times()[i]) : point;
@@ -52,11 +52,11 @@ void PlaneFit::associate(const Eigen::Isometry3d& T_map_sensor, const motion::Sw
 
 PlaneSums PlaneFit::linearise(const PlaneNoise& noise, const PlaneWeights& weights) const {
   const std::size_t count = Workers::block_count(scan_.size(), stride_);
-  return workers_.sum_blocks(count, kBlock, PlaneSums{}, [&](std::size_t begin, std::size_t end) {
+  return workers_.sum_blocks(count, kFitBlock, PlaneSums{}, [&](std::size_t begin, std::size_t end) {
     PlaneSums sums;
     PlaneRows rows;
-    for (; begin < end; begin += kBlock) {
-      fill(rows, begin, std::min(end, begin + kBlock), noise);
+    for (; begin < end; begin += kFitBlock) {
+      fill(rows, begin, std::min(end, begin + kFitBlock), noise);
       sums += sum_planes(rows, T_map_sensor_.linear(), scan_.has_times(), weights);
     }
     return sums;
@@ -93,12 +93,12 @@ void PlaneFit::fill(PlaneRows& rows, std::size_t begin, std::size_t end, const P
 Eigen::Matrix3d PlaneFit::position_information_of_noise(const PlaneNoise& noise, const PlaneWeights& weights) const {
   const std::size_t count = Workers::block_count(scan_.size(), stride_);
   const Eigen::Matrix3d zero = Eigen::Matrix3d::Zero();
-  return workers_.sum_blocks(count, kBlock, zero, [&](std::size_t begin, std::size_t end) {
+  return workers_.sum_blocks(count, kFitBlock, zero, [&](std::size_t begin, std::size_t end) {
     Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
     PlaneRows rows;
     RowWeights row_weights;
-    for (; begin < end; begin += kBlock) {
-      const std::size_t last = std::min(end, begin + kBlock);
+    for (; begin < end; begin += kFitBlock) {
+      const std::size_t last = std::min(end, begin + kFitBlock);
       fill(rows, begin, last, noise);
       weigh(rows, weights, row_weights);
       std::size_t row = 0;

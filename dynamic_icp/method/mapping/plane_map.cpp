@@ -13,7 +13,7 @@
 namespace dynamic_icp::mapping {
 namespace {
 
-constexpr std::size_t kBlock = 64;
+constexpr std::size_t kPatchBlock = 64;
 
 // Cells that no point has met for so many times the memory hold nothing that still counts.
 constexpr double kLifetimes = 2.0;
@@ -153,7 +153,7 @@ void PlaneMap::fit_level(double edge_m, const Workers& workers) {
       cells_[fitting.cell].patch = patch;
     }
   }
-  workers.for_each(fitting_.size(), kBlock, [&](std::size_t i) {
+  workers.for_each(fitting_.size(), kPatchBlock, [&](std::size_t i) {
     const auto [number, key] = fitting_[i];
     Cell& cell = cells_[number];
     const std::optional<Plane> plane =

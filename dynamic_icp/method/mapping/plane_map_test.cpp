@@ -11,12 +11,12 @@
 
 #include <gtest/gtest.h>
 
+#include "testing/one_thread.hpp"
+
 namespace dynamic_icp::mapping {
 namespace {
 
 using Eigen::Vector3d;
-
-const Workers kOneThread(1);
 
 /// A floor at `height` around a place, sampled at random.
 std::vector<Vector3d> floor_at(double height, const Vector3d& place, unsigned seed, std::size_t count = 6000) {

@@ -11,7 +11,7 @@ namespace dynamic_icp::motion {
 namespace {
 
 constexpr std::size_t kIntervals = 96;
-constexpr std::size_t kBlock = 2048;
+constexpr std::size_t kDeskewBlock = 2048;
 constexpr double kMinInterval_s = 1e-12;  // what takes less is an instant
 
 }  // namespace
@@ -37,7 +37,7 @@ Deskewer::Deskewer(const SweepMotion& sweep, const TimeSpan& span) : first_(span
 std::vector<Eigen::Vector3d> deskewed_points(const Scan& scan, const SweepMotion& sweep, const Workers& workers) {
   std::vector<Eigen::Vector3d> points = scan.points();
   const Deskewer deskewer(sweep, time_span(scan));
-  workers.for_each(scan.times().size(), kBlock,
+  workers.for_each(scan.times().size(), kDeskewBlock,
                    [&](std::size_t row) { points[row] = deskewer.at_stamp(points[row], scan.times()[row]); });
   return points;
 }
@@ -49,7 +49,7 @@ Scan deskew(Scan scan, const SweepMotion& sweep, const Workers& workers) {
 
 Scan deskew(Scan scan, const SweepMotion& sweep, const TimeSpan& plausible, const Workers& workers) {
   const Deskewer deskewer(sweep, plausible);
-  workers.for_each(scan.times().size(), kBlock, [&](std::size_t row) {
+  workers.for_each(scan.times().size(), kDeskewBlock, [&](std::size_t row) {
     const Eigen::Vector3d& point = scan.points()[row];
     const double tau = std::clamp(scan.times()[row], plausible.first, plausible.last);
     scan.displace(row, deskewer.at_stamp(point, tau) - point);

@@ -10,6 +10,8 @@
 
 #include "dynamic_icp/method/base/se3.hpp"
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::motion {
 namespace {
 
@@ -62,8 +64,7 @@ TEST(RotationFilter, KeepsTheDeviationOfTheAngularAcceleration) {
     state = predict(state, 0.1, config);
   }
   EXPECT_NEAR(std::sqrt(state.covariance(6, 6)), config.alpha_rad_s2, 1e-6);
-  EXPECT_EQ(state.covariance.ldlt().info(), Eigen::Success);
-  EXPECT_TRUE(state.covariance.ldlt().isPositive());
+  EXPECT_GE(dense::symmetric_parts(state.covariance).values.minCoeff(), 0.0);
 }
 
 /// A prediction whose errors are independent, with the standard deviations 1e-3 rad, 1e-2 rad/s and 0.1 rad/s^2.

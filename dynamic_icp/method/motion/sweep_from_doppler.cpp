@@ -24,7 +24,6 @@ constexpr Eigen::Index kBias = 3;
 constexpr Eigen::Index kChange = 4;  // three for each order
 constexpr Eigen::Index kDoppler = 10;
 
-constexpr std::size_t kBlock = 4096;
 constexpr double kMaxInterval = 1.6;  // of the period
 constexpr std::size_t kMinScans = 6;
 
@@ -178,7 +177,7 @@ SweepSums sweep_sums(const RawScan& raw, const Scan& scan, std::span<const std::
     }
     return SweepSums::Matrix(block.selfadjointView<Eigen::Lower>());
   };
-  return {time_s, workers.sum_blocks(rows.size(), kBlock, SweepSums::Matrix::Zero().eval(), products)};
+  return {time_s, workers.sum_blocks(rows.size(), kPointBlock, SweepSums::Matrix::Zero().eval(), products)};
 }
 
 SweepDuration sweep_duration(std::span<const std::vector<SweepSums>> stretches, PointOrder order, double period_s) {

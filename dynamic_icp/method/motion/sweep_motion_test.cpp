@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-SweepMotion turning_drive() {
+SweepMotion turning_sweep() {
   SweepMotion sweep;
   sweep.omega = {0.10, -0.20, 0.60};
   sweep.alpha = {-0.5, 0.8, 0.3};
@@ -35,7 +35,7 @@ Eigen::Isometry3d integrated(const SweepMotion& sweep, double tau) {
 }
 
 TEST(SweepMotion, IsTheIntegralOfItsRates) {
-  const SweepMotion sweep = turning_drive();
+  const SweepMotion sweep = turning_sweep();
   for (const double tau : {0.0, 0.02, 0.1, -0.05}) {
     const Eigen::Isometry3d expected = integrated(sweep, tau);
     const Eigen::Isometry3d pose = sweep.pose(tau);

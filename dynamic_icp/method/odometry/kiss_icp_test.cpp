@@ -19,10 +19,10 @@ using Eigen::Isometry3d;
 using Eigen::Vector3d;
 
 constexpr double kPeriod_s = 0.1;
-constexpr std::int64_t kPeriodNs = 100'000'000;
+constexpr std::int64_t kRoomPeriodNs = 100'000'000;
 
 /// A drive along a circle to the left or straight on, from a first speed to a last one. Scan k begins at k * 0.1 s.
-struct Drive {
+struct RoomDrive {
   double start_speed = 0.0;   // m/s
   double acceleration = 1.0;  // m/s^2
   double end_speed = 5.0;     // m/s
@@ -43,11 +43,11 @@ struct Drive {
 
 /// A street along x with ground, house fronts and recesses with cheeks, seen from 1.5 m above ground. Each scan samples
 /// other points of it; a sweep measures its points one after the other during the whole period.
-RawScan scan_of(const Drive& drive, int k, bool sweeping = false) {
+RawScan scan_of(const RoomDrive& drive, int k, bool sweeping = false) {
   std::mt19937 random(static_cast<unsigned>(1000 + k));
   const auto uniform = [&] { return static_cast<double>(random()) * 0x1p-32; };
   RawScan raw;
-  raw.stamp = Stamp{k * kPeriodNs};
+  raw.stamp = Stamp{k * kRoomPeriodNs};
   constexpr int kRounds = 4000;
   const auto add = [&](int round, double x, double y, double z) {
     const double time = sweeping ? kPeriod_s * round / (kRounds - 1) : 0.0;
@@ -72,9 +72,9 @@ RawScan scan_of(const Drive& drive, int k, bool sweeping = false) {
   return raw;
 }
 
-RawScan empty_scan(int k) {
+RawScan empty_room(int k) {
   RawScan raw;
-  raw.stamp = Stamp{k * kPeriodNs};
+  raw.stamp = Stamp{k * kRoomPeriodNs};
   return raw;
 }
 
@@ -103,7 +103,7 @@ std::vector<Vector3d> lattice() {
 }
 
 RawScan seen_from(const Isometry3d& T_world_sensor, const std::vector<Vector3d>& points, int k) {
-  RawScan raw = empty_scan(k);
+  RawScan raw = empty_room(k);
   for (const Vector3d& point : points) {
     raw.points.emplace_back(T_world_sensor.inverse() * point);
   }
@@ -149,7 +149,7 @@ TEST(KissIcp, RecoversTheExactMotionOfPointsSeenAgain) {
 }
 
 TEST(KissIcp, FollowsADriveThatStartsSlowly) {
-  const Drive drive{0.0, 2.0, 8.0, 0.0};
+  const RoomDrive drive{0.0, 2.0, 8.0, 0.0};
   KissIcp odometry(KissIcpConfig{}, 2);
   const Frame first = odometry.process(scan_of(drive, 0));
   EXPECT_EQ(first.status, FrameStatus::kFirst);
@@ -165,7 +165,7 @@ TEST(KissIcp, FollowsADriveThatStartsSlowly) {
 
 TEST(KissIcp, DeskewsTheSweepToItsMiddle) {
   // The first two scans are not deskewed, but the drive begins so slowly that they hardly need to be.
-  const Drive drive{0.0, 4.0, 12.0, 0.003};
+  const RoomDrive drive{0.0, 4.0, 12.0, 0.003};
   const Isometry3d T_first_middle = drive.pose(0.5 * kPeriod_s);
   double mean_error[2] = {0.0, 0.0};
   for (const bool deskew : {false, true}) {
@@ -184,7 +184,7 @@ TEST(KissIcp, DeskewsTheSweepToItsMiddle) {
 
 TEST(KissIcp, DoesNotStartAtFullSpeed) {
   // 2.7 m from scan to scan, but the prediction is to stand still and the search reaches 1 to 2 m.
-  const Drive drive{27.0, 0.0, 27.0, 0.0};
+  const RoomDrive drive{27.0, 0.0, 27.0, 0.0};
   KissIcp odometry(KissIcpConfig{}, 2);
   Frame frame;
   for (int k = 0; k <= 30; ++k) {
@@ -196,9 +196,9 @@ TEST(KissIcp, DoesNotStartAtFullSpeed) {
 }
 
 TEST(KissIcp, KeepsThePredictedMotionWhereThereIsNothingToSee) {
-  const Drive drive{5.0, 0.0, 5.0, 0.0};
+  const RoomDrive drive{5.0, 0.0, 5.0, 0.0};
   KissIcp odometry(KissIcpConfig{}, 1);
-  EXPECT_EQ(odometry.process(empty_scan(0)).status, FrameStatus::kTooFewPoints);
+  EXPECT_EQ(odometry.process(empty_room(0)).status, FrameStatus::kTooFewPoints);
   EXPECT_EQ(odometry.process(scan_of(drive, 1)).status, FrameStatus::kFirst);
   const Isometry3d T_first = drive.pose(kPeriod_s);
   const auto error = [&](const Frame& frame, int k) {
@@ -208,7 +208,7 @@ TEST(KissIcp, KeepsThePredictedMotionWhereThereIsNothingToSee) {
     EXPECT_LT(error(odometry.process(scan_of(drive, k)), k), 0.1);
   }
   for (int k = 6; k <= 8; ++k) {
-    const Frame lost = odometry.process(empty_scan(k));
+    const Frame lost = odometry.process(empty_room(k));
     EXPECT_EQ(lost.status, FrameStatus::kTooFewPoints);
     EXPECT_EQ(lost.alignment.status, registration::AlignStatus::kNotRun);
     EXPECT_LT(error(lost, k), 0.2);
@@ -240,7 +240,7 @@ TEST(KissIcp, LabelsThePointsItRegisters) {
 }
 
 TEST(KissIcp, RefusesTimeThatStandsStillOrRunsBackwards) {
-  const Drive drive{5.0, 0.0, 5.0, 0.0};
+  const RoomDrive drive{5.0, 0.0, 5.0, 0.0};
   KissIcp odometry(KissIcpConfig{}, 1);
   odometry.process(scan_of(drive, 3));
   EXPECT_THROW(odometry.process(scan_of(drive, 3)), DataError);
@@ -249,7 +249,7 @@ TEST(KissIcp, RefusesTimeThatStandsStillOrRunsBackwards) {
 }
 
 TEST(KissIcp, SameBitsForAnyNumberOfThreads) {
-  const Drive drive{2.0, 2.0, 8.0, 0.003};
+  const RoomDrive drive{2.0, 2.0, 8.0, 0.003};
   const auto last_pose = [&](int threads) {
     KissIcp odometry(KissIcpConfig{}, threads);
     Frame frame;

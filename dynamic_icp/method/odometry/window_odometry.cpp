@@ -23,8 +23,6 @@
 namespace dynamic_icp::odometry {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
-
 // No sensor sweeps for longer.
 constexpr double kMaxSweep_s = 0.5;
 
@@ -124,7 +122,8 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
       [&] {
         estimator_.sort(whole, workers_);
         estimator_.field_errors(whole, workers_, memory_.errors);
-        workers_.for_each(whole.size(), kBlock, [&](std::size_t i) { whole.shift_doppler(i, -memory_.errors[i]); });
+        workers_.for_each(whole.size(), kPointBlock,
+                          [&](std::size_t i) { whole.shift_doppler(i, -memory_.errors[i]); });
         take_out_lever_arms();
         ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
                                     memory_.rows);

@@ -15,8 +15,6 @@
 namespace dynamic_icp::odometry {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
-
 // How far the velocity of the sensor may be from the last one: m/s.
 constexpr double kVelocitySigma_mps = 0.5;
 constexpr double kAccelerationSigma_mps2 = 3.0;
@@ -83,7 +81,7 @@ void WindowOdometry::separate_static_points() {
     const double noise_mps = estimator_.point_noise().value_or(ego_.inlier_rms_mps);
     const std::vector<std::uint8_t> creeps = ego_motion::creeping_cells(
         memory_.rows, ego_, noise_mps, filter_for(ego_).tau_0_mps, config_.ego_motion.static_sigmas);
-    workers_.for_each(whole.size(), kBlock,
+    workers_.for_each(whole.size(), kPointBlock,
                       [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
   }
   if (lever_arms_) {
@@ -107,7 +105,7 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   }
   const Scan& whole = memory_.whole;
   estimator_.static_doppler(whole, workers_, memory_.predicted);
-  workers_.for_each(whole.size(), kBlock,
+  workers_.for_each(whole.size(), kPointBlock,
                     [&](std::size_t i) { memory_.radial[i] = whole.doppler()[i] - memory_.predicted[i]; });
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(ego_), workers_, memory_.is_moving);
 }

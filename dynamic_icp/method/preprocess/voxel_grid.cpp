@@ -10,11 +10,7 @@
 #include "dynamic_icp/method/spatial/key_numbers.hpp"
 
 namespace dynamic_icp::preprocess {
-namespace {
-
-constexpr std::size_t kBlock = 4096;
-
-}  // namespace
+namespace {}  // namespace
 
 ConfigFields fields(VoxelGridConfig& config) {
   return {{"voxel_size_m", &config.voxel_size_m, 0.0, 100.0, "m",
@@ -42,7 +38,7 @@ void voxel_rows(const Scan& scan, const VoxelGridConfig& config, const Workers& 
   }
   std::vector<std::uint64_t>& keys = memory.keys;
   keys.resize(scan.size());
-  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+  workers.for_each(scan.size(), kPointBlock, [&](std::size_t i) {
     keys[i] = spatial::cell_key(scan.points()[i] / config.voxel_size_m);
     if (keys[i] == spatial::kNoCell) {
       throw std::invalid_argument("a point lies more than 2^20 voxels from the sensor; crop the range first");

@@ -12,7 +12,7 @@
 namespace dynamic_icp::registration {
 namespace {
 
-constexpr std::size_t kBlock = 128;  // groups of source points
+constexpr std::size_t kGroupBlock = 128;  // groups of source points
 
 /// Two scans and what is minimised between them.
 class ScanToScan : public Problem {
@@ -39,7 +39,7 @@ class ScanToScan : public Problem {
     }
     // The sums are formed while the rows are at hand, although the last ones go unused.
     const std::span<const SourceRows> groups = search_.groups();
-    sums_ = workers_.sum_blocks(groups.size(), kBlock, StepEquations{}, [&](std::size_t begin, std::size_t end) {
+    sums_ = workers_.sum_blocks(groups.size(), kGroupBlock, StepEquations{}, [&](std::size_t begin, std::size_t end) {
       search_.locate(T_target_source, begin, end);
       return step_equations(groups.subspan(begin, end - begin), T_target_source.linear(), objective_);
     });

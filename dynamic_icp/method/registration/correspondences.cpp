@@ -16,9 +16,9 @@ using simd::kLanes;
 using simd::LaneMask;
 using simd::Lanes;
 
-constexpr std::size_t kBlock = 128;  // groups
-constexpr std::size_t kBatch = 64;   // points that are looked up together
-constexpr double kCell_m = 0.5;      // points in the same cell are neighbours in the groups
+constexpr std::size_t kSearchBlock = 128;  // groups
+constexpr std::size_t kBatch = 64;         // points that are looked up together
+constexpr double kCell_m = 0.5;            // points in the same cell are neighbours in the groups
 
 // Points are looked up beyond the gate, so that the nearest few are found where they are sparse, and that those without
 // a partner need no new search at every step.
@@ -261,7 +261,7 @@ void CorrespondenceSearch::remember(std::uint32_t place, const Eigen::Vector3d& 
 }
 
 Correspondences CorrespondenceSearch::find(const Eigen::Isometry3d& T_target_source) {
-  workers_.for_blocks(groups_.size(), kBlock,
+  workers_.for_blocks(groups_.size(), kSearchBlock,
                       [&](std::size_t, std::size_t begin, std::size_t end) { locate(T_target_source, begin, end); });
   return pairs();
 }

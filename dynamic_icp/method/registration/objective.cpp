@@ -13,7 +13,7 @@
 namespace dynamic_icp::registration {
 namespace {
 
-constexpr std::size_t kBlock = 512;
+constexpr std::size_t kPairBlock = 512;
 
 double kernel_weight(double residual, double tukey) {
   return std::isinf(tukey) ? 1.0 : estimation::tukey_weight(residual, tukey);
@@ -95,7 +95,7 @@ Linearisation linearise(const PairedScans& scans, const Eigen::Isometry3d& T_tar
                        std::isfinite(objective.reject_doppler_mps);
   const std::vector<Correspondence>& pairs = scans.correspondences.pairs;
   const LinearisationSum sum =
-      workers.sum_blocks(pairs.size(), kBlock, LinearisationSum{}, [&](std::size_t begin, std::size_t end) {
+      workers.sum_blocks(pairs.size(), kPairBlock, LinearisationSum{}, [&](std::size_t begin, std::size_t end) {
         LinearisationSum part;
         for (std::size_t k = begin; k < end; ++k) {
           const Residual doppler = with_doppler || rejects ? terms.doppler(pairs[k]) : Residual{};

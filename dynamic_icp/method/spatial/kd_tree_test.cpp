@@ -17,7 +17,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kAnyDistance = std::numeric_limits<double>::infinity();
 
 double squared_distance(const Eigen::Vector3d& a, const Eigen::Vector3d& b) {
   const double dx = a.x() - b.x();
@@ -46,7 +46,7 @@ void expect_same_as_brute_force(const Points& points, const Points& queries) {
   ASSERT_EQ(tree.size(), points.size());
   std::vector<Neighbour> found;
   for (const Eigen::Vector3d& query : queries) {
-    for (const double max_distance_m : {0.0, 0.3, 2.0, kInfinity}) {
+    for (const double max_distance_m : {0.0, 0.3, 2.0, kAnyDistance}) {
       const std::vector<Neighbour> expected = brute_force(points, query, max_distance_m);
       const std::optional<Neighbour> nearest = tree.nearest(query, max_distance_m);
       ASSERT_EQ(nearest.has_value(), !expected.empty());
@@ -78,9 +78,9 @@ Points random_points(std::mt19937& random, std::size_t n, double half_width_m) {
 TEST(KdTree, EmptyTreeFindsNothing) {
   const KdTree tree(Points{});
   std::vector<Neighbour> found(3);
-  tree.nearest_k(Eigen::Vector3d::Zero(), 5, kInfinity, found);
+  tree.nearest_k(Eigen::Vector3d::Zero(), 5, kAnyDistance, found);
   EXPECT_TRUE(found.empty());
-  EXPECT_FALSE(tree.nearest(Eigen::Vector3d::Zero(), kInfinity));
+  EXPECT_FALSE(tree.nearest(Eigen::Vector3d::Zero(), kAnyDistance));
   EXPECT_EQ(tree.leaf_count(), 0u);
 }
 
@@ -120,7 +120,7 @@ TEST(KdTree, ManyIdenticalPointsDoNotMakeASearchVisitThemAll) {
   const KdTree tree(Points(n, Eigen::Vector3d(1.0, 2.0, 3.0)));
   std::vector<Neighbour> found;
   for (std::size_t i = 0; i < n; ++i) {
-    tree.nearest_k({1.0, 2.0, 3.0}, 11, kInfinity, found);
+    tree.nearest_k({1.0, 2.0, 3.0}, 11, kAnyDistance, found);
     ASSERT_EQ(found.back().index, 10u);
     ASSERT_EQ(tree.nearest({1.0, 2.0, 4.0}, 5.0)->index, 0u);
   }
@@ -164,19 +164,19 @@ TEST(KdTree, QueriesWithoutMeaningFindNothing) {
   const KdTree tree(Points{{0.0, 0.0, 0.0}, {1.0, 0.0, 0.0}});
   const double nan = std::numeric_limits<double>::quiet_NaN();
   std::vector<Neighbour> found;
-  for (const Eigen::Vector3d& query : Points{{nan, 0.0, 0.0}, {0.0, kInfinity, 0.0}, {0.0, 0.0, -kInfinity}}) {
-    EXPECT_FALSE(tree.nearest(query, kInfinity));
-    tree.nearest_k(query, 2, kInfinity, found);
+  for (const Eigen::Vector3d& query : Points{{nan, 0.0, 0.0}, {0.0, kAnyDistance, 0.0}, {0.0, 0.0, -kAnyDistance}}) {
+    EXPECT_FALSE(tree.nearest(query, kAnyDistance));
+    tree.nearest_k(query, 2, kAnyDistance, found);
     EXPECT_TRUE(found.empty());
   }
   EXPECT_FALSE(tree.nearest(Eigen::Vector3d::Zero(), -1.0));
   EXPECT_FALSE(tree.nearest(Eigen::Vector3d::Zero(), nan));
   // The square of this distance is infinite: no such number may leave.
-  EXPECT_FALSE(tree.nearest(Eigen::Vector3d(1e200, 0.0, 0.0), kInfinity));
+  EXPECT_FALSE(tree.nearest(Eigen::Vector3d(1e200, 0.0, 0.0), kAnyDistance));
 }
 
 TEST(KdTree, RefusesPointsThatAreNotFinite) {
-  for (const double bad : {kInfinity, -kInfinity, std::numeric_limits<double>::quiet_NaN(), 1e151}) {
+  for (const double bad : {kAnyDistance, -kAnyDistance, std::numeric_limits<double>::quiet_NaN(), 1e151}) {
     for (int axis = 0; axis < 3; ++axis) {
       Points points(5, Eigen::Vector3d::Zero());
       points[3][axis] = bad;
@@ -191,7 +191,7 @@ TEST(KdTree, DoesNotAllocateOnceTheResultHasGrown) {
   std::vector<Neighbour> found;
   found.reserve(10);
   const Neighbour* memory = found.data();
-  tree.nearest_k(Eigen::Vector3d::Zero(), 10, kInfinity, found);
+  tree.nearest_k(Eigen::Vector3d::Zero(), 10, kAnyDistance, found);
   EXPECT_EQ(found.data(), memory);
   EXPECT_EQ(found.capacity(), 10u);
 }
@@ -207,8 +207,8 @@ TEST(KdTree, ThreadsBuildTheSameTree) {
       ASSERT_TRUE(
           std::equal(tree.order().begin(), tree.order().end(), expected.order().begin(), expected.order().end()));
       for (const Eigen::Vector3d& query : random_points(random, 20, 1.0)) {
-        const auto a = tree.nearest(query, kInfinity);
-        const auto b = expected.nearest(query, kInfinity);
+        const auto a = tree.nearest(query, kAnyDistance);
+        const auto b = expected.nearest(query, kAnyDistance);
         ASSERT_EQ(a.has_value(), b.has_value());
         ASSERT_EQ(a ? a->index : 0, b ? b->index : 0);
       }
@@ -223,7 +223,7 @@ void check_node(const KdTree& tree, KdTree::Node node, std::size_t depth, std::s
   ASSERT_TRUE(ids.insert(node.id).second);
   const std::size_t begin = node.first_leaf * KdTree::kLeafSize;
   const std::size_t end = std::min(node.end_leaf * KdTree::kLeafSize, tree.size());
-  Eigen::Array3d lower = Eigen::Array3d::Constant(kInfinity);
+  Eigen::Array3d lower = Eigen::Array3d::Constant(kAnyDistance);
   Eigen::Array3d upper = -lower;
   for (std::size_t p = begin; p < end; ++p) {
     const auto row = tree.leaf(p / KdTree::kLeafSize).row(static_cast<Eigen::Index>(p % KdTree::kLeafSize));

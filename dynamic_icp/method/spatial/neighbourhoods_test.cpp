@@ -14,7 +14,7 @@ namespace {
 
 using Points = std::vector<Eigen::Vector3d>;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kAnyReach = std::numeric_limits<double>::infinity();
 
 Points random_points(unsigned seed, std::size_t n, const Eigen::Vector3d& size) {
   std::mt19937 random(seed);
@@ -80,7 +80,7 @@ void expect_definition(const Points& points, std::size_t k, double max_distance_
 }
 
 TEST(Neighbourhoods, AreTheNearestPoints) {
-  for (const double gate : {kInfinity, 2.0, 0.3, 0.0}) {
+  for (const double gate : {kAnyReach, 2.0, 0.3, 0.0}) {
     for (const std::size_t k : {1u, 2u, 11u, 16u, 30u, 200u}) {
       expect_definition(random_points(1, 600, {3.0, 3.0, 3.0}), k, gate);
       expect_definition(random_points(2, 600, {5.0, 5.0, 0.0}), k, gate);
@@ -93,7 +93,7 @@ TEST(Neighbourhoods, DoNotDependOnTheLeavesBefore) {
   for (const std::size_t stride : {1u, 3u, 17u}) {
     for (const std::size_t first : {0u, 1u, 5u}) {
       expect_definition(scan_points(700), 30, 2.0, first, stride);
-      expect_definition(scan_points(700), 30, kInfinity, first, stride);
+      expect_definition(scan_points(700), 30, kAnyReach, first, stride);
     }
   }
 }
@@ -101,7 +101,7 @@ TEST(Neighbourhoods, DoNotDependOnTheLeavesBefore) {
 TEST(Neighbourhoods, OfFewPoints) {
   for (const std::size_t n : {1u, 2u, 15u, 16u, 17u, 33u}) {
     for (const std::size_t k : {0u, 1u, 15u, 16u, 17u, 1000u}) {
-      expect_definition(random_points(4, n, {1.0, 1.0, 1.0}), k, kInfinity);
+      expect_definition(random_points(4, n, {1.0, 1.0, 1.0}), k, kAnyReach);
       expect_definition(random_points(4, n, {1.0, 1.0, 1.0}), k, 1.0);
     }
   }
@@ -113,9 +113,9 @@ TEST(Neighbourhoods, EqualDistancesAreDecidedByIndex) {
     grid.emplace_back(i * 7 % 10, i * 7 / 10 % 10, i / 100);
   }
   for (const std::size_t k : {2u, 7u, 20u}) {
-    expect_definition(grid, k, kInfinity);
+    expect_definition(grid, k, kAnyReach);
     expect_definition(grid, k, 2.0);
-    expect_definition(Points(500, Eigen::Vector3d(1, 2, 3)), k, kInfinity);
+    expect_definition(Points(500, Eigen::Vector3d(1, 2, 3)), k, kAnyReach);
   }
 }
 
@@ -125,12 +125,12 @@ TEST(Neighbourhoods, ManyLeavesInReachAreNoHarm) {
   expect_definition(points, 30, 100.0, 0, 60);
   expect_definition(points, 1500, 100.0, 0, 90);
   points.assign(6000, Eigen::Vector3d::Ones());
-  expect_definition(points, 30, kInfinity, 0, 60);
+  expect_definition(points, 30, kAnyReach, 0, 60);
 }
 
 TEST(Neighbourhoods, SquaresThatOverflowFindNothingWrong) {
   const Points far{{1e150, 0, 0}, {-1e150, 0, 0}, {0, 0, 0}, {0, 1e-200, 0}};
-  expect_definition(far, 3, kInfinity);
+  expect_definition(far, 3, kAnyReach);
   expect_definition(far, 3, 1e160);
 }
 

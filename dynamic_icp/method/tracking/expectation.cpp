@@ -17,8 +17,6 @@ constexpr double kMaxGate_mps = 3.0;
 constexpr double kGroundClearance_m = 0.3;  // points lower in a box may be the road ...
 constexpr double kGroundShare = 0.25;       // ... but at most so much of its height is left out
 
-constexpr std::size_t kBlock = 4096;
-
 /// A still point in the box of an expectation.
 struct Hit {
   std::uint32_t expectation;
@@ -82,8 +80,8 @@ void visit_static_points(const TrackingInput& input, std::span<const Expectation
     boxes.push_back(box);
   }
   const std::size_t rows = input.scan.size();
-  std::vector<std::vector<Hit>> hits(Workers::block_count(rows, kBlock));
-  workers.for_blocks(rows, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  std::vector<std::vector<Hit>> hits(Workers::block_count(rows, kPointBlock));
+  workers.for_blocks(rows, kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
       const std::vector<std::uint32_t>& candidates = boxes_of_column[input.view.columns()[row]];
       if (candidates.empty() || input.is_moving[row] != 0) {

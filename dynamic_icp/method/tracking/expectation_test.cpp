@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 /// A track of a car that drives with `velocity`, from its rear and right side.
-Track car(const Vector3d& centre, const Vector3d& velocity) {
+Track track_of_car(const Vector3d& centre, const Vector3d& velocity) {
   const Eigen::Matrix3d axes = upright_axes(std::atan2(velocity.y(), velocity.x()));
   Detection detection;
   for (std::uint64_t i = 0; i < 200; ++i) {
@@ -32,7 +32,7 @@ Track car(const Vector3d& centre, const Vector3d& velocity) {
 }
 
 Expectation expectation_of(const Vector3d& centre, const Vector3d& velocity) {
-  return {car(centre, velocity), SensorMotion{}, {}};
+  return {track_of_car(centre, velocity), SensorMotion{}, {}};
 }
 
 TEST(Expectation, ItsOwnPointsAreInsideAndHaveItsRadialVelocity) {

@@ -19,7 +19,6 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
 constexpr std::size_t kCellBlock = 128;
 constexpr double kWiderThanReach = 1.001;  // rounding must not put cells within reach two cubes apart
 
@@ -33,15 +32,15 @@ void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& c
 
 /// The rows that move, ascending.
 std::vector<std::uint32_t> moving_rows(std::span<const std::uint8_t> is_moving, const Workers& workers) {
-  std::vector<std::uint32_t> end_of_block(Workers::block_count(is_moving.size(), kBlock));
-  workers.for_blocks(is_moving.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  std::vector<std::uint32_t> end_of_block(Workers::block_count(is_moving.size(), kPointBlock));
+  workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     end_of_block[block] = static_cast<std::uint32_t>(std::count_if(
         is_moving.begin() + static_cast<std::ptrdiff_t>(begin), is_moving.begin() + static_cast<std::ptrdiff_t>(end),
         [](std::uint8_t moving) { return moving != 0; }));
   });
   std::partial_sum(end_of_block.begin(), end_of_block.end(), end_of_block.begin());
   std::vector<std::uint32_t> rows(end_of_block.empty() ? 0 : end_of_block.back());
-  workers.for_blocks(is_moving.size(), kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::uint32_t next = block == 0 ? 0 : end_of_block[block - 1];
     for (std::size_t row = begin; row < end; ++row) {
       if (is_moving[row] != 0) {
@@ -204,7 +203,7 @@ MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::
   const std::size_t n = result.rows.size();
   spatial::CellOrder order;
   order.keys.resize(n);
-  workers.for_each(n, kBlock, [&](std::size_t i) {
+  workers.for_each(n, kPointBlock, [&](std::size_t i) {
     order.keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
   });
   order.sort();

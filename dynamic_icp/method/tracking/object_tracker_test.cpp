@@ -20,15 +20,13 @@ namespace {
 using Eigen::Vector3d;
 using Objects = std::vector<TrackedObject>;
 
-constexpr double kPeriod_s = 0.1;
-
 /// All objects of each of `scans` scans.
 std::vector<Objects> track(const Traffic& traffic, int scans, int threads = 1) {
   ObjectTracker tracker{TrackerConfig{}};
   std::vector<Objects> result;
   for (int k = 0; k < scans; ++k) {
     result.push_back(
-        step(tracker, view_of(traffic(k * kPeriod_s), k * kPeriod_s), Eigen::Isometry3d::Identity(), threads));
+        step(tracker, view_of(traffic(k * kScanPeriod_s), k * kScanPeriod_s), Eigen::Isometry3d::Identity(), threads));
   }
   return result;
 }
@@ -49,7 +47,7 @@ TEST(ObjectTracker, FollowsACarThatDrivesAway) {
     ASSERT_EQ(objects.size(), 1u) << "scan " << k;
     EXPECT_EQ(objects[0].id, 1);
     EXPECT_EQ(objects[0].age_scans, static_cast<int>(k) + 1);
-    expect_near(objects[0], traffic(static_cast<double>(k) * kPeriod_s)[0], 0.1, 0.5);
+    expect_near(objects[0], traffic(static_cast<double>(k) * kScanPeriod_s)[0], 0.1, 0.5);
     EXPECT_TRUE(objects[0].tangential_observed);
   }
 }
@@ -73,7 +71,7 @@ TEST(ObjectTracker, FollowsACarThatTurns) {
   for (std::size_t k = 8; k < scans.size(); ++k) {
     const Objects objects = confirmed(scans[k]);
     ASSERT_EQ(objects.size(), 1u) << "scan " << k;
-    expect_near(objects[0], traffic(static_cast<double>(k) * kPeriod_s)[0], 0.8, 0.8);
+    expect_near(objects[0], traffic(static_cast<double>(k) * kScanPeriod_s)[0], 0.8, 0.8);
     EXPECT_NEAR(objects[0].yaw_rate_rps, 0.5, 0.1);
   }
 }
@@ -88,7 +86,7 @@ TEST(ObjectTracker, KeepsACarThatCrossesTheLineOfSight) {
     const Objects objects = confirmed(scans[k]);
     ASSERT_EQ(objects.size(), 1u) << "scan " << k;
     EXPECT_EQ(objects[0].id, 1);
-    expect_near(objects[0], traffic(static_cast<double>(k) * kPeriod_s)[0], 0.6, 0.5);
+    expect_near(objects[0], traffic(static_cast<double>(k) * kScanPeriod_s)[0], 0.6, 0.5);
   }
 }
 
@@ -102,7 +100,7 @@ TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
   EXPECT_NE(id_away, id_near);
   for (std::size_t k = 3; k < scans.size(); ++k) {
     const Objects objects = confirmed(scans[k]);
-    const std::vector<MovingBox> truth = traffic(static_cast<double>(k) * kPeriod_s);
+    const std::vector<MovingBox> truth = traffic(static_cast<double>(k) * kScanPeriod_s);
     ASSERT_EQ(objects.size(), 2u) << "scan " << k;
     EXPECT_EQ(nearest(objects, truth[0].box.centre).id, id_away) << "scan " << k;
     EXPECT_EQ(nearest(objects, truth[1].box.centre).id, id_near) << "scan " << k;
@@ -131,7 +129,7 @@ TEST(ObjectTracker, CoastsWhileAnObjectIsHiddenAndKnowsItAgain) {
     const bool hidden = k >= 8 && k <= 11;
     EXPECT_EQ(scans[k][0].status, hidden ? TrackStatus::kCoasting : TrackStatus::kConfirmed) << "scan " << k;
     EXPECT_EQ(scans[k][0].members.empty(), hidden);
-    EXPECT_LT((scans[k][0].centroid - truth(static_cast<double>(k) * kPeriod_s).box.centre).norm(), 0.8);
+    EXPECT_LT((scans[k][0].centroid - truth(static_cast<double>(k) * kScanPeriod_s).box.centre).norm(), 0.8);
   }
   EXPECT_GT(scans[11][0].covariance.trace(), scans[7][0].covariance.trace());
 }
@@ -150,7 +148,7 @@ TEST(ObjectTracker, AHiddenCarIsNoPartOfTheOneThatFollowsIt) {
   const std::vector<Objects> scans = track(traffic, 16);
   for (std::size_t k = 3; k < scans.size(); ++k) {
     ASSERT_EQ(scans[k].size(), 2u) << "scan " << k;
-    const std::vector<MovingBox> truth = both(static_cast<double>(k) * kPeriod_s);
+    const std::vector<MovingBox> truth = both(static_cast<double>(k) * kScanPeriod_s);
     for (std::size_t i = 0; i < 2; ++i) {
       const TrackedObject& object = nearest(scans[k], truth[i].box.centre);
       EXPECT_EQ(object.id, nearest(scans[3], both(0.3)[i].box.centre).id) << "scan " << k << " car " << i;
@@ -174,7 +172,7 @@ TEST(ObjectTracker, ForgetsWhatIsGoneAndNeverUsesItsIdAgain) {
 TEST(ObjectTracker, GrossDopplerErrorsAreNoObjects) {
   ObjectTracker tracker{TrackerConfig{}};
   for (int k = 0; k < 10; ++k) {
-    EXPECT_TRUE(confirmed(step(tracker, view_of({}, k * kPeriod_s, 0.03))).empty()) << "scan " << k;
+    EXPECT_TRUE(confirmed(step(tracker, view_of({}, k * kScanPeriod_s, 0.03))).empty()) << "scan " << k;
   }
 }
 

@@ -18,8 +18,6 @@ namespace {
 using Eigen::Vector3d;
 using Objects = std::vector<TrackedObject>;
 
-constexpr double kPeriod_s = 0.1;
-
 /// Driving 8 m/s in a circle, 0.3 rad/s, tilted by two degrees.
 Eigen::Isometry3d turning_and_tilted(double t) {
   constexpr double kSpeed = 8.0;
@@ -41,11 +39,11 @@ TEST(ObjectTrackerView, ASensorThatMovesTurnsTiltsAndSweepsSeesTheTruth) {
   const Traffic traffic = [](double t) {
     return std::vector<MovingBox>{car(14 + 5 * t, 13 + 5.5 * t, std::atan2(5.5, 5.0), std::hypot(5.5, 5.0))};
   };
-  for (const double sweep : {0.0, kPeriod_s}) {
+  for (const double sweep : {0.0, kScanPeriod_s}) {
     ObjectTracker tracker{TrackerConfig{}};
     const Viewing viewing{turning_and_tilted, sweep};
     for (int k = 0; k < 20; ++k) {
-      const double t = k * kPeriod_s;
+      const double t = k * kScanPeriod_s;
       const View view = view_of(traffic, t, viewing);
       const Eigen::Isometry3d T_world_sensor = turning_and_tilted(t);
       const Objects objects = confirmed(step(tracker, view, T_world_sensor));
@@ -70,7 +68,7 @@ TEST(ObjectTrackerView, ACarOfWhichHardlyAnythingMovesAlongTheLineOfSightIsFollo
   ObjectTracker tracker{TrackerConfig{}};
   int nearly_still = 0;
   for (int k = 0; k < 24; ++k) {
-    const double t = k * kPeriod_s;
+    const double t = k * kScanPeriod_s;
     const View view = view_of(traffic(t), t);
     const Objects objects = confirmed(step(tracker, view));
     const std::vector<std::uint32_t> rows = rows_on(view, 0);
@@ -96,8 +94,8 @@ TEST(ObjectTrackerView, AWallWhereACrossingCarShouldBeIsNotTheCar) {
   };
   ObjectTracker tracker{TrackerConfig{}};
   for (int k = 0; k < 22; ++k) {
-    const std::size_t cars = k * kPeriod_s < 1.85 ? 1 : 0;
-    const Objects objects = confirmed(step(tracker, view_of(traffic(k * kPeriod_s), k * kPeriod_s)));
+    const std::size_t cars = k * kScanPeriod_s < 1.85 ? 1 : 0;
+    const Objects objects = confirmed(step(tracker, view_of(traffic(k * kScanPeriod_s), k * kScanPeriod_s)));
     if (k >= 5) {
       EXPECT_EQ(objects.size(), cars) << "scan " << k;
     }
@@ -111,7 +109,7 @@ TEST(ObjectTrackerView, PartsThatComeIntoViewAreNoMotion) {
   };
   ObjectTracker tracker{TrackerConfig{}};
   for (int k = 0; k < 12; ++k) {
-    const double t = k * kPeriod_s;
+    const double t = k * kScanPeriod_s;
     const View view = view_of(traffic(t), t);
     const Objects objects = confirmed(step(tracker, view));
     ASSERT_EQ(objects.size(), 1u) << "scan " << k;
@@ -131,9 +129,9 @@ TEST(ObjectTrackerView, AFastCarInASlowSweepIsOne) {
   const Traffic traffic = [](double t) { return std::vector<MovingBox>{car(60 - 25 * t, 4, std::numbers::pi, 25)}; };
   ObjectTracker tracker{TrackerConfig{}};
   Viewing viewing;
-  viewing.sweep_s = kPeriod_s;
+  viewing.sweep_s = kScanPeriod_s;
   for (int k = 0; k < 16; ++k) {
-    const View view = view_of(traffic, k * kPeriod_s, viewing);
+    const View view = view_of(traffic, k * kScanPeriod_s, viewing);
     const Objects objects = step(tracker, view);
     ASSERT_EQ(objects.size(), 1u) << "scan " << k;
     EXPECT_EQ(objects[0].id, 1);
@@ -147,7 +145,7 @@ TEST(ObjectTrackerView, ASmallPartBesideABodyIsNoObjectOfItsOwn) {
   MovingBox part = block({12.9, -1.2, -0.7}, {0.2, 0.2, 1.0});
   part.velocity = {8, 0, 0};
   for (int k = 0; k < 8; ++k) {
-    const View view = view_of({car(15, -3, 0.0, 8), part}, k * kPeriod_s);
+    const View view = view_of({car(15, -3, 0.0, 8), part}, k * kScanPeriod_s);
     ASSERT_GE(rows_on(view, 1).size(), 10u) << "enough for an object";
     ObjectTracker tracker{TrackerConfig{}};
     EXPECT_EQ(step(tracker, view).size(), 1u) << "noise " << k;

@@ -15,7 +15,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-OrientedBox car(double yaw) { return {{10, 5, 1}, upright_axes(yaw), {4, 2, 1.5}}; }
+OrientedBox box_of_car(double yaw) { return {{10, 5, 1}, upright_axes(yaw), {4, 2, 1.5}}; }
 
 /// The two sides of a box that a sensor on the side of its first two axes sees, with noise.
 std::vector<Vector3d> two_sides(const OrientedBox& box, double sigma) {
@@ -32,7 +32,7 @@ std::vector<Vector3d> two_sides(const OrientedBox& box, double sigma) {
 }
 
 TEST(OrientedBox, DistanceOutsideIsThatToFaceEdgeAndCorner) {
-  const OrientedBox box = car(0.7);
+  const OrientedBox box = box_of_car(0.7);
   EXPECT_EQ(distance_outside(box, box.centre), 0.0);
   EXPECT_NEAR(distance_outside(box, box.centre + 3.0 * box.axes.col(0)), 1.0, 1e-12);
   EXPECT_NEAR(distance_outside(box, box.centre + box.axes * Vector3d(5, 5, 0)), 5.0, 1e-12) << "3 and 4 beyond";
@@ -40,7 +40,7 @@ TEST(OrientedBox, DistanceOutsideIsThatToFaceEdgeAndCorner) {
 }
 
 TEST(OrientedBox, AlignedExtentIsThatOfTheCorners) {
-  const OrientedBox box = car(2.1);
+  const OrientedBox box = box_of_car(2.1);
   Vector3d largest = Vector3d::Zero();
   for (const double x : {-2.0, 2.0}) {
     for (const double y : {-1.0, 1.0}) {
@@ -73,7 +73,7 @@ TEST(OrientedBox, NothingAndOnePointHaveNoSpan) {
 
 TEST(OrientedBox, FitsTheYawOfTwoSides) {
   for (const double yaw : {-1.3, -0.4, 0.0, 0.5, 1.1, 2.9}) {
-    const std::vector<Vector3d> points = two_sides(car(yaw), 0.02);
+    const std::vector<Vector3d> points = two_sides(box_of_car(yaw), 0.02);
     const std::optional<double> fitted = fit_yaw(points, yaw + 0.3, 0.785);
     ASSERT_TRUE(fitted);
     EXPECT_NEAR(std::remainder(*fitted - yaw, 0.5 * std::numbers::pi), 0.0, 0.02) << "yaw " << yaw;

@@ -14,7 +14,7 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::size_t kBlock = 512;
+constexpr std::size_t kPixelBlock = 512;
 constexpr int kColumns = 720;
 constexpr int kRows = 120;
 constexpr double kSlopePerRow = 0.0175;  // a degree
@@ -45,18 +45,18 @@ Cell cell_of(const Eigen::Vector3d& point) { return cell_of(point.x(), point.y()
 
 std::size_t place(int column, int row) { return static_cast<std::size_t>(column * kRows + row); }
 
-/// Of up to kBlock points: the columns, the places in the image and the squared ranges (m^2).
+/// Of up to kPixelBlock points: the columns, the places in the image and the squared ranges (m^2).
 void find_cells(std::span<const Eigen::Vector3d> points, std::uint16_t* columns, std::uint32_t* places,
                 float* squared) {
-  std::array<double, kBlock> x;
-  std::array<double, kBlock> y;
-  std::array<double, kBlock> z;
+  std::array<double, kPixelBlock> x;
+  std::array<double, kPixelBlock> y;
+  std::array<double, kPixelBlock> z;
   for (std::size_t i = 0; i < points.size(); ++i) {
     x[i] = points[i].x();
     y[i] = points[i].y();
     z[i] = points[i].z();
   }
-  std::array<Cell, kBlock> cells;
+  std::array<Cell, kPixelBlock> cells;
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     for (std::size_t i = 0; i < points.size(); ++i) {
       cells[i] = cell_of(x[i], y[i], z[i]);
@@ -79,7 +79,7 @@ RangeImage::RangeImage(const Scan& scan, const Workers& workers)
       columns_(scan.size()) {
   std::vector<std::uint32_t> places(scan.size());
   std::vector<float> squared(scan.size());
-  workers.for_blocks(scan.size(), kBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+  workers.for_blocks(scan.size(), kPixelBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     find_cells(std::span(scan.points()).subspan(begin, end - begin), &columns_[begin], &places[begin], &squared[begin]);
   });
   for (std::size_t row = 0; row < scan.size(); ++row) {

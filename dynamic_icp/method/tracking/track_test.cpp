@@ -16,7 +16,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d kSize(4.5, 1.8, 1.5);
+const Vector3d kCarBody(4.5, 1.8, 1.5);
 
 /// The rear and the right side of a car that drives straight; the sensor is in the origin, the points were measured
 /// `time_s` after the stamp.
@@ -28,7 +28,7 @@ Detection car_at(const Vector3d& centre, const Vector3d& velocity, std::uint64_t
     Vector3d q(one.uniform(0, -0.5, 0.5), one.uniform(1, -0.5, 0.5), one.uniform(2, -0.5, 0.5));
     (i % 3 == 0 ? q.x() : q.y()) = -0.5;
     const Vector3d noise(0.02 * one.normal(3), 0.02 * one.normal(4), 0.0);
-    detection.points.emplace_back(centre + time_s * velocity + axes * (q.cwiseProduct(kSize) + noise));
+    detection.points.emplace_back(centre + time_s * velocity + axes * (q.cwiseProduct(kCarBody) + noise));
     detection.directions.push_back(detection.points.back().normalized());
     detection.radial.push_back(detection.directions.back().dot(velocity) + 0.05 * one.normal(5));
     detection.times.push_back(time_s);

@@ -13,15 +13,9 @@
 namespace dynamic_icp::window {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
-constexpr std::size_t kCellBlock = 128;
-
-constexpr std::size_t kAzimuths = 300;   // 1.2 degrees
-constexpr std::size_t kElevations = 64;  // where the scan has no lines
-constexpr double kMaxElevation = 0.5;    // rad; beyond it elevation hardly changes anything
-
-// Tukey's kernel around the mean of a cell, in standard deviations.
-constexpr double kKernel = 4.5;
+constexpr std::size_t kNoiseAzimuths = 300;   // 1.2 degrees
+constexpr std::size_t kNoiseElevations = 64;  // where the scan has no lines
+constexpr double kMaxElevation = 0.5;         // rad; beyond it elevation hardly changes anything
 
 // A cell tells how its points scatter with so many of them, and a bin of the noise with so many deviations.
 constexpr double kInformativeCell = 5.0;
@@ -41,12 +35,13 @@ std::size_t azimuth_sector(double x, double y) {
   angle = x < 0.0 ? std::numbers::pi - angle : angle;
   angle = y < 0.0 ? -angle : angle;
   const double turn = angle / (2.0 * std::numbers::pi) + 0.5;
-  return std::min(kAzimuths - 1, static_cast<std::size_t>(std::max(0.0, turn) * static_cast<double>(kAzimuths)));
+  return std::min(kNoiseAzimuths - 1,
+                  static_cast<std::size_t>(std::max(0.0, turn) * static_cast<double>(kNoiseAzimuths)));
 }
 
 std::size_t elevation_step(double z) {
   const double share = 0.5 + 0.5 * std::clamp(z / kMaxElevation, -1.0, 1.0);
-  return std::min(kElevations - 1, static_cast<std::size_t>(share * static_cast<double>(kElevations)));
+  return std::min(kNoiseElevations - 1, static_cast<std::size_t>(share * static_cast<double>(kNoiseElevations)));
 }
 
 std::vector<double> edges(std::vector<double> values, std::size_t bins) {
@@ -79,11 +74,11 @@ void DopplerCells::sort(const Scan& scan, double interval_s, const Workers& work
   const auto intervals = static_cast<std::size_t>((span.last - span.first) / interval_s) + 1;
   const std::size_t lines =
       channels.line.empty()
-          ? kElevations
+          ? kNoiseElevations
           : static_cast<std::size_t>(*std::max_element(channels.line.begin(), channels.line.end())) + 1;
   order_.keys.resize(scan.size());
   range_.resize(scan.size());
-  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+  workers.for_each(scan.size(), kPointBlock, [&](std::size_t i) {
     range_[i] = scan.points()[i].norm();
     const Eigen::Vector3d& u = scan.directions()[i];
     const std::size_t line = channels.line.empty() ? elevation_step(u.z()) : channels.line[i];
@@ -92,11 +87,11 @@ void DopplerCells::sort(const Scan& scan, double interval_s, const Workers& work
         scan.has_times()
             ? std::min(intervals - 1, static_cast<std::size_t>((scan.times()[i] - span.first) / interval_s))
             : 0;
-    order_.keys[i] = ((sensor * intervals + interval) * lines + line) * kAzimuths + azimuth_sector(u.x(), u.y());
+    order_.keys[i] = ((sensor * intervals + interval) * lines + line) * kNoiseAzimuths + azimuth_sector(u.x(), u.y());
   });
   order_.sort();
   points_.resize(scan.size());
-  workers.for_each(scan.size(), kBlock,
+  workers.for_each(scan.size(), kPointBlock,
                    [&](std::size_t i) { points_[order_.place(i)] = static_cast<std::uint32_t>(i); });
   bin_.clear();
 }
@@ -111,7 +106,7 @@ void DopplerCells::find_bins(const Scan& scan, const Workers& workers) {
     }
   }
   bin_.resize(scan.size());
-  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+  workers.for_each(scan.size(), kPointBlock, [&](std::size_t i) {
     const double shown = intensity.empty() ? 0.0 : static_cast<double>(intensity[i]);
     bin_[i] = static_cast<std::uint8_t>(noise_.bin(range_[i], shown));
   });
@@ -182,7 +177,7 @@ DopplerCell DopplerCells::mean_of(std::size_t cell, const Scan& scan, const std:
     }
     const double intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
     const double variance = noise_.variance[bin_[i]];
-    const double inside = 1.0 - residual_[i] * residual_[i] / (kKernel * kKernel * variance);
+    const double inside = 1.0 - residual_[i] * residual_[i] / (kDopplerKernel * kDopplerKernel * variance);
     if (inside <= 0.0) {
       continue;
     }

@@ -15,6 +15,12 @@
 
 namespace dynamic_icp::window {
 
+/// Tukey's kernel around the mean of a cell and around the motion, in standard deviations.
+inline constexpr double kDopplerKernel = 4.5;
+
+/// The block of a loop over cells.
+inline constexpr std::size_t kCellBlock = 128;
+
 /// Points of one sensor that were measured in nearly the same direction at nearly the same time: weighted means.
 struct DopplerCell {
   Eigen::Vector3d u = Eigen::Vector3d::Zero();    ///< line of sight, sensor axes

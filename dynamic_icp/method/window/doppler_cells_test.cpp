@@ -11,13 +11,13 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "testing/one_thread.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
 using Eigen::Vector3d;
 using std::numbers::pi;
-
-const Workers kOneThread(1);
 
 constexpr double kInterval_s = 0.0125;
 constexpr double kSector = 2.0 * pi / 300.0;

@@ -13,6 +13,8 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -235,7 +237,7 @@ TEST(DopplerErrorField, LearnsTheScaleOfWhatIsWellKnown) {
   const double scale = 0.12;
   for (const std::string_view name : {"azimuth", "cross", "line"}) {
     const DopplerErrorField::Group& g = group(field, name);
-    VectorXd part = g.K.llt().matrixL() * random_vector(4, g.size());
+    VectorXd part = dense::cholesky_root(g.K) * random_vector(4, g.size());
     part *= scale * std::sqrt(static_cast<double>(g.size()) / part.dot(g.inverse * part));
     VectorXd theta = VectorXd::Zero(n);
     theta.segment(static_cast<Index>(g.begin), part.size()) = part;
@@ -269,7 +271,7 @@ TEST(DopplerErrorField, FindsTheScaleBehindNoisyEstimates) {
     const DopplerErrorField::Group& g = group(field, "azimuth");
     const auto begin = static_cast<Index>(g.begin);
     const Index size = g.K.rows();
-    const MatrixXd root = g.K.llt().matrixL();
+    const MatrixXd root = dense::cholesky_root(g.K);
     const VectorXd seen = truth * root * z.segment(begin, size) + sigma * noise.segment(begin, size);
     for (int k = 0; k < 60; ++k) {
       const MatrixXd posterior =
@@ -277,7 +279,7 @@ TEST(DopplerErrorField, FindsTheScaleBehindNoisyEstimates) {
       VectorXd theta = VectorXd::Zero(n);
       MatrixXd root_of_all = MatrixXd::Zero(n, n);
       theta.segment(begin, size) = posterior * seen / (sigma * sigma);
-      root_of_all.block(begin, begin, size, size) = posterior.llt().matrixL();
+      root_of_all.block(begin, begin, size, size) = dense::cholesky_root(posterior);
       field.learn_scales(theta, root_of_all);
     }
     EXPECT_NEAR(g.tau, truth, 0.4 * truth);

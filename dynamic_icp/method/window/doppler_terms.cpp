@@ -11,12 +11,10 @@
 namespace dynamic_icp::window {
 namespace {
 
-constexpr std::size_t kCellBlock = 512;
+constexpr std::size_t kTermBlock = 512;
 
 constexpr int kNodes = 3;
 
-// Tukey's kernel for cells, in standard deviations.
-constexpr double kKernel = 4.5;
 constexpr double kQuarterToSigma = 3.138;  // a quarter of normal errors are smaller than sigma / 3.138
 
 // Nodes at the ends of an interval belong to it, not to its neighbours, however their times are rounded.
@@ -82,7 +80,7 @@ std::vector<double> DopplerTerms::weights(const std::vector<DopplerCell>& cells,
     size[k] = std::abs(scaled[k]);
     w[k] = 1.0 / variance;
   }
-  const double reach = kKernel * std::max(1.0, kQuarterToSigma * quantile(size, 0.25));
+  const double reach = kDopplerKernel * std::max(1.0, kQuarterToSigma * quantile(size, 0.25));
   robust_.resize(cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
     const double inside = std::max(0.0, 1.0 - scaled[k] * scaled[k] / (reach * reach));
@@ -242,7 +240,7 @@ std::vector<double> DopplerTerms::residuals(const std::vector<DopplerCell>& cell
       cells.begin(), cells.end(), [](const DopplerCell& a, const DopplerCell& b) { return a.time_s < b.time_s; });
   const SampledMotion motion(trajectory, stamp_s_ + first->time_s, stamp_s_ + last->time_s);
   std::vector<double> result(cells.size());
-  workers.for_each(cells.size(), kCellBlock, [&](std::size_t k) {
+  workers.for_each(cells.size(), kTermBlock, [&](std::size_t k) {
     const DopplerCell& cell = cells[k];
     const double time_s = stamp_s_ + cell.time_s;
     result[k] = cell.s + cell.u.dot(motion.velocity(time_s)) - columns[k].dot(theta);

@@ -12,6 +12,8 @@
 
 #include "dynamic_icp/method/base/quantile.hpp"
 
+#include "testing/one_thread.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -20,28 +22,26 @@ using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
 
-const Workers kOneThread(1);
-
-constexpr double kH = 0.0125;
+constexpr double kSpacing_s = 0.0125;
 constexpr double kSweep_s = 0.1;
 constexpr double kPointSigma_mps = 0.05;
 constexpr double kCellVariance = 0.03 * 0.03;
 constexpr double kScanVariance = 0.02 * 0.02;
 
 /// A sensor that drives, turns and sways; its Doppler has an error, noise, and lever arms if asked for.
-struct Problem {
+struct CellProblem {
   double stamp_s = 0.0;
   bool has_lever_arms = false;
-  SplineTrajectory trajectory{kH};
+  SplineTrajectory trajectory{kSpacing_s};
   std::vector<DopplerCell> cells;
   std::optional<DopplerErrorField> field;
   VectorXd theta;
 
-  explicit Problem(double stamp = 7.3, bool lever_arms = false, std::size_t count = 400)
+  explicit CellProblem(double stamp = 7.3, bool lever_arms = false, std::size_t count = 400)
       : stamp_s(stamp), has_lever_arms(lever_arms) {
     trajectory.begin(stamp_s, stamp_s + kSweep_s, Eigen::Isometry3d::Identity(), Vector3d::Zero(), Vector3d::Zero());
     for (std::size_t k = 0; k < trajectory.coefficients().size(); ++k) {
-      const double t = kH * (static_cast<double>(k) - 1.0);
+      const double t = kSpacing_s * (static_cast<double>(k) - 1.0);
       trajectory.coefficients()[k] << 0.01 * std::sin(8.0 * t), 0.1 * t, 0.3 * t + 0.5 * t * t, 10.0 * t - 2.0 * t * t,
           0.05 * std::sin(7.0 * t), 0.02 * t;
     }
@@ -101,7 +101,7 @@ struct Problem {
     constexpr double kStep = 1e-5;
     const Layout at = layout();
     MatrixXd J = MatrixXd::Zero(static_cast<Index>(cells.size()), at.size());
-    Problem moved = *this;
+    CellProblem moved = *this;
     const auto differentiate = [&](double& unknown, Index column) {
       const double value = unknown;
       unknown = value + kStep;
@@ -149,7 +149,7 @@ struct Sums {
   DopplerTerms::ScanError scan_error;
 };
 
-Sums sums_of(const Problem& problem, const DopplerTerms& of) {
+Sums sums_of(const CellProblem& problem, const DopplerTerms& of) {
   const Layout at = problem.layout();
   Sums sums{MatrixXd::Zero(at.size(), at.size()), VectorXd::Zero(at.size()), {}};
   DopplerTerms terms = of;
@@ -209,7 +209,7 @@ void expect_along(const MatrixXd& changes, const Sums& sums, const Expected& exp
   EXPECT_LT(g_off.cwiseAbs().maxCoeff(), tolerance * (2.0 + scale.cwiseProduct(g).cwiseAbs().maxCoeff()));
 }
 
-void expect_gauss_newton(const Problem& problem, const Sums& sums, const VectorXd& weights) {
+void expect_gauss_newton(const CellProblem& problem, const Sums& sums, const VectorXd& weights) {
   const Layout at = problem.layout();
   const Expected expected{problem.jacobian(), weights, problem.residuals()};
   // Of smooth changes the velocity is quadratic within an interval to (omega h)^2 and less; omega depends on the
@@ -223,14 +223,14 @@ void expect_gauss_newton(const Problem& problem, const Sums& sums, const VectorX
 
 TEST(DopplerTerms, AreTheGaussNewtonSumsOfTheirEquation) {
   for (const bool has_lever_arms : {false, true}) {
-    const Problem problem(7.3, has_lever_arms);
+    const CellProblem problem(7.3, has_lever_arms);
     ASSERT_GT(problem.weights().minCoeff(), 0.0);
     expect_gauss_newton(problem, sums_of(problem, problem.terms()), problem.weights());
   }
 }
 
 TEST(DopplerTerms, TellWhatAllOfAScanHaveInCommon) {
-  Problem problem;
+  CellProblem problem;
   for (DopplerCell& cell : problem.cells) {
     cell.s += 0.05;
   }
@@ -251,18 +251,18 @@ TEST(DopplerTerms, HoldInWhateverIntervalsTheyFall) {
   // The beginning of an interval is not exact: (i h) / h may be less than i.
   for (const int knot : {40, 48, 80, 88, 160, 312}) {
     SCOPED_TRACE(knot);
-    const Problem problem((knot + 0.5) * kH, false, 80);
+    const CellProblem problem((knot + 0.5) * kSpacing_s, false, 80);
     expect_gauss_newton(problem, sums_of(problem, problem.terms()), problem.weights());
   }
 }
 
 TEST(DopplerTerms, AreLinearisedWhereTheyAreAsked) {
   // Made at one trajectory and theta, added at others: the weights stay, the equation is that of the new ones.
-  const Problem before;
+  const CellProblem before;
   const DopplerTerms terms = before.terms();
-  Problem after = before;
+  CellProblem after = before;
   for (std::size_t k = 0; k < after.trajectory.coefficients().size(); ++k) {
-    const double t = kH * static_cast<double>(k);
+    const double t = kSpacing_s * static_cast<double>(k);
     Vector6d change;
     change << 0.01, 0.02 * t, -0.1 * t, 0.5 * t, 0.3 * t, -0.1 * t;
     after.trajectory.coefficients()[k] += change;
@@ -272,12 +272,12 @@ TEST(DopplerTerms, AreLinearisedWhereTheyAreAsked) {
 }
 
 TEST(DopplerTerms, ACellFarOffHasNoWeight) {
-  Problem problem;
+  CellProblem problem;
   const std::size_t far = 17;
   problem.cells[far].s += 3.0;
   ASSERT_EQ(problem.weights()[static_cast<Index>(far)], 0.0);
   const Sums with = sums_of(problem, problem.terms());
-  Problem nearer = problem;
+  CellProblem nearer = problem;
   nearer.cells[far].s += 4.0;
   const Sums farther = sums_of(nearer, nearer.terms());
   EXPECT_EQ(with.H, farther.H);
@@ -287,7 +287,7 @@ TEST(DopplerTerms, ACellFarOffHasNoWeight) {
 
 TEST(DopplerTerms, TheKernelWidensWithTheScatter) {
   // All cells are off by five of their standard deviations: that is the error of the state, not of the cells.
-  Problem problem;
+  CellProblem problem;
   for (std::size_t k = 0; k < problem.cells.size(); ++k) {
     problem.cells[k].s += k % 2 == 0 ? 0.25 : -0.25;
   }
@@ -296,7 +296,7 @@ TEST(DopplerTerms, TheKernelWidensWithTheScatter) {
 }
 
 TEST(DopplerTerms, OfNoCellsAddNothing) {
-  Problem problem;
+  CellProblem problem;
   const DopplerTerms terms({}, {}, problem.trajectory, problem.theta, problem.stamp_s, kCellVariance, false,
                            kOneThread);
   const Sums sums = sums_of(problem, terms);
@@ -306,7 +306,7 @@ TEST(DopplerTerms, OfNoCellsAddNothing) {
 }
 
 TEST(DopplerTerms, TellTheVarianceBeyondThatOfPoints) {
-  Problem problem(7.3, false, 4000);
+  CellProblem problem(7.3, false, 4000);
   std::mt19937 random(3);
   std::normal_distribution<double> normal;
   const double unexplained = 0.04;

@@ -7,6 +7,8 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -14,7 +16,7 @@ using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-constexpr Index kField = 7;
+constexpr Index kTheta = 7;
 constexpr Index kRest = 11;
 
 struct Problem {
@@ -24,12 +26,12 @@ struct Problem {
   explicit Problem(unsigned seed) {
     std::mt19937 random(seed);
     std::normal_distribution<double> normal;
-    const MatrixXd A = MatrixXd::NullaryExpr(30, kField + kRest, [&] { return normal(random); });
+    const MatrixXd A = MatrixXd::NullaryExpr(30, kTheta + kRest, [&] { return normal(random); });
     H = A.transpose() * A;
-    g = VectorXd::NullaryExpr(kField + kRest, [&] { return normal(random); });
+    g = VectorXd::NullaryExpr(kTheta + kRest, [&] { return normal(random); });
   }
 
-  [[nodiscard]] MatrixXd F() const { return H.topLeftCorner(kField, kField); }
+  [[nodiscard]] MatrixXd F() const { return H.topLeftCorner(kTheta, kTheta); }
 };
 
 /// The step and the covariance of the rest alone, as the estimator takes them.
@@ -41,28 +43,28 @@ TEST(FieldElimination, StepsAreThoseOfTheWholeProblem) {
   const Problem problem(1);
   const FieldElimination elimination(problem.F(), problem.H, true);
   ASSERT_TRUE(elimination.is_solvable());
-  const VectorXd whole = -problem.H.inverse() * problem.g;
-  const VectorXd rest = -information_of_rest(elimination).inverse() * elimination.rest_gradient(problem.g);
+  const VectorXd whole = -dense::solve(problem.H, problem.g);
+  const VectorXd rest = -dense::solve(information_of_rest(elimination), elimination.rest_gradient(problem.g));
   EXPECT_LT((rest - whole.tail(kRest)).norm(), 1e-9 * whole.norm());
-  EXPECT_LT((elimination.step(problem.g, rest) - whole.head(kField)).norm(), 1e-9 * whole.norm());
+  EXPECT_LT((elimination.step(problem.g, rest) - whole.head(kTheta)).norm(), 1e-9 * whole.norm());
 }
 
 TEST(FieldElimination, CovarianceIsThatOfTheWholeProblem) {
   const Problem problem(2);
   const FieldElimination elimination(problem.F(), problem.H, true);
-  const MatrixXd covariance = problem.H.inverse();
+  const MatrixXd covariance = dense::inverse(problem.H);
   const MatrixXd S = information_of_rest(elimination);
-  EXPECT_LT((S.inverse() - covariance.bottomRightCorner(kRest, kRest)).norm(), 1e-9 * covariance.norm());
+  EXPECT_LT((dense::inverse(S) - covariance.bottomRightCorner(kRest, kRest)).norm(), 1e-9 * covariance.norm());
   const Eigen::LLT<MatrixXd> factor(S);
   const MatrixXd root = elimination.covariance_root(factor);
-  EXPECT_LT((root * root.transpose() - covariance.topLeftCorner(kField, kField)).norm(), 1e-9 * covariance.norm());
+  EXPECT_LT((root * root.transpose() - covariance.topLeftCorner(kTheta, kTheta)).norm(), 1e-9 * covariance.norm());
 }
 
 TEST(FieldElimination, ThePriorOfThetaMayBeInItsBlockAlone) {
   Problem problem(3);
-  const MatrixXd with_prior = problem.F() + 4.0 * MatrixXd::Identity(kField, kField);
+  const MatrixXd with_prior = problem.F() + 4.0 * MatrixXd::Identity(kTheta, kTheta);
   const FieldElimination apart(with_prior, problem.H, true);
-  problem.H.topLeftCorner(kField, kField) = with_prior;
+  problem.H.topLeftCorner(kTheta, kTheta) = with_prior;
   const FieldElimination together(with_prior, problem.H, true);
   EXPECT_EQ(information_of_rest(apart), information_of_rest(together));
 }
@@ -78,7 +80,7 @@ TEST(FieldElimination, WhatIsNotLearnedStaysAndTakesNothing) {
 
 TEST(FieldElimination, SaysWhenThetaIsNotKnownAtAll) {
   const Problem problem(5);
-  EXPECT_FALSE(FieldElimination(MatrixXd::Zero(kField, kField), problem.H, true).is_solvable());
+  EXPECT_FALSE(FieldElimination(MatrixXd::Zero(kTheta, kTheta), problem.H, true).is_solvable());
 }
 
 }  // namespace

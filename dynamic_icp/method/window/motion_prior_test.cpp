@@ -11,6 +11,8 @@
 #include <Eigen/Cholesky>
 #include <gtest/gtest.h>
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -41,14 +43,14 @@ struct Motion {
   }
 };
 
-struct Sums {
+struct PriorSums {
   MatrixXd H;
   VectorXd g;
 };
 
-Sums sums_of(const MotionPrior& prior, const Motion& motion, std::size_t first_new = 0) {
+PriorSums sums_of(const MotionPrior& prior, const Motion& motion, std::size_t first_new = 0) {
   const Index n = motion.layout.size();
-  Sums sums{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
+  PriorSums sums{MatrixXd::Zero(n, n), VectorXd::Zero(n)};
   prior.add(motion.trajectory, first_new, motion.layout, sums.H, sums.g);
   return sums;
 }
@@ -99,10 +101,10 @@ TEST(MotionPrior, IsTheQuadraticOfItsGradient) {
   for (const std::size_t first_new : {std::size_t{0}, std::size_t{4}}) {
     Motion motion(0.1);
     motion.add(random_step(random, motion.layout.size(), 1e-3));
-    const Sums before = sums_of(prior, motion, first_new);
+    const PriorSums before = sums_of(prior, motion, first_new);
     const VectorXd step = random_step(random, motion.layout.size(), 1e-3);
     motion.add(step);
-    const Sums after = sums_of(prior, motion, first_new);
+    const PriorSums after = sums_of(prior, motion, first_new);
     EXPECT_EQ(before.H, after.H);
     EXPECT_LT((before.g + before.H * step - after.g).norm(), 1e-9 * after.g.norm());
     EXPECT_LT((before.H - before.H.transpose()).norm(), 1e-12 * before.H.norm());
@@ -112,10 +114,10 @@ TEST(MotionPrior, IsTheQuadraticOfItsGradient) {
 TEST(MotionPrior, TheVibrationIsStationaryAndLivesAtTheFrequencyOfWheels) {
   const MotionPrior prior{WindowConfig{}};
   const Motion motion(1.0);
-  Sums sums = sums_of(prior, motion);
+  PriorSums sums = sums_of(prior, motion);
   sums.H.diagonal().segment(motion.layout.coefficient(0), 6 * motion.layout.coefficients).array() += 1.0;
   sums.H.diagonal().head(Layout::kBefore).array() += 1.0;
-  const MatrixXd covariance = sums.H.ldlt().solve(MatrixXd::Identity(sums.H.rows(), sums.H.cols()));
+  const MatrixXd covariance = dense::inverse(sums.H);
   const Vector6d variance = prior.vibration_variance();
   EXPECT_GT(variance.minCoeff(), 0.0);
   const Index first = motion.layout.vibration(0);
@@ -153,7 +155,7 @@ Learned learned(double amplitude_m) {
   MotionPrior prior{WindowConfig{}};
   for (int scan = 0; scan < 12; ++scan) {
     Motion motion(0.4);
-    Sums sums = sums_of(prior, motion);
+    PriorSums sums = sums_of(prior, motion);
     sums.H.diagonal().array() += 1.0;  // all within 1 m
     for (std::size_t k = 0; k < motion.count(); ++k) {
       const double t = 0.4 * scan + kKnot_s * static_cast<double>(k);
@@ -192,7 +194,7 @@ TEST(MotionPrior, LearnsHowMuchASensorVibrates) {
 TEST(MotionPrior, MoreUnknownsOnlyWhereItVibrates) {
   const MotionPrior prior{WindowConfig{}};
   const Motion motion(0.1, false);
-  const Sums sums = sums_of(prior, motion);
+  const PriorSums sums = sums_of(prior, motion);
   EXPECT_EQ(sums.H.rows(), Layout::kBefore + 6 * motion.layout.coefficients);
   EXPECT_GT(sums.H.norm(), 0.0);
 }

@@ -14,6 +14,8 @@
 
 #include "dynamic_icp/method/base/quantile.hpp"
 
+#include "testing/dense_algebra.hpp"
+#include "testing/one_thread.hpp"
 #include "testing/swept_room.hpp"
 
 namespace dynamic_icp::window {
@@ -26,20 +28,18 @@ using Eigen::VectorXd;
 using mapping::Patch;
 using mapping::PlaneMap;
 
-const Workers kOneThread(1);
-
-constexpr double kH = 0.0125;
-constexpr double kSlice_s = kH / 8.0;
+constexpr double kKnots_s = 0.0125;
+constexpr double kSlice_s = kKnots_s / 8.0;
 constexpr std::size_t kSlices = 64;
 constexpr double kStamp_s = 5.003;
 
 SplineTrajectory true_trajectory() {
   Vector6d reference;
   reference << 0.1, -0.2, 0.5, 1.0, -0.5, 0.3;
-  SplineTrajectory trajectory(kH);
+  SplineTrajectory trajectory(kKnots_s);
   trajectory.begin(kStamp_s, kStamp_s + kSlices * kSlice_s, exp_se3(reference), Vector3d::Zero(), Vector3d::Zero());
   for (std::size_t k = 0; k < trajectory.coefficients().size(); ++k) {
-    const double t = kH * (static_cast<double>(k) - 1.0);
+    const double t = kKnots_s * (static_cast<double>(k) - 1.0);
     trajectory.coefficients()[k] << 0.01 * std::sin(8.0 * t), 0.1 * t, 0.3 * t, 8.0 * t - 5.0 * t * t,
         0.05 * std::sin(7.0 * t), 0.02 * t;
   }
@@ -180,29 +180,29 @@ struct Definition {
   }
 };
 
-struct Sums {
+struct PlaneSums {
   MatrixXd H;
   VectorXd g;
 };
 
 /// Of the definition; an offset of the map is eliminated that is known, along each axis of sum w n n^T, to held of the
 /// information there.
-Sums expected_sums(const Definition& definition, const Vector3d& held) {
+PlaneSums expected_sums(const Definition& definition, const Vector3d& held) {
   const MatrixXd J = definition.jacobian();
   const auto W = definition.weights.asDiagonal();
   const MatrixXd N = definition.normals();
   const Eigen::Matrix3d nn = N.transpose() * W * N;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> axes(nn);
-  const Vector3d known = axes.eigenvalues().array() * held.array() / (1.0 - held.array());
-  const Eigen::Matrix3d A = nn + axes.eigenvectors() * known.asDiagonal() * axes.eigenvectors().transpose();
+  const dense::SymmetricParts axes = dense::symmetric_parts(nn);
+  const Vector3d known = axes.values.array() * held.array() / (1.0 - held.array());
+  const Eigen::Matrix3d A = nn + axes.vectors * known.asDiagonal() * axes.vectors.transpose();
   const VectorXd We = W * definition.residuals();
   const MatrixXd U = J.transpose() * W * N;
-  return {J.transpose() * W * J - U * A.ldlt().solve(U.transpose()),
-          J.transpose() * We - U * A.ldlt().solve(N.transpose() * We)};
+  return {J.transpose() * W * J - U * dense::solve(A, U.transpose()),
+          J.transpose() * We - U * dense::solve(A, N.transpose() * We)};
 }
 
-Sums sums_of(const PlaneTerms& terms, const Layout& at) {
-  Sums sums{MatrixXd::Zero(at.size(), at.size()), VectorXd::Zero(at.size())};
+PlaneSums sums_of(const PlaneTerms& terms, const Layout& at) {
+  PlaneSums sums{MatrixXd::Zero(at.size(), at.size()), VectorXd::Zero(at.size())};
   terms.add(at, sums.H, sums.g);
   sums.H = MatrixXd(sums.H.selfadjointView<Eigen::Lower>());
   return sums;
@@ -215,7 +215,7 @@ VectorXd some_map_error() {
 }
 
 /// In units of what each unknown is known to by itself.
-void expect_equal(const Sums& found, const Sums& expected, double tolerance) {
+void expect_equal(const PlaneSums& found, const PlaneSums& expected, double tolerance) {
   VectorXd scale(expected.g.size());
   for (Index k = 0; k < scale.size(); ++k) {
     scale[k] = expected.H(k, k) > 1e-3 ? 1.0 / std::sqrt(expected.H(k, k)) : 0.0;
@@ -300,13 +300,13 @@ TEST(PlaneTerms, OneStepFindsTheMotion) {
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
   terms.associate(displaced, VectorXd::Zero(12), {}, true);
   const Layout at{0, static_cast<Index>(displaced.coefficients().size())};
-  const Sums sums = sums_of(terms, at);
+  const PlaneSums sums = sums_of(terms, at);
   MatrixXd B = MatrixXd::Zero(at.size(), 6);
   for (std::size_t k = 0; k < displaced.coefficients().size(); ++k) {
     B.block(at.coefficient(k), 0, 6, 6).setIdentity();
   }
   const MatrixXd H = B.transpose() * sums.H * B;
-  const Vector6d step = -H.ldlt().solve(B.transpose() * sums.g);
+  const Vector6d step = -dense::solve(H, B.transpose() * sums.g);
   EXPECT_LT((step.tail<3>() - Vector3d(-0.01, 0.008, -0.005)).norm(), 1e-3);
   EXPECT_LT(step.head<3>().norm(), 2e-4);
 }
@@ -375,7 +375,7 @@ TEST(PlaneTerms, WithoutAMapAddNothing) {
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
   terms.associate(true_trajectory(), VectorXd::Zero(12), {}, true);
   const Layout at{3, static_cast<Index>(true_trajectory().coefficients().size())};
-  const Sums sums = sums_of(terms, at);
+  const PlaneSums sums = sums_of(terms, at);
   EXPECT_EQ(sums.H.norm(), 0.0);
   EXPECT_EQ(sums.g.norm(), 0.0);
   const PlaneQuality quality = terms.quality();

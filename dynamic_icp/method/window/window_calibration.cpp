@@ -16,9 +16,9 @@ namespace {
 constexpr double kSameView_rad = 0.15;
 
 // More is no sensor; a field for them would fill the memory.
-constexpr std::size_t kMaxSensors = 64;
-constexpr std::size_t kMaxLines = 1024;
-constexpr std::size_t kMaxFaces = 256;
+constexpr std::size_t kMaxFileSensors = 64;
+constexpr std::size_t kMaxFileLines = 1024;
+constexpr std::size_t kMaxFileFaces = 256;
 
 std::string text_of(const FieldShape& shape, std::size_t sensor) {
   const FieldShape::View& view = shape.views[sensor];
@@ -63,11 +63,11 @@ void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
     throw UsageError("a calibration of the sensor has no effect where the error of the Doppler is not learned");
   }
   const FieldShape& shape = calibration.shape;
-  if (shape.views.empty() || shape.views.size() > kMaxSensors || shape.lines > kMaxLines || shape.faces == 0 ||
-      shape.faces > kMaxFaces) {
+  if (shape.views.empty() || shape.views.size() > kMaxFileSensors || shape.lines > kMaxFileLines || shape.faces == 0 ||
+      shape.faces > kMaxFileFaces) {
     throw UsageError(
         fmt::format("a calibration of {} sensors, {} lines and {} faces; expected 1 to {}, 0 to {} and 1 to {}",
-                    shape.views.size(), shape.lines, shape.faces, kMaxSensors, kMaxLines, kMaxFaces));
+                    shape.views.size(), shape.lines, shape.faces, kMaxFileSensors, kMaxFileLines, kMaxFileFaces));
   }
   DopplerErrorField field(shape);
   const auto n = static_cast<Eigen::Index>(field.size());

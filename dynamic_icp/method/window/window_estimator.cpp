@@ -49,9 +49,6 @@ constexpr double kGate_mps = 1.0;
 constexpr double kMuchNoise = 1.0;
 constexpr int kNoiseRounds = 3;
 
-// 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
-constexpr double kNothing = 1e-9;
-
 // The map is never one scan alone.
 constexpr double kMinScans = 2.0;
 

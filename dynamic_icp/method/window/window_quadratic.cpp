@@ -13,9 +13,6 @@
 namespace dynamic_icp::window {
 namespace {
 
-// 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
-constexpr double kNothing = 1e-9;
-
 // Columns that are mirrored together.
 constexpr Eigen::Index kMirrored = 16;
 

@@ -11,6 +11,9 @@
 
 namespace dynamic_icp::window {
 
+/// 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
+inline constexpr double kNothing = 1e-9;
+
 /// All that past scans say of the unknowns z = [theta; map error; stamp errors; coefficients], as the quadratic
 ///   1/2 d^T Q d + g^T d,   d = z - z_0,
 /// about the estimate z_0 at which they were linearised. What has no future is eliminated, what changes its meaning is

@@ -9,6 +9,8 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
+#include "testing/dense_algebra.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -22,30 +24,20 @@ constexpr std::size_t kCoefficients = 4;
 // Marginalisation adds 1e-9 to what it eliminates; eigenvalues of these problems are one and more.
 constexpr double kTolerance = 1e-7;
 
-MatrixXd random_matrix(std::mt19937& random, Index rows, Index columns) {
-  std::normal_distribution<double> normal;
-  return MatrixXd::NullaryExpr(rows, columns, [&] { return normal(random); });
-}
-
-MatrixXd random_information(std::mt19937& random, Index n) {
-  const MatrixXd A = random_matrix(random, n, n);
-  return A * A.transpose() + MatrixXd::Identity(n, n);
-}
-
 /// Everything is correlated with everything, but the tail with the coefficients and their vibration alone.
 WindowQuadratic random_quadratic(unsigned seed) {
   std::mt19937 random(seed);
   WindowQuadratic quadratic(kField, kCoefficients, true);
   const Layout& at = quadratic.layout();
   const Index n = at.size();
-  MatrixXd A = random_matrix(random, n, 2 * n);
+  MatrixXd A = dense::random_matrix(random, n, 2 * n);
   A.block(0, 0, at.coefficient(0), n).setZero();
   A.bottomRightCorner(n - at.head(), n).setZero();
-  quadratic.set(A * A.transpose() + MatrixXd::Identity(n, n), random_matrix(random, n, 1));
+  quadratic.set(A * A.transpose() + MatrixXd::Identity(n, n), dense::random_matrix(random, n, 1));
   return quadratic;
 }
 
-VectorXd minimiser(const WindowQuadratic& quadratic) { return -quadratic.Q().ldlt().solve(quadratic.g()); }
+VectorXd minimiser(const WindowQuadratic& quadratic) { return -dense::solve(quadratic.Q(), quadratic.g()); }
 
 double value(const WindowQuadratic& quadratic, const VectorXd& d) {
   return 0.5 * d.dot(quadratic.Q() * d) + quadratic.g().dot(d);
@@ -188,16 +180,16 @@ TEST(WindowQuadratic, MovingTheReferenceIsAChangeOfVariables) {
   const Layout& at = before.layout();
   std::vector<Matrix6d> changes;
   MatrixXd whole = MatrixXd::Identity(at.size(), at.size());  // d_before = whole d_after
-  const Eigen::Matrix<double, 12, 12> map_change = random_matrix(random, 12, 12);
+  const Eigen::Matrix<double, 12, 12> map_change = dense::random_matrix(random, 12, 12);
   whole.block(at.map_error(), at.map_error(), 12, 12) = map_change;
   for (std::size_t k = 0; k < kCoefficients; ++k) {
-    changes.emplace_back(random_matrix(random, 6, 6));
+    changes.emplace_back(dense::random_matrix(random, 6, 6));
     whole.block(at.coefficient(k), at.coefficient(k), 6, 6) = changes.back();
     whole.block(at.vibration(k), at.vibration(k), 6, 6) = changes.back();
   }
   quadratic.move_reference(changes, map_change);
   for (int k = 0; k < 10; ++k) {
-    const VectorXd after = random_matrix(random, at.size(), 1);
+    const VectorXd after = dense::random_matrix(random, at.size(), 1);
     const double expected = value(before, whole * after);
     EXPECT_NEAR(value(quadratic, after), expected, 1e-10 * std::abs(expected) + 1e-9);
   }
@@ -210,10 +202,10 @@ TEST(WindowQuadratic, MixingTheMapErrorIsAChangeOfVariables) {
     WindowQuadratic quadratic = random_quadratic(8);
     const WindowQuadratic before = quadratic;
     const Layout& at = before.layout();
-    const MatrixXd J = random_matrix(random, Layout::kMapError, 6 * at.coefficients);
+    const MatrixXd J = dense::random_matrix(random, Layout::kMapError, 6 * at.coefficients);
     quadratic.mix_map_error(share, J);
     for (int k = 0; k < 10; ++k) {
-      const VectorXd d = random_matrix(random, at.size(), 1);
+      const VectorXd d = dense::random_matrix(random, at.size(), 1);
       VectorXd mixed = d;
       mixed.segment(at.map_error(), 12) =
           (1.0 - share) * d.segment(at.map_error(), 12) + share * J * d.segment(at.coefficient(0), J.cols());
@@ -228,7 +220,7 @@ TEST(WindowQuadratic, AWalkAddsToTheCovarianceAndKeepsTheEstimate) {
   std::mt19937 random(9);
   WindowQuadratic quadratic = random_quadratic(9);
   const WindowQuadratic before = quadratic;
-  const MatrixXd W = random_information(random, 3);
+  const MatrixXd W = dense::random_information(random, 3);
   quadratic.walk_field(1, W);
   MatrixXd covariance = before.Q().inverse();
   covariance.block(1, 1, 3, 3) += W;

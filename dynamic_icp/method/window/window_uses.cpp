@@ -11,8 +11,6 @@
 namespace dynamic_icp::window {
 namespace {
 
-constexpr std::size_t kBlock = 4096;
-constexpr std::size_t kCellBlock = 128;
 constexpr std::size_t kPlacingBlock = 512;
 
 /// One point as a cell of its own, for what it shares with others.
@@ -135,7 +133,7 @@ void WindowEstimator::static_doppler(const Scan& scan, const Workers& workers, s
   const SampledMotion motion = sampled_motion();
   predicted.resize(scan.size());
   const bool is_of_rig = scan.is_of_rig();
-  workers.for_each(scan.size(), kBlock, [&](std::size_t i) {
+  workers.for_each(scan.size(), kPointBlock, [&](std::size_t i) {
     const double time_s = stamp_s() + (scan.has_times() ? scan.times()[i] : 0.0);
     Eigen::Vector3d v = motion.velocity(time_s);
     if (is_of_rig) {

@@ -21,7 +21,7 @@ constexpr double kSectorElevation_rad = 0.05;
 constexpr double kMinSectorPoints = 10.0;
 constexpr double kSmallestError_mps = 0.005;  // by surfaces and grazing beams, where noise hides it
 constexpr double kSmallestSpread = 1e-6;      // of lines of sight, squared: nothing sees less
-constexpr double kMinStaticShare = 0.2;
+constexpr double kMinShareOfSensor = 0.2;
 
 /// Residuals of the neighbouring lines of sight.
 struct Sector {
@@ -73,7 +73,7 @@ Eigen::Matrix3d view(const Scan& scan, const DopplerFit& fit) {
 bool SensorLook::has_velocity() const {
   const bool found = ego.status == ego_motion::EgoVelocityStatus::kConverged ||
                      ego.status == ego_motion::EgoVelocityStatus::kIterationLimit;
-  return found && static_share >= kMinStaticShare;
+  return found && static_share >= kMinShareOfSensor;
 }
 
 std::vector<SensorLook> look_at_sensors(const Scan& scan, const Workers& workers) {

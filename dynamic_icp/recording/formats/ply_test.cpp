@@ -21,11 +21,11 @@
 namespace dynamic_icp::formats {
 namespace {
 
-PlyFile parse(const std::string& content) { return parse_ply(content, "file.ply"); }
+PlyFile ply_of(const std::string& content) { return parse_ply(content, "file.ply"); }
 
-std::string message(const std::string& content) {
+std::string ply_message(const std::string& content) {
   try {
-    parse(content);
+    ply_of(content);
   } catch (const DataError& error) {
     return error.what();
   }
@@ -48,9 +48,9 @@ constexpr const char* kAsciiHead =
 
 TEST(Ply, ReadsAscii) {
   const PlyFile file =
-      parse(std::string(kAsciiHead) +
-            "element face 2\nproperty list uchar int vertex_indices\nproperty double area\nend_header\n"
-            "1.5 255\n-2e3 0\n3 0 1 -7 0.25\n\n0 1\n");
+      ply_of(std::string(kAsciiHead) +
+             "element face 2\nproperty list uchar int vertex_indices\nproperty double area\nend_header\n"
+             "1.5 255\n-2e3 0\n3 0 1 -7 0.25\n\n0 1\n");
   ASSERT_EQ(file.elements.size(), 2u);
   const PlyElement& vertex = *file.find("vertex");
   EXPECT_EQ(vertex.count, 2u);
@@ -76,7 +76,7 @@ TEST(Ply, ReadsEveryTypeInBothByteOrders) {
                bytes<std::uint16_t>(60000, big) + bytes<std::int32_t>(-2000000000, big) +
                bytes<std::uint32_t>(4000000000u, big) + bytes(1.25f, big) + bytes(0.1, big) +
                bytes<std::uint16_t>(2, big) + bytes(-0.3, big) + bytes(1e300, big);
-    const PlyFile file = parse(content);
+    const PlyFile file = ply_of(content);
     const std::vector<double> expected = {-100.0, 200.0, -30000.0, 60000.0, -2e9, 4e9, 1.25, 0.1};
     const PlyElement& element = *file.find("e");
     for (std::size_t i = 0; i < expected.size(); ++i) {
@@ -86,16 +86,16 @@ TEST(Ply, ReadsEveryTypeInBothByteOrders) {
     // Every truncation is found, and so is a byte too many.
     const std::size_t header = content.find("end_header") + 10;  // its line needs no end
     for (std::size_t size = 0; size < content.size(); ++size) {
-      const std::string error = message(content.substr(0, size));
+      const std::string error = ply_message(content.substr(0, size));
       EXPECT_EQ(error.rfind("file.ply: ", 0), 0u) << size << ": " << error;
       EXPECT_EQ(error.find("line") == std::string::npos, size >= header) << size << ": " << error;
     }
-    EXPECT_NE(message(content + "x").find("1 bytes after the last record"), std::string::npos);
+    EXPECT_NE(ply_message(content + "x").find("1 bytes after the last record"), std::string::npos);
   }
 }
 
 TEST(Ply, ReadsEmptyElements) {
-  const PlyFile file = parse("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n");
+  const PlyFile file = ply_of("ply\nformat ascii 1.0\nelement vertex 0\nproperty float x\nend_header\n");
   EXPECT_EQ(file.find("vertex")->count, 0u);
   EXPECT_TRUE(file.find("vertex")->find("x")->values.empty());
 }
@@ -136,7 +136,7 @@ TEST(Ply, ErrorsNameLineAndExpectation) {
       {head + "end_header\none 2\n3 4\n", {"line 8", "('x') is 'one'", "a number"}},
   };
   for (const auto& [content, parts] : faults) {
-    const std::string error = message(content);
+    const std::string error = ply_message(content);
     for (const std::string& part : parts) {
       EXPECT_NE(error.find(part), std::string::npos) << error << "\n lacks: " << part << "\n" << content;
     }
@@ -154,27 +154,28 @@ TEST(Ply, MoreColumnsOrElementsThanAnyFileHasAreRefusedAtOnce) {
     }
     return text + "end_header\n";
   };
-  EXPECT_EQ(parse(header(1024, 1024)).elements.back().columns.size(), 1024U);
-  EXPECT_NE(message(header(1025, 1)).find("line 1027: more than 1024 elements"), std::string::npos);
-  EXPECT_NE(message(header(1, 1025)).find("line 1028: element 'e0' has more than 1024 properties"), std::string::npos);
-  EXPECT_NE(message(header(100'000, 1)).find("more than 1024 elements"), std::string::npos);
+  EXPECT_EQ(ply_of(header(1024, 1024)).elements.back().columns.size(), 1024U);
+  EXPECT_NE(ply_message(header(1025, 1)).find("line 1027: more than 1024 elements"), std::string::npos);
+  EXPECT_NE(ply_message(header(1, 1025)).find("line 1028: element 'e0' has more than 1024 properties"),
+            std::string::npos);
+  EXPECT_NE(ply_message(header(100'000, 1)).find("more than 1024 elements"), std::string::npos);
 }
 
 TEST(Ply, LyingCountsTakeNoMemory) {
   for (const char* format : {"ascii", "binary_little_endian"}) {
     const std::string head = std::string("ply\nformat ") + format + " 1.0\nelement vertex ";
     const std::string tail = "\nproperty float x\nend_header\n1 2 3 4\n";
-    EXPECT_NE(message(head + "1000000000000000000" + tail).find("expected at most"), std::string::npos);
-    EXPECT_NE(message(head + "18446744073709551615" + tail).find("expected at most"), std::string::npos);
-    EXPECT_NE(message(head + "18446744073709551616" + tail).find("whole number"), std::string::npos);
-    EXPECT_NE(message(head + "5\nend_header\n").find("expected at most 0"), std::string::npos);
+    EXPECT_NE(ply_message(head + "1000000000000000000" + tail).find("expected at most"), std::string::npos);
+    EXPECT_NE(ply_message(head + "18446744073709551615" + tail).find("expected at most"), std::string::npos);
+    EXPECT_NE(ply_message(head + "18446744073709551616" + tail).find("whole number"), std::string::npos);
+    EXPECT_NE(ply_message(head + "5\nend_header\n").find("expected at most 0"), std::string::npos);
   }
   const std::string list =
       "ply\nformat binary_little_endian 1.0\nelement face 1\nproperty list int double i\nend_header\n";
-  EXPECT_NE(message(list + bytes<std::int32_t>(2000000000, false)).find("record 1 of element 'face'"),
+  EXPECT_NE(ply_message(list + bytes<std::int32_t>(2000000000, false)).find("record 1 of element 'face'"),
             std::string::npos);
-  EXPECT_NE(message(list + bytes<std::int32_t>(-1, false)).find("'i' has -1 values"), std::string::npos);
-  EXPECT_NE(message("ply\nformat ascii 1.0\nelement face 1\nproperty list int int i\nend_header\n4294967295 0\n")
+  EXPECT_NE(ply_message(list + bytes<std::int32_t>(-1, false)).find("'i' has -1 values"), std::string::npos);
+  EXPECT_NE(ply_message("ply\nformat ascii 1.0\nelement face 1\nproperty list int int i\nend_header\n4294967295 0\n")
                 .find("'i' is missing"),
             std::string::npos);
 }
@@ -184,7 +185,7 @@ constexpr const char* kPointsEnd = "\nproperty float x\nproperty float y\nproper
 TEST(PlyPoints, AnEmptyCloudIsAFileWithoutRecords) {
   const std::string content = ply_bytes(point_table({}));
   EXPECT_EQ(content, std::string("ply\nformat binary_little_endian 1.0\nelement vertex 0") + kPointsEnd);
-  EXPECT_EQ(parse(content).find("vertex")->count, 0u);
+  EXPECT_EQ(ply_of(content).find("vertex")->count, 0u);
 }
 
 // x = 1, y = -2, z = 0.5 as IEEE 754 has them, lowest byte first.
@@ -196,7 +197,7 @@ TEST(PlyPoints, TheBytesAreThoseOfTheFormat) {
 
 TEST(PlyPoints, TheReaderFindsEveryPoint) {
   const PlyFile file =
-      parse(ply_bytes(point_table(std::vector<Eigen::Vector3d>{{1.25, -2.0, 0.5}, {1e-3, 4e4, -0.1}})));
+      ply_of(ply_bytes(point_table(std::vector<Eigen::Vector3d>{{1.25, -2.0, 0.5}, {1e-3, 4e4, -0.1}})));
   ASSERT_EQ(file.elements.size(), 1u);
   const PlyElement& vertex = *file.find("vertex");
   const auto rounded = [](float a, float b) { return std::vector<double>{a, b}; };

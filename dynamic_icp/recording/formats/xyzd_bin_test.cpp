@@ -23,10 +23,10 @@ class XyzdBin : public ::testing::Test {
 };
 
 // x = 1, y = -2, z = 0.5, Doppler = -3.25, byte by byte.
-const std::string kRecord("\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f\x00\x00\x50\xc0", 16);
+const std::string kXyzdRecord("\x00\x00\x80\x3f\x00\x00\x00\xc0\x00\x00\x00\x3f\x00\x00\x50\xc0", 16);
 
 TEST_F(XyzdBin, ReadsLittleEndianRecords) {
-  write(kRecord + kRecord);
+  write(kXyzdRecord + kXyzdRecord);
   const RawScan raw = read_xyzd(path_);
   ASSERT_EQ(raw.points.size(), 2u);
   EXPECT_EQ(raw.points[1], Eigen::Vector3d(1.0, -2.0, 0.5));
@@ -36,7 +36,7 @@ TEST_F(XyzdBin, ReadsLittleEndianRecords) {
 }
 
 TEST_F(XyzdBin, LeavesOutAnIncompleteRecordAndSaysSo) {
-  write(kRecord + kRecord.substr(0, 7));
+  write(kXyzdRecord + kXyzdRecord.substr(0, 7));
   const RawScan raw = read_xyzd(path_);
   EXPECT_EQ(raw.points.size(), 1u);
   EXPECT_NE(raw.warning.find(path_.string()), std::string::npos);
@@ -55,7 +55,7 @@ TEST_F(XyzdBin, WritesTheSameBytes) {
   scan.points.assign(2, {1.0, -2.0, 0.5});
   scan.doppler.assign(2, -3.25);
   write_xyzd(path_, scan);
-  EXPECT_EQ(read_whole_file(path_), kRecord + kRecord);
+  EXPECT_EQ(read_whole_file(path_), kXyzdRecord + kXyzdRecord);
   write_xyzd(path_, {});
   EXPECT_EQ(read_whole_file(path_), "");
   scan.doppler.pop_back();
@@ -76,7 +76,7 @@ TEST_F(XyzdBin, NamesWhatIsNotData) {
   };
   EXPECT_NE(message("version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 16\n").find("Git LFS pointer"),
             std::string::npos);
-  EXPECT_NE(message(std::string("PK\x03\x04") + kRecord).find("zip archive"), std::string::npos);
+  EXPECT_NE(message(std::string("PK\x03\x04") + kXyzdRecord).find("zip archive"), std::string::npos);
   EXPECT_THROW(read_xyzd(path_.string() + ".missing"), DataError);
 }
 

@@ -16,10 +16,10 @@ namespace {
 
 constexpr Limits kAny = {-std::numeric_limits<double>::infinity(), std::numeric_limits<double>::infinity()};
 
-YamlMap parse(std::string_view text) { return YamlMap::parse(text, "file.yaml"); }
+YamlMap yaml_of(std::string_view text) { return YamlMap::parse(text, "file.yaml"); }
 
 TEST(YamlMap, ReadsValues) {
-  const YamlMap map = parse("name: two words\nspeed: 1.5e1\ncount: +7\nopen: true\nsize: [1, -2.5, 3]\nkind: van\n");
+  const YamlMap map = yaml_of("name: two words\nspeed: 1.5e1\ncount: +7\nopen: true\nsize: [1, -2.5, 3]\nkind: van\n");
   EXPECT_EQ(map.text("name"), "two words");
   EXPECT_EQ(map.number("speed", {0.0, 70.0}), 15.0);
   EXPECT_EQ(map.number("count", {7.0, 7.0}), 7.0);
@@ -33,7 +33,7 @@ TEST(YamlMap, ReadsValues) {
 }
 
 TEST(YamlMap, TakesFallbacksForMissingKeysOnly) {
-  const YamlMap map = parse("here: 1\n");
+  const YamlMap map = yaml_of("here: 1\n");
   EXPECT_EQ(map.text("name", "none"), "none");
   EXPECT_EQ(map.number("speed", {0.0, 1.0}, 9.0), 9.0);
   EXPECT_EQ(map.whole_number("count", {0.0, 1.0}, 9), 9);
@@ -48,7 +48,7 @@ TEST(YamlMap, TakesFallbacksForMissingKeysOnly) {
 }
 
 TEST(YamlMap, ReadsMapsInTheOrderOfTheFile) {
-  const YamlMap map = parse(
+  const YamlMap map = yaml_of(
       "vehicle: {start: 1}\nlanes:\n- {count: 1}\n- {count: 2}\n"
       "parts:\n- box: {size: 4}\n- ground:\n- box: {size: 5}\nroutes:\n  z: {n: 1}\n  a: {n: 2}\n");
   EXPECT_EQ(map.map("vehicle").number("start", kAny), 1.0);
@@ -69,7 +69,7 @@ TEST(YamlMap, TextsMayHaveEveryCharacter) {
   for (const char* text : {"Stra\xC3\x9F"
                            "e",
                            "\xE2\x82\xAC", "\xF0\x9F\x9A\x97", "\xEF\xBF\xBD"}) {
-    EXPECT_EQ(parse(std::string("a: ") + text + "\n").text("a"), text);
+    EXPECT_EQ(yaml_of(std::string("a: ") + text + "\n").text("a"), text);
   }
 }
 
@@ -82,7 +82,7 @@ TEST(YamlMap, ReadsTexts) {
 }
 
 TEST(YamlMap, ReadsRows) {
-  const YamlMap map = parse("profile:\n- [1, 2]\n- [3, 4]\n- [5, 6]\n");
+  const YamlMap map = yaml_of("profile:\n- [1, 2]\n- [3, 4]\n- [5, 6]\n");
   const std::vector<std::vector<double>> expected = {{1.0, 2.0}, {3.0, 4.0}, {5.0, 6.0}};
   EXPECT_EQ(map.rows("profile", 2, kAny), expected);
   EXPECT_EQ(map.rows("profile", 0, kAny), expected);
@@ -92,7 +92,7 @@ TEST(YamlMap, ReadsSettings) {
   double size = 1.0;
   int count = 1;
   const ConfigFields fields = {{"grid.size", &size, 0.0, 10.0, "m", ""}, {"count", &count, 0.0, 10.0, "", ""}};
-  const YamlMap map = parse("config:\n  grid: {size: 2}\n  count: 3\n");
+  const YamlMap map = yaml_of("config:\n  grid: {size: 2}\n  count: 3\n");
   map.settings("config", fields);
   map.settings("absent", fields);
   EXPECT_EQ(size, 2.0);
@@ -101,7 +101,7 @@ TEST(YamlMap, ReadsSettings) {
 }
 
 TEST(YamlMap, FinishFindsKeysNobodyAskedForAnywhere) {
-  const YamlMap map = parse("speed: 1\nvehicle:\n  start: 2\n  lateral: 3\n");
+  const YamlMap map = yaml_of("speed: 1\nvehicle:\n  start: 2\n  lateral: 3\n");
   (void)map.number("speed", kAny);
   const YamlMap vehicle = map.map("vehicle");
   (void)vehicle.number("start", kAny);
@@ -111,7 +111,7 @@ TEST(YamlMap, FinishFindsKeysNobodyAskedForAnywhere) {
 }
 
 TEST(YamlMap, MapsTakenTwiceAreOne) {
-  const YamlMap map = parse("m: {a: 1}\nl: [{a: 1}, {a: 2}]\n");
+  const YamlMap map = yaml_of("m: {a: 1}\nl: [{a: 1}, {a: 2}]\n");
   (void)map.map("m");
   (void)map.map("m").number("a", kAny);
   (void)map.list("l")[0].number("a", kAny);
@@ -122,7 +122,7 @@ TEST(YamlMap, MapsTakenTwiceAreOne) {
 
 TEST(YamlMap, BlankDocumentsMayBeAllowed) {
   for (const char* text : {"", "\n", "# nothing\n", "---\n"}) {
-    EXPECT_THROW(parse(text), UsageError);
+    EXPECT_THROW(yaml_of(text), UsageError);
     const YamlMap map = YamlMap::parse(text, "file.yaml", YamlMap::Blank::kEmptyMap);
     EXPECT_FALSE(map.has("key"));
     EXPECT_NO_THROW(map.finish());
@@ -156,7 +156,7 @@ std::string message_of(const std::function<void()>& action) {
 
 void expect_messages(const std::vector<Fault>& faults) {
   for (const Fault& fault : faults) {
-    const std::string message = message_of([&] { fault.read(parse(fault.text)); });
+    const std::string message = message_of([&] { fault.read(yaml_of(fault.text)); });
     EXPECT_EQ(message.rfind("file.yaml: line ", 0), 0u) << message;
     for (const std::string& part : fault.parts) {
       EXPECT_NE(message.find(part), std::string::npos) << message << "\n lacks: " << part;
@@ -254,19 +254,19 @@ TEST(YamlMap, ErrorsInKeysNameLineAndTheNearestKey) {
 TEST(YamlMap, RefusesWhatIsNoMapOrNoYaml) {
   for (const char* text : {"a: 1\nb: 2\na: 3\n", "m:\n  a: 1\n  a: 2\n"}) {
     const std::string message = message_of([&] {
-      const YamlMap map = parse(text);
+      const YamlMap map = yaml_of(text);
       (void)map.map("m");
     });
     EXPECT_NE(message.find("line 3: "), std::string::npos) << message;
     EXPECT_NE(message.find("is set twice"), std::string::npos) << message;
   }
-  EXPECT_NE(message_of([] { parse("- 1\n"); }).find("line 1: holds a list of 1, expected a map"), std::string::npos);
-  EXPECT_NE(message_of([] { parse("\n5\n"); }).find("line 2: holds '5'"), std::string::npos);
-  EXPECT_NE(message_of([] { parse("a: 1\n[1]: 2\n"); }).find("line 2: a key is a list of 1"), std::string::npos);
+  EXPECT_NE(message_of([] { yaml_of("- 1\n"); }).find("line 1: holds a list of 1, expected a map"), std::string::npos);
+  EXPECT_NE(message_of([] { yaml_of("\n5\n"); }).find("line 2: holds '5'"), std::string::npos);
+  EXPECT_NE(message_of([] { yaml_of("a: 1\n[1]: 2\n"); }).find("line 2: a key is a list of 1"), std::string::npos);
   for (const char* text : {"a: {b: 1\n", "a: 1\n---\na: 2\n", "a: *nobody\n", "a: 1\n\x04 b: 2\n", "a: \xC3\n",
                            "a: \xC0\x80\n", "a: \xED\xA0\x80\n", "a: \xF5\x80\x80\x80\n", "a: \x80\n", "a: \xFF\n"}) {
     try {
-      parse(text);
+      yaml_of(text);
       ADD_FAILURE() << text;
     } catch (const DataError& error) {
       EXPECT_EQ(std::string(error.what()).rfind("file.yaml: line ", 0), 0u) << error.what();

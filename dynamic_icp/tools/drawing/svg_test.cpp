@@ -13,7 +13,7 @@
 namespace dynamic_icp::drawing {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The check itself must be able to fail.
@@ -54,7 +54,7 @@ TEST(Svg, LeavesOutWhatIsNotFinite) {
   Svg svg(200.0, 100.0, "");
   const std::string empty = svg.document();
   const Paint paint{.fill = "#000", .stroke = "#000"};
-  for (const double bad : {kNaN, kInfinity, -kInfinity}) {
+  for (const double bad : {kNotANumber, kInfinity, -kInfinity}) {
     const std::vector<Pixel> corners = {{0.0, bad}, {bad, 1.0}};
     svg.line({0.0, bad}, {1.0, 1.0}, paint);
     svg.polyline(corners, paint);
@@ -71,8 +71,8 @@ TEST(Svg, LeavesOutWhatIsNotFinite) {
 
 TEST(Svg, LinesBreakAtGaps) {
   Svg svg(200.0, 100.0, "");
-  const std::vector<Pixel> pixels = {{0.0, 0.0},  {1.0, 1.0}, {2.0, kNaN}, {3.0, 3.0},
-                                     {4.0, kNaN}, {5.0, 5.0}, {6.0, 6.0}};
+  const std::vector<Pixel> pixels = {{0.0, 0.0},         {1.0, 1.0}, {2.0, kNotANumber}, {3.0, 3.0},
+                                     {4.0, kNotANumber}, {5.0, 5.0}, {6.0, 6.0}};
   svg.polyline(pixels, {.stroke = "#000"});
   EXPECT_EQ(count_of(svg.document(), "<polyline"), 2u);
   EXPECT_EQ(count_of(svg.document(), "<circle"), 1u) << "a point alone between gaps stays visible";

@@ -13,7 +13,7 @@
 namespace dynamic_icp::figures {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kNotANumber = std::numeric_limits<double>::quiet_NaN();
 
 std::string drawn(const std::vector<double>& times, const std::vector<Panel>& panels) {
   const std::string document = series_plot(times, panels, drawing::theme(drawing::Ground::kLight)).document();
@@ -38,7 +38,7 @@ double highest_pixel(const std::string& document) {
 TEST(SeriesPlot, DrawsNothingAndLittle) {
   drawn({}, {});
   EXPECT_NE(drawn({}, {panel({})}).find("no values"), std::string::npos);
-  EXPECT_NE(drawn({0.0, 1.0}, {panel({kNaN, kNaN})}).find("no values"), std::string::npos);
+  EXPECT_NE(drawn({0.0, 1.0}, {panel({kNotANumber, kNotANumber})}).find("no values"), std::string::npos);
   EXPECT_EQ(drawing::count_of(drawn({5.0}, {panel({3.0})}), "<circle"), 1u) << "a single frame is a dot";
   drawn({0.0, 1.0}, {panel({0.0, 0.0})});
   drawn({0.0, 1.0}, {panel({1e300, -1e300})});
@@ -47,7 +47,7 @@ TEST(SeriesPlot, DrawsNothingAndLittle) {
 
 TEST(SeriesPlot, LogarithmicScaleTakesZerosAndNegatives) {
   for (const std::vector<double>& values :
-       {std::vector<double>{0.0, 0.0}, {0.0, 1.0}, {-1.0, kNaN}, {1e-12, 1e12}, {3.0, 3.0}}) {
+       {std::vector<double>{0.0, 0.0}, {0.0, 1.0}, {-1.0, kNotANumber}, {1e-12, 1e12}, {3.0, 3.0}}) {
     Panel logarithmic = panel(values);
     logarithmic.logarithmic = true;
     drawn({0.0, 1.0}, {logarithmic});
@@ -55,7 +55,7 @@ TEST(SeriesPlot, LogarithmicScaleTakesZerosAndNegatives) {
 }
 
 TEST(SeriesPlot, GapsBreakTheLine) {
-  const std::string document = drawn({0.0, 1.0, 2.0, 3.0, 4.0}, {panel({1.0, 2.0, kNaN, 2.0, 1.0})});
+  const std::string document = drawn({0.0, 1.0, 2.0, 3.0, 4.0}, {panel({1.0, 2.0, kNotANumber, 2.0, 1.0})});
   EXPECT_EQ(drawing::count_of(document, "<polyline"), 2u);
 }
 
@@ -87,14 +87,14 @@ TEST(SeriesPlot, DecadesAreSpannedByAFewTowers) {
   EXPECT_FALSE(spans_decades({}));
   EXPECT_FALSE(spans_decades({1.0, 2.0, 3.0, 4.0}));
   EXPECT_TRUE(spans_decades({1.0, 2.0, 3.0, 400.0}));
-  EXPECT_FALSE(spans_decades({0.0, kNaN, 400.0}));
+  EXPECT_FALSE(spans_decades({0.0, kNotANumber, 400.0}));
 }
 
 TEST(SeriesPlot, LinesLieFarApartByTheirMedians) {
   EXPECT_FALSE(lie_far_apart({}));
-  EXPECT_FALSE(lie_far_apart({{"a", {1.0, 2.0, 500.0}}, {"b", {3.0, kNaN, 4.0}}})) << "one tower is no far line";
+  EXPECT_FALSE(lie_far_apart({{"a", {1.0, 2.0, 500.0}}, {"b", {3.0, kNotANumber, 4.0}}})) << "one tower is no far line";
   EXPECT_TRUE(lie_far_apart({{"a", {0.01, 0.02, 0.0}}, {"b", {1.0, 1.0, 1.0}}}));
-  EXPECT_FALSE(lie_far_apart({{"a", {0.0, kNaN}}, {"b", {1.0, 1.0}}})) << "no axis shows the first";
+  EXPECT_FALSE(lie_far_apart({{"a", {0.0, kNotANumber}}, {"b", {1.0, 1.0}}})) << "no axis shows the first";
 }
 
 }  // namespace

@@ -19,10 +19,10 @@ namespace {
 
 using nlohmann::json;
 
-constexpr ViewerBundle kViewer{.script = "start();", .style = "body{}"};
+constexpr ViewerBundle kBundle{.script = "start();", .style = "body{}"};
 
 std::string html_of(const runs::TestFolder& folder, const ScanChoice& choice = {}) {
-  return html_page(run_report(folder.path() / "run", choice, Workers(1)), kViewer);
+  return html_page(run_report(folder.path() / "run", choice, Workers(1)), kBundle);
 }
 
 void replace(const runs::TestFolder& folder, const std::string& file, const std::string& from, const std::string& to) {
@@ -144,7 +144,7 @@ TEST(RunReport, ShowsHostileTextAsText) {
 TEST(RunReport, TextsThatAreNoUtf8AreMended) {
   Json report = {
       {"schema", 1}, {"kind", "run"}, {"title", "a\xFF<b>"}, {"notes", Json::array()}, {"runs", Json::array()}};
-  const ReadPage page = read_page(html_page({report, {}}, kViewer));
+  const ReadPage page = read_page(html_page({report, {}}, kBundle));
   EXPECT_EQ(page.report["title"], "a\xEF\xBF\xBD<b>");
   EXPECT_THROW(html_page({report, {}}, {.script = "'</script>'", .style = ""}), std::runtime_error);
 }

@@ -17,7 +17,7 @@ namespace {
 using std::numbers::pi;
 
 /// Volume within a closed mesh, by the divergence theorem; positive when the normals point outwards.
-double volume(const TriangleMesh& mesh) {
+double volume_within(const TriangleMesh& mesh) {
   double sum = 0.0;
   for (const auto& [a, b, c] : mesh.triangles) {
     sum += mesh.vertices[a].dot(mesh.vertices[b].cross(mesh.vertices[c])) / 6.0;
@@ -53,12 +53,12 @@ TEST(TriangleMesh, BoundsOfAnEmptyMeshAreEmpty) { EXPECT_TRUE(bounds(TriangleMes
 TEST(TriangleMesh, SolidsAreClosedAndFaceOutwards) {
   const double polygon_area = 0.5 * 12 * 4.0 * std::sin(2.0 * pi / 12);  // regular 12-gon, radius 2
   EXPECT_TRUE(is_closed(make_box({1.0, 2.0, 3.0})));
-  EXPECT_NEAR(volume(make_box({1.0, 2.0, 3.0})), 6.0, 1e-12);
+  EXPECT_NEAR(volume_within(make_box({1.0, 2.0, 3.0})), 6.0, 1e-12);
   EXPECT_TRUE(is_closed(make_cylinder(2.0, 5.0, 12)));
-  EXPECT_NEAR(volume(make_cylinder(2.0, 5.0, 12)), 5.0 * polygon_area, 1e-12);
+  EXPECT_NEAR(volume_within(make_cylinder(2.0, 5.0, 12)), 5.0 * polygon_area, 1e-12);
   EXPECT_TRUE(is_closed(make_ellipsoid({1.0, 2.0, 3.0}, 8, 12)));
   const double round = 4.0 / 3.0 * pi * 6.0;
-  EXPECT_NEAR(volume(make_ellipsoid({1.0, 2.0, 3.0}, 200, 400)), round, 1e-3 * round);
+  EXPECT_NEAR(volume_within(make_ellipsoid({1.0, 2.0, 3.0}, 200, 400)), round, 1e-3 * round);
 }
 
 TEST(TriangleMesh, SolidsHaveTheSizeAskedFor) {
@@ -86,7 +86,7 @@ TEST(TriangleMesh, AppendMovesThePartAndKeepsItsShape) {
   T.rotate(Eigen::AngleAxisd(0.7, Eigen::Vector3d(1.0, 2.0, -1.0).normalized()));
   T.pretranslate(Eigen::Vector3d(5.0, -3.0, 2.0));
   append(mesh, make_box({2.0, 1.0, 1.0}), T);
-  EXPECT_NEAR(volume(mesh), 3.0, 1e-12);
+  EXPECT_NEAR(volume_within(mesh), 3.0, 1e-12);
 }
 
 TEST(BodyShapes, HaveTheirSizeAndStandOnTheRoad) {
@@ -96,7 +96,7 @@ TEST(BodyShapes, HaveTheirSizeAndStandOnTheRoad) {
     EXPECT_NEAR(box.min().z(), 0.0, 1e-12);
     EXPECT_NEAR(box.center().x(), 0.0, 0.05);
     EXPECT_NEAR(box.center().y(), 0.0, 1e-12);
-    EXPECT_GT(volume(mesh), 0.0);
+    EXPECT_GT(volume_within(mesh), 0.0);
   };
   check(make_car(), {4.4, 1.8, 1.5});
   check(make_van(), {5.6, 2.0, 2.4});
