@@ -232,7 +232,7 @@ TEST(PlaneTerms, AreTheSumsOfTheirEquation) {
     Room room;
     room.has_ends = has_ends;
     const PlaneMap map = room.map();
-    const Scan scan = scan_of(room, true_trajectory(), 3000);
+    const Scan scan = scan_of(room, true_trajectory(), 1000);
     for (const bool adapt : {false, true}) {
       PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
       terms.associate(wrong_trajectory(), some_map_error(), {}, adapt);
