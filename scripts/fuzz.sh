@@ -28,7 +28,7 @@ mkdir -p "$results/findings"
 
 run() {  # target
   mkdir -p "$results/corpus/$1"
-  if "$build/fuzz/fuzz_$1" -max_total_time="$seconds" -seed="${SEED:-1}" -timeout=10 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=8192 \
+  if "$build/fuzz/fuzz_$1" -max_total_time="$seconds" -seed="${SEED:-1}" -timeout=60 -rss_limit_mb=1024 -malloc_limit_mb=512 -max_len=8192 \
     -artifact_prefix="$results/findings/$1-" "$results/corpus/$1" "$results/seeds/$1" >"$results/$1.log" 2>&1; then
     echo "$1: $(grep -E '^Done' "$results/$1.log" || echo done)"
   else
