@@ -3,7 +3,7 @@
 # usage: scripts/test.sh              the whole suite, optimised
 #        scripts/test.sh format       whether every source is formatted as .clang-format says
 #        scripts/test.sh method       the tests of the method, built by clang with assertions, under the address and
-#                                     undefined-behaviour sanitizers
+#                                     undefined-behaviour sanitizers; without the drives that take minutes there
 #        scripts/test.sh threads      every method with several threads, under the thread sanitizer
 # scripts/check.sh runs what takes longer.
 set -euo pipefail

@@ -5,8 +5,6 @@
 #include <cmath>
 
 namespace dynamic_icp::ego_motion {
-namespace {}  // namespace
-
 ConfigFields fields(VelocityFilterConfig& config) {
   return {
       {"enabled", &config.enabled, 0, 0, "", "classify points as moving or static; off: all count as static"},

@@ -16,15 +16,17 @@
 namespace dynamic_icp::ego_motion {
 namespace {
 
-constexpr std::size_t kVotes = 8;  // hypotheses that are counted together, one per lane
-constexpr double kMinModeShare =
-    0.4;  // of the support of the best; a mode of three noisy rows has lost some to the noise
+constexpr std::size_t kVoteLanes = 8;  // hypotheses that are counted together, one per lane
+
+// Of the support of the best; a mode of three noisy rows has lost some to the noise.
+constexpr double kMinModeShare = 0.4;
+
 constexpr std::uint64_t kDraws = 5;  // rows looked at for the second and the third row of a sample
 
 // Without a pull towards the start a sample in a plane would have no solution; velocities of 100 m/s are free of it.
 constexpr double kFreeSpeedMps = 100.0;
 
-using Lanes = std::array<float, kVotes>;
+using Lanes = std::array<float, kVoteLanes>;
 
 /// What a vote needs, in single precision: the votes only rank, and twice as many fit into a register.
 struct VoteRow {
@@ -109,7 +111,7 @@ class Sampler {
   double pull_ = 0.0;
 };
 
-/// Votes of up to kVotes changes of velocity at once. Lanes do not mix, so the width of a register changes no bit.
+/// Votes of up to kVoteLanes changes of velocity at once. Lanes do not mix, so the width of a register changes no bit.
 void vote(const std::vector<VoteRow>& rows, const Eigen::Vector3d* changes, std::size_t n, double* result) {
   Lanes x{};
   Lanes y{};
@@ -126,7 +128,7 @@ void vote(const std::vector<VoteRow>& rows, const Eigen::Vector3d* changes, std:
     const Lanes vz = z;
     Lanes sum{};
     for (const VoteRow& row : rows) {
-      DYNAMIC_ICP_LANE_LOOP for (std::size_t l = 0; l < kVotes; ++l) {
+      DYNAMIC_ICP_LANE_LOOP for (std::size_t l = 0; l < kVoteLanes; ++l) {
         const float e = row.e + row.ux * vx[l] + row.uy * vy[l] + row.uz * vz[l];
         const float share = 1.0F - e * e * row.per_width2;
         sum[l] += row.weight * (share > 0.0F ? share : 0.0F);
@@ -175,12 +177,12 @@ std::vector<VelocityMode> find_modes(const ConsensusSet& consensus_set, const Ve
   const std::size_t n = sampler.possible() ? search.hypotheses + 1 : 1;
   std::vector<Eigen::Vector3d> changes(n, Eigen::Vector3d::Zero());
   std::vector<double> support(n);
-  workers.for_blocks(n, 4 * kVotes, [&](std::size_t, std::size_t begin, std::size_t end) {
+  workers.for_blocks(n, 4 * kVoteLanes, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t h = std::max<std::size_t>(begin, 1); h < end; ++h) {
       changes[h] = sampler.change(h);
     }
-    for (std::size_t h = begin; h < end; h += kVotes) {
-      vote(inlier_weight_by_row, &changes[h], std::min<std::size_t>(kVotes, end - h), &support[h]);
+    for (std::size_t h = begin; h < end; h += kVoteLanes) {
+      vote(inlier_weight_by_row, &changes[h], std::min<std::size_t>(kVoteLanes, end - h), &support[h]);
     }
   });
   std::vector<std::size_t> order(n);

@@ -10,8 +10,6 @@
 #include "dynamic_icp/method/spatial/key_numbers.hpp"
 
 namespace dynamic_icp::preprocess {
-namespace {}  // namespace
-
 ConfigFields fields(VoxelGridConfig& config) {
   return {{"voxel_size_m", &config.voxel_size_m, 0.0, 100.0, "m",
            "voxel size; the first point of each voxel is kept, 0 keeps all points"}};

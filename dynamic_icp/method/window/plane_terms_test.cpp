@@ -180,14 +180,14 @@ struct Definition {
   }
 };
 
-struct PlaneSums {
+struct PlaneTermSums {
   MatrixXd H;
   VectorXd g;
 };
 
 /// Of the definition; an offset of the map is eliminated that is known, along each axis of sum w n n^T, to held of the
 /// information there.
-PlaneSums expected_sums(const Definition& definition, const Vector3d& held) {
+PlaneTermSums expected_sums(const Definition& definition, const Vector3d& held) {
   const MatrixXd J = definition.jacobian();
   const auto W = definition.weights.asDiagonal();
   const MatrixXd N = definition.normals();
@@ -201,8 +201,8 @@ PlaneSums expected_sums(const Definition& definition, const Vector3d& held) {
           J.transpose() * We - U * dense::solve(A, N.transpose() * We)};
 }
 
-PlaneSums sums_of(const PlaneTerms& terms, const Layout& at) {
-  PlaneSums sums{MatrixXd::Zero(at.size(), at.size()), VectorXd::Zero(at.size())};
+PlaneTermSums sums_of(const PlaneTerms& terms, const Layout& at) {
+  PlaneTermSums sums{MatrixXd::Zero(at.size(), at.size()), VectorXd::Zero(at.size())};
   terms.add(at, sums.H, sums.g);
   sums.H = MatrixXd(sums.H.selfadjointView<Eigen::Lower>());
   return sums;
@@ -215,7 +215,7 @@ VectorXd some_map_error() {
 }
 
 /// In units of what each unknown is known to by itself.
-void expect_equal(const PlaneSums& found, const PlaneSums& expected, double tolerance) {
+void expect_equal(const PlaneTermSums& found, const PlaneTermSums& expected, double tolerance) {
   VectorXd scale(expected.g.size());
   for (Index k = 0; k < scale.size(); ++k) {
     scale[k] = expected.H(k, k) > 1e-3 ? 1.0 / std::sqrt(expected.H(k, k)) : 0.0;
@@ -300,7 +300,7 @@ TEST(PlaneTerms, OneStepFindsTheMotion) {
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
   terms.associate(displaced, VectorXd::Zero(12), {}, true);
   const Layout at{0, static_cast<Index>(displaced.coefficients().size())};
-  const PlaneSums sums = sums_of(terms, at);
+  const PlaneTermSums sums = sums_of(terms, at);
   MatrixXd B = MatrixXd::Zero(at.size(), 6);
   for (std::size_t k = 0; k < displaced.coefficients().size(); ++k) {
     B.block(at.coefficient(k), 0, 6, 6).setIdentity();
@@ -375,7 +375,7 @@ TEST(PlaneTerms, WithoutAMapAddNothing) {
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
   terms.associate(true_trajectory(), VectorXd::Zero(12), {}, true);
   const Layout at{3, static_cast<Index>(true_trajectory().coefficients().size())};
-  const PlaneSums sums = sums_of(terms, at);
+  const PlaneTermSums sums = sums_of(terms, at);
   EXPECT_EQ(sums.H.norm(), 0.0);
   EXPECT_EQ(sums.g.norm(), 0.0);
   const PlaneQuality quality = terms.quality();
