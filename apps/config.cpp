@@ -40,7 +40,7 @@ std::string reference_page() {
   std::string page =
       "# Configuration\n\n"
       "Every key can be set with `--set key=value` or in a YAML file given with `--config`, nested or dotted. The "
-      "table has the\nvalue in force for each pipeline: the presets `default`, `fast` and `paper` of dynamic-icp, "
+      "table has the\nvalue in force for each pipeline: the presets `default` and `paper` of dynamic-icp, "
       "and the\n"
       "baselines (`--method`). A pipeline without a value does not read the key, and setting it is refused. This page "
       "is made by `dynamic-icp config --markdown`.\n\n| key |";

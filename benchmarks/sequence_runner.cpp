@@ -32,7 +32,7 @@ constexpr int kWrongUsage = 2;
 struct Options {
   std::vector<std::string> recordings;
   std::vector<std::string> methods = {"dynamic-icp"};
-  std::vector<std::string> presets = {"default", "fast", "paper"};
+  std::vector<std::string> presets = {"default", "paper"};
   std::vector<int> threads = {1, 2};
   int repeat = 3;
   std::string reference;
@@ -159,7 +159,7 @@ CLI::Option* add_list(CLI::App& app, const std::string& name, List& list, const 
 
 void add_options(CLI::App& app, Options& options) {
   app.add_option("RECORDINGS", options.recordings, "Folders of recordings, of any layout that 'run' takes")->required();
-  add_list(app, "--presets", options.presets, "Configurations (default default,fast,paper)");
+  add_list(app, "--presets", options.presets, "Configurations (default default,paper)");
   add_list(app, "--methods", options.methods, "Methods (default dynamic-icp)");
   add_list(app, "--threads", options.threads, "Numbers of threads (default 1,2)")->check(CLI::Range(1, 1024));
   app.add_option("--repeat", options.repeat, "Runs of everything, in turn (default 3)")

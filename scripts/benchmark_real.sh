@@ -27,7 +27,7 @@ compare() {
   "$program" benchmark "$folder/drives/$1" --methods point-to-point,point-to-plane,gicp,kiss-icp "${moving[@]}" \
     --set registration.max_correspondence_distance_m=2 --set kiss_icp.deskew=true --output "$folder/$1-geometry"
   "$program" benchmark "$folder/drives/$1" --methods doppler-icp "${moving[@]}" --output "$folder/$1-doppler"
-  for preset in paper fast default; do
+  for preset in paper default; do
     "$program" benchmark "$folder/drives/$1" --methods dynamic-icp --ablations none --preset $preset \
       --output "$folder/$1-$preset"
   done

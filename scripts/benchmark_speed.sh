@@ -93,10 +93,10 @@ time_steps() {
 
 time_scans() {
   echo "== Whole scans"
-  build/dynamic-icp-speed "${scene_drives[@]}" --presets default,fast,paper --threads 1,2 --repeat $repeat \
+  build/dynamic-icp-speed "${scene_drives[@]}" --presets default,paper --threads 1,2 --repeat $repeat \
     "${reference[@]}" --output "$folder/scenes.json" 2>"$folder/scenes.log" | tee "$folder/scenes.txt"
   echo "== Scans of different sizes"
-  build/dynamic-icp-speed "${size_drives[@]}" --presets default,fast,paper --threads 1,2 --repeat $repeat --growth \
+  build/dynamic-icp-speed "${size_drives[@]}" --presets default,paper --threads 1,2 --repeat $repeat --growth \
     --output "$folder/sizes.json" 2>"$folder/sizes.log" | tee "$folder/sizes.txt"
 }
 
@@ -130,7 +130,7 @@ watch_memory() {
   echo "== Memory over $long_scans scans"
   simulate "long-$long_scans/highway" highway --frames $long_scans --set lidar.columns=740 --set lidar.rows=40
   local preset
-  for preset in default fast paper; do
+  for preset in default paper; do
     sample_memory $preset
     echo "$preset (seconds, MiB; about ten of all samples):"
     awk '!/^#/ {row[n++] = $0} END {for (i = 0; i < 10; ++i) print "  " row[int(i * (n - 1) / 9)]}' "$folder/memory-$preset.txt"

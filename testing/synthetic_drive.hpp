@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <numbers>
 #include <string_view>
-#include <type_traits>
 #include <vector>
 
 #include <Eigen/Cholesky>
@@ -22,20 +21,11 @@ namespace dynamic_icp::odometry::synthetic {
 
 constexpr double kPeriod_s = 0.1;
 
-/// For typed tests of what both pipelines with a map must do.
-using PipelinesWithAMap = testing::Types<WindowOdometryConfig, MapOdometryConfig>;
-
-template <class PipelineConfig>
-PipelineConfig with_ablation(std::string_view name = "none") {
-  PipelineConfig config;
+/// Preset `default` without one of its parts.
+inline WindowOdometryConfig with_ablation(std::string_view name) {
+  WindowOdometryConfig config;
   apply_ablation(config, name);
   return config;
-}
-
-/// Of two limits that of a pipeline.
-template <class PipelineConfig>
-constexpr double limit(double of_default, double of_fast) {
-  return std::is_same_v<PipelineConfig, MapOdometryConfig> ? of_fast : of_default;
 }
 
 inline Sensor sweeping() {

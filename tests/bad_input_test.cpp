@@ -133,7 +133,7 @@ TEST_F(BadInput, ARunWithoutOneUsableScanIsAFailure) {
     for (const char* name : {"00001.bin", "00002.bin", "00003.bin"}) {
       write_file(recording / "point_clouds" / name, scan);
     }
-    for (const char* method : {"--preset default", "--preset fast", "--preset paper", "--method kiss-icp"}) {
+    for (const char* method : {"--preset default", "--preset paper", "--method kiss-icp"}) {
       expect_failure(run(recording, method), kFailed, words);
     }
   }

@@ -44,12 +44,6 @@ TEST_F(CommandLine, KeysOfTheLastReleaseAreReadWithANote) {
   EXPECT_EQ(configuration["odometry.unobservable_sigma_m"], 0.2);
 }
 
-TEST_F(CommandLine, ASwitchMayBringInKeys) {
-  const std::string key = "ego_motion.regression.max_iterations";
-  run_and_summarise("--max-frames 2 --preset fast --ablation no-consensus --set " + key + "=7 " + street().string());
-  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"][key], 7);
-}
-
 TEST_F(CommandLine, WrongUseIsStatusTwoAndNamesTheRemedy) {
   const std::string in = street().string();
   const std::string out = " --output " + (folder_ / "out").string();

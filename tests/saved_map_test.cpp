@@ -145,7 +145,7 @@ TEST_F(SavedMap, TheMapHoldsWhatStandsStillAndNothingThatMoves) {
     of_bodies += voxels.insert(cell_of(p, 0.1)).second && scene.is_in_a_moving_box(p) ? 1 : 0;
   }
   ASSERT_GT(of_bodies, 1000u) << "else the drive shows nothing";
-  for (const std::string preset : {"default", "fast", "paper"}) {
+  for (const std::string preset : {"default", "paper"}) {
     const std::string path = (folder_ / (preset + ".ply")).string();
     run_and_summarise(street().string() + " --preset " + preset + " --save-map " + path);
     const std::string bytes = read_file(path);

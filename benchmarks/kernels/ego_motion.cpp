@@ -34,7 +34,7 @@ BENCHMARK(doppler_regression)->Apply(one_and_two_threads);
 void consensus_regression(benchmark::State& state) {
   const KnownScan& known = known_scan();
   const Workers workers(static_cast<int>(state.range(1)));
-  const auto config = odometry::MapOdometryConfig{}.ego_motion.consensus;
+  const auto config = odometry::WindowOdometryConfig{}.ego_motion.consensus;
   ego_motion::EgoPrior prior;
   prior.has_velocity = state.range(0) != 0;
   if (prior.has_velocity) {
@@ -57,7 +57,7 @@ BENCHMARK(consensus_regression)
 
 void velocity_filter(benchmark::State& state) {
   const KnownScan& known = known_scan();
-  const auto config = odometry::MapOdometryConfig{}.ego_motion.filter;
+  const auto config = odometry::WindowOdometryConfig{}.ego_motion.filter;
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(ego_motion::dynamic_mask(
         known.whole, ego_motion::compensated_doppler(known.whole, known.velocity_sensor), config));

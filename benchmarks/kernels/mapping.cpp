@@ -26,7 +26,7 @@ void plane_map_add(benchmark::State& state) {
   }
   // On each level a point finds its cell and adds to the moments (20). Every third has a cell of its own on average,
   // whose plane is fitted (some 400).
-  const auto levels = static_cast<std::size_t>(odometry::MapOdometryConfig{}.mapping.levels);
+  const auto levels = static_cast<std::size_t>(odometry::WindowOdometryConfig{}.mapping.levels);
   count_each(state, points,
              {.bytes = levels * kPointBytes,
               .lines = levels * (1 + sizeof(mapping::Moments) / 64),

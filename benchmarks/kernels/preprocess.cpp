@@ -22,7 +22,7 @@ BENCHMARK(assign)->Apply(all_sensors);
 
 void crop_range(benchmark::State& state) {
   const Scan scan = Scan::from_raw(known_scan(sensor_of(state)).raw);
-  const auto config = odometry::MapOdometryConfig{}.preprocess.range;
+  const auto config = odometry::WindowOdometryConfig{}.preprocess.range;
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(preprocess::crop_range(scan, config));
   }
@@ -32,7 +32,7 @@ BENCHMARK(crop_range)->Apply(all_sensors);
 
 void voxel_grid(benchmark::State& state) {
   const KnownScan& known = known_scan(sensor_of(state));
-  const auto config = odometry::MapOdometryConfig{}.preprocess.voxel;
+  const auto config = odometry::WindowOdometryConfig{}.preprocess.voxel;
   for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(preprocess::voxel_grid(known.whole, config));
   }

@@ -117,7 +117,7 @@ mapping::MotionPrior prior_of(const KnownScan& scan) {
 void align_to_map(benchmark::State& state) {
   const KnownScan& scan = known_scan(Sensor::kUsual, kScans - 1);
   const Workers workers(static_cast<int>(state.range(0)));
-  const auto config = odometry::MapOdometryConfig{}.map_align;
+  const auto config = odometry::WindowOdometryConfig{}.map_align;
   const mapping::MotionPrior prior = prior_of(scan);
   int rounds = 0;
   for ([[maybe_unused]] auto _ : state) {

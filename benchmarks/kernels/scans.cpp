@@ -62,7 +62,7 @@ Scan still_part(const Scan& scan, const std::vector<std::uint8_t>& is_moving) {
 }
 
 KnownScan make_scan(Sensor sensor, std::size_t index) {
-  const odometry::MapOdometryConfig config;
+  const odometry::WindowOdometryConfig config;
   const auto moving = [&](const Scan& scan, const Eigen::Vector3d& velocity) {
     return ego_motion::dynamic_mask(scan, ego_motion::compensated_doppler(scan, velocity), config.ego_motion.filter);
   };
@@ -113,7 +113,7 @@ std::vector<Eigen::Vector3d> still_in_world(const KnownScan& scan) {
 
 const mapping::PlaneMap& known_map() {
   static const mapping::PlaneMap map = [] {
-    mapping::PlaneMap made(odometry::MapOdometryConfig{}.mapping);
+    mapping::PlaneMap made(odometry::WindowOdometryConfig{}.mapping);
     for (std::size_t i = 0; i + 1 < kScans; ++i) {
       const KnownScan& scan = known_scan(Sensor::kUsual, i);
       made.add(still_in_world(scan), scan.T_world_sensor.translation(), Workers(0));

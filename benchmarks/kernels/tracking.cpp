@@ -12,7 +12,7 @@ namespace {
 /// All scans of the drive one after the other, from a tracker that knows nothing.
 void object_tracker(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(0)));
-  const auto config = odometry::MapOdometryConfig{}.tracking;
+  const auto config = odometry::WindowOdometryConfig{}.tracking;
   std::size_t points = 0;
   for (std::size_t i = 0; i < kScans; ++i) {
     points += known_scan(Sensor::kUsual, i).whole.size();

@@ -23,7 +23,7 @@ dynamic_icp::RawScan read_scan(const char* path, int index) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  for (const char* preset : {"default", "fast", "paper"}) {
+  for (const char* preset : {"default", "paper"}) {
     const auto odometry =
         dynamic_icp::odometry::make_odometry(dynamic_icp::odometry::configuration("dynamic-icp", preset));
     for (int k = 1; k < argc; ++k) {

@@ -49,16 +49,11 @@ constexpr double kFreeSigmas2 = 4.0;
 constexpr double kPriorDecay = 0.125;
 
 /// The priors of acceleration and bias alone: the search for the static scene must not lean on an earlier velocity.
-DopplerModel consensus_model(const EgoPrior& prior, const ConsensusRegressionConfig& config) {
+DopplerModel consensus_model(const EgoPrior& prior) {
   DopplerModel model;
-  model.has_bias = config.estimate_bias;
   model.prior.tail<4>() = prior.mean.tail<4>();
   for (Eigen::Index k = 3; k < 7; ++k) {
     model.information(k, k) = 1.0 / std::max(prior.covariance(k, k), kMinVariance);
-  }
-  if (!config.estimate_bias) {
-    model.prior[6] = 0.0;
-    model.information(6, 6) = 1.0;  // takes no part: stays where it is
   }
   return model;
 }
@@ -74,17 +69,10 @@ EgoPrior inflated(const EgoPrior& prior) {
 }
 
 /// The whole prior, for the fit to all points of the static scene.
-DopplerModel fitting_model(const EgoPrior& prior, const ConsensusRegressionConfig& config) {
+DopplerModel fitting_model(const EgoPrior& prior) {
   DopplerModel model;
-  model.has_bias = config.estimate_bias;
   model.prior = prior.mean;
   Matrix7d covariance = prior.covariance;
-  if (!config.estimate_bias) {
-    model.prior[6] = 0.0;
-    covariance.row(6).setZero();
-    covariance.col(6).setZero();
-    covariance(6, 6) = 1.0;
-  }
   covariance.diagonal().array() += kMinVariance;
   model.information = covariance.ldlt().solve(Matrix7d::Identity());
   return model;
@@ -96,7 +84,7 @@ void refine(const DopplerRows& consensus_set, const DopplerModel& model, const R
   RobustScale wide = scale;
   wide.cutoff_mps *= kFirstStepsWider;
   for (int k = 0; k < steps; ++k) {
-    const FitSums sums = sum_fit(consensus_set, x, k + 1 < steps ? wide : scale, model.has_bias, workers);
+    const FitSums sums = sum_fit(consensus_set, x, k + 1 < steps ? wide : scale, workers);
     x += solve_fit(sums, x, model, kUnobservableSigma_mps).step;
   }
 }
@@ -233,14 +221,13 @@ struct Fit {
 Fit fit_all(const DopplerRows& rows, const ModeHypothesis& hypothesis, const EgoPrior& prior,
             const ConsensusRegressionConfig& config, const Workers& workers) {
   const bool as_expected = agrees(prior, hypothesis.x.head<3>());
-  const DopplerModel without_velocity =
-      consensus_model(prior.has_velocity && !as_expected ? inflated(prior) : prior, config);
-  const DopplerModel model = as_expected ? fitting_model(prior, config) : without_velocity;
+  const DopplerModel without_velocity = consensus_model(prior.has_velocity && !as_expected ? inflated(prior) : prior);
+  const DopplerModel model = as_expected ? fitting_model(prior) : without_velocity;
   RobustScale scale{hypothesis.noise_mps, config.tukey_cutoff * hypothesis.noise_mps, config.surface_noise_mps};
   Fit fit;
   fit.x = hypothesis.x;
   while (!fit.converged && fit.iterations < kMaxSteps) {
-    const FitSums sums = sum_fit(rows, fit.x, scale, model.has_bias, workers);
+    const FitSums sums = sum_fit(rows, fit.x, scale, workers);
     const bool too_narrow = widen_if_too_narrow(sums, config.max_noise_mps, scale);
     const FitStep step = solve_fit(sums, fit.x, model, kUnobservableSigma_mps);
     fit.x += step.step;
@@ -248,7 +235,7 @@ Fit fit_all(const DopplerRows& rows, const ModeHypothesis& hypothesis, const Ego
     fit.converged = !too_narrow && step.step.head<3>().norm() < kStepToleranceMps;
   }
   std::vector<Vector7d> gradients;
-  fit.sums = sum_fit(rows, fit.x, scale, model.has_bias, workers, &gradients);
+  fit.sums = sum_fit(rows, fit.x, scale, workers, &gradients);
   // What the lines of sight leave open is open even where the prior fills the gap.
   fit.open = solve_fit(fit.sums, fit.x, without_velocity, kUnobservableSigma_mps).open;
   fit.covariance = sandwich_covariance(rows, fit.sums, fit.open, model, gradients);
@@ -279,8 +266,8 @@ EgoVelocity nothing_but_prior(std::size_t points, const EgoPrior& prior, const C
   }
   result.covariance = result.joint_covariance.topLeftCorner<3, 3>();
   result.acceleration_sensor = prior.mean.segment<3>(3);
-  result.bias_mps = config.estimate_bias ? prior.mean[6] : 0.0;
-  result.bias_variance = config.estimate_bias ? prior.covariance(6, 6) : 0.0;
+  result.bias_mps = prior.mean[6];
+  result.bias_variance = prior.covariance(6, 6);
   return result;
 }
 
@@ -302,7 +289,6 @@ bool agrees(const EgoPrior& prior, const Eigen::Vector3d& velocity) {
 
 ConfigFields fields(ConsensusRegressionConfig& config) {
   return {
-      {"estimate_bias", &config.estimate_bias, 0, 0, "", "estimate a constant error of the Doppler"},
       {"cell_size_m", &config.cell_size_m, 0.01, 100.0, "m",
        "edge of the cubes over which the consensus on the static scene is weighted"},
       {"hypotheses", &config.hypotheses, 8, 100'000, "", "velocities tried, each from three points"},
@@ -334,7 +320,7 @@ EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, co
     return result;
   }
   result.reference_time_s = rows.reference_time_s;
-  const ModeHypothesis hypothesis = choose_mode(rows, prior, consensus_model(prior, config), config, workers);
+  const ModeHypothesis hypothesis = choose_mode(rows, prior, consensus_model(prior), config, workers);
   if (hypothesis.support < config.min_support) {
     result.status = EgoVelocityStatus::kAmbiguous;
     return result;
@@ -351,13 +337,8 @@ EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, co
   result.joint_covariance(6, 6) += floor_variance(0.0);
   result.covariance = result.joint_covariance.topLeftCorner<3, 3>();
   result.acceleration_sensor = fit.x.segment<3>(3);
-  if (config.estimate_bias) {
-    result.bias_mps = fit.x[6];
-    result.bias_variance = result.joint_covariance(6, 6);
-  } else {
-    result.joint_covariance.row(6).setZero();
-    result.joint_covariance.col(6).setZero();
-  }
+  result.bias_mps = fit.x[6];
+  result.bias_variance = result.joint_covariance(6, 6);
   result.inliers = fit.sums.inliers;
   if (result.inliers > 0) {
     result.inlier_rms_mps = std::sqrt(fit.sums.inlier_squared / static_cast<double>(result.inliers));

@@ -13,7 +13,6 @@
 namespace dynamic_icp::ego_motion {
 
 struct ConsensusRegressionConfig {
-  bool estimate_bias = true;           ///< a constant Doppler error as a fourth unknown (ablation "no-bias")
   double cell_size_m = 2.0;            ///< edge of the cubes that vote
   int hypotheses = 256;                ///< velocities tried, each from three points
   double inlier_threshold_mps = 0.35;  ///< residuals below this agree with a hypothesis
@@ -29,7 +28,7 @@ struct ConsensusRegressionConfig {
 
 ConfigFields fields(ConsensusRegressionConfig& config);
 
-/// What is known before the scan is looked at; the defaults are for the first one. See ego_filter.hpp for the others.
+/// What is known before the scan is looked at; the defaults are for the first one.
 struct EgoPrior {
   bool has_velocity = false;         ///< off: `state` says nothing of the velocity
   Vector7d mean = Vector7d::Zero();  ///< [velocity (m/s); acceleration (m/s^2); bias (m/s)] at the reference time

@@ -10,7 +10,6 @@
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
-#include "dynamic_icp/method/ego_motion/ego_filter.hpp"
 
 #include "testing/crowded_road.hpp"
 #include "testing/dense_algebra.hpp"
@@ -149,21 +148,6 @@ TEST(ConsensusRegression, PureOutliersAreNoVelocity) {
   EXPECT_EQ(later.status, EgoVelocityStatus::kAmbiguous);
   EXPECT_EQ(later.velocity_sensor, scene.v);
   EXPECT_NEAR(later.covariance(0, 0), 0.25, 1e-12);
-}
-
-TEST(ConsensusRegression, AFilterOverInstantScansFollowsHardBraking) {
-  // Steady for a while, so that the filter is sure of it, then 6 m/s^2: velocity and acceleration must follow.
-  Scene scene;
-  scene.v = Vector3d(20.0, 0.0, 0.0);
-  EgoPrior prior = first_prior({});
-  EgoVelocity ego;
-  for (unsigned k = 0; k < 30; ++k) {
-    scene.v.x() -= k > 15 ? 0.6 : 0.0;
-    ego = estimate(cast(scene, 300 + k), prior);
-    EXPECT_LT((ego.velocity_sensor - scene.v).norm(), 0.05) << k;
-    prior = predict(ego, 0.1, {});
-  }
-  EXPECT_NEAR(ego.acceleration_sensor.x(), -6.0, 0.5);
 }
 
 TEST(ConsensusRegression, TurnsWithTheSensor) {

@@ -16,7 +16,6 @@ namespace dynamic_icp::ego_motion {
 struct DopplerModel {
   Vector7d prior = Vector7d::Zero();
   Matrix7d information = Matrix7d::Zero();  ///< inverse covariance of the prior; definite in a and b
-  bool has_bias = true;                     ///< off: b takes no part and stays at its prior
 };
 
 /// One step of Gauss and Newton with the priors of the model.

@@ -175,7 +175,7 @@ void add_range(const DopplerRows& rows, const RowRange& range, const RowWork& wo
   });
 }
 
-FitSums finish(const LaneSums& lanes, double noise_mps, bool has_bias) {
+FitSums finish(const LaneSums& lanes, double noise_mps) {
   FitSums sums;
   sums.H.block<3, 3>(0, 0) = simd::symmetric_total(lanes.uu[0]);
   sums.H.block<3, 3>(0, 3) = simd::symmetric_total(lanes.uu[1]);
@@ -184,13 +184,11 @@ FitSums finish(const LaneSums& lanes, double noise_mps, bool has_bias) {
   sums.gradient.head<3>() = simd::total(lanes.eu[0]);
   sums.gradient.segment<3>(3) = simd::total(lanes.eu[1]);
   sums.weights = simd::total(lanes.w);
-  if (has_bias) {
-    sums.H.block<3, 1>(0, 6) = -simd::total(lanes.u[0]);
-    sums.H.block<3, 1>(3, 6) = -simd::total(lanes.u[1]);
-    sums.H.block<1, 6>(6, 0) = sums.H.block<6, 1>(0, 6).transpose();
-    sums.H(6, 6) = sums.weights;
-    sums.gradient[6] = -simd::total(lanes.we);
-  }
+  sums.H.block<3, 1>(0, 6) = -simd::total(lanes.u[0]);
+  sums.H.block<3, 1>(3, 6) = -simd::total(lanes.u[1]);
+  sums.H.block<1, 6>(6, 0) = sums.H.block<6, 1>(0, 6).transpose();
+  sums.H(6, 6) = sums.weights;
+  sums.gradient[6] = -simd::total(lanes.we);
   const double factor = 1.0 / (noise_mps * noise_mps);
   sums.H *= factor;
   sums.gradient *= factor;
@@ -202,14 +200,14 @@ FitSums finish(const LaneSums& lanes, double noise_mps, bool has_bias) {
 
 /// Of rows [begin, end) of the work that belong to one cell; `offset` is the first row of the work.
 Vector7d gradient_of(const DopplerRows& rows, std::size_t offset, std::size_t begin, std::size_t end,
-                     const RowWork& work, bool has_bias) {
+                     const RowWork& work) {
   Vector7d gradient = Vector7d::Zero();
   for (std::size_t i = begin; i < end; ++i) {
     const double we = work.cell_weight[i] * work.w[i] * work.e[i];
     const Eigen::Vector3d weu = we * rows.u(offset + i);
     gradient.head<3>() += weu;
     gradient.segment<3>(3) += rows.dt[offset + i] * weu;
-    gradient[6] -= has_bias ? we : 0.0;
+    gradient[6] -= we;
   }
   return gradient;
 }
@@ -250,8 +248,8 @@ bool widen_if_too_narrow(const FitSums& sums, double max_noise_mps, RobustScale&
   return true;
 }
 
-FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& scale, bool has_bias,
-                const Workers& workers, std::vector<Vector7d>* cell_gradients) {
+FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& scale, const Workers& workers,
+                std::vector<Vector7d>* cell_gradients) {
   if (cell_gradients != nullptr) {
     cell_gradients->assign(rows.cells(), Vector7d::Zero());
   }
@@ -272,7 +270,7 @@ FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& s
                   work.cell_weight.begin() + static_cast<std::ptrdiff_t>(part_end),
                   evaluate_cell(work, part_begin, part_end, scale));
         if (cell_gradients != nullptr) {
-          (*cell_gradients)[cell] += factor * gradient_of(rows, range.begin, part_begin, part_end, work, has_bias);
+          (*cell_gradients)[cell] += factor * gradient_of(rows, range.begin, part_begin, part_end, work);
         }
       }
       if (rows.takes_time) {
@@ -282,7 +280,7 @@ FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& s
       }
       row = range.end;
     }
-    return finish(sums, scale.noise_mps, has_bias);
+    return finish(sums, scale.noise_mps);
   });
 }
 

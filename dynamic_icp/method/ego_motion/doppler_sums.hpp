@@ -49,7 +49,7 @@ bool widen_if_too_narrow(const FitSums& sums, double max_noise_mps, RobustScale&
 
 /// The sums at x. If `cell_gradients` is given it receives the part of each cell in the gradient. Cells of more than
 /// a thousand points are judged in parts.
-FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& scale, bool has_bias,
-                const Workers& workers, std::vector<Vector7d>* cell_gradients = nullptr);
+FitSums sum_fit(const DopplerRows& rows, const Vector7d& x, const RobustScale& scale, const Workers& workers,
+                std::vector<Vector7d>* cell_gradients = nullptr);
 
 }  // namespace dynamic_icp::ego_motion

@@ -66,37 +66,4 @@ RotationState predict(const RotationState& state, double dt_s, const RotationFil
   return next;
 }
 
-RotationState updated(RotationState found, const RotationState& predicted, double duration_s,
-                      const RotationFilterConfig& config) {
-  const double nis = innovation(found, predicted);
-  found.process_noise =
-      std::clamp(predicted.process_noise * (1.0 + kProcessNoiseGain * (nis - 1.0)), kMinProcessNoise, kMaxProcessNoise);
-  const double now = predicted.process_noise * std::max(1.0, nis);
-  const double change = std::sqrt(variance_of_change(now, duration_s, config));
-  const double angle = kParabolaMisfit_rad * change * duration_s * duration_s;
-  const double rate = kParabolaMisfit_rad_s * change * duration_s;
-  found.covariance.diagonal().head<3>().array() += angle * angle;
-  found.covariance.diagonal().segment<3>(3).array() += rate * rate;
-  return found;
-}
-
-RotationState fused(const RotationState& state, double after_s, const ego_motion::AngularInformation& doppler) {
-  Eigen::Matrix<double, 6, 9> H = Eigen::Matrix<double, 6, 9>::Zero();
-  H.block<3, 3>(0, 3).setIdentity();
-  H.block<3, 3>(0, 6) = after_s * Eigen::Matrix3d::Identity();
-  H.block<3, 3>(3, 6).setIdentity();
-  Vector6d expected;
-  expected << state.omega + after_s * state.alpha, state.alpha;
-  const Matrix9d before = state.covariance.ldlt().solve(Matrix9d::Identity());
-  const Matrix9d information = before + H.transpose() * doppler.information * H;
-  RotationState after = state;
-  after.covariance = information.ldlt().solve(Matrix9d::Identity());
-  const Vector9d change =
-      after.covariance * H.transpose() * (doppler.weighted_change + doppler.information * (doppler.at - expected));
-  after.R_map_sensor = exp_so3(change.head<3>()) * state.R_map_sensor;
-  after.omega += change.segment<3>(3);
-  after.alpha += change.tail<3>();
-  return after;
-}
-
 }  // namespace dynamic_icp::motion

@@ -27,17 +27,6 @@ constexpr Part<PaperConfig> kPaperParts[] = {
     {"no-dpp", [](PaperConfig& config) { config.dynamics.predict = false; }},
     {"no-dr", [](PaperConfig& config) { config.registration.doppler_weight = 0.0; }}};
 
-constexpr Part<MapOdometryConfig> kMapOdometryParts[] = {
-    {"none", [](MapOdometryConfig&) {}},
-    {"no-vf", [](MapOdometryConfig& config) { config.ego_motion.filter.enabled = false; }},
-    {"no-dpp", [](MapOdometryConfig& config) { config.track_objects = false; }},
-    {"no-dr", [](MapOdometryConfig& config) { config.use_displacement = false; }},
-    {"no-consensus", [](MapOdometryConfig& config) { config.ego_motion.use_consensus = false; }},
-    {"no-bias", [](MapOdometryConfig& config) { config.ego_motion.consensus.estimate_bias = false; }},
-    {"no-deskew", [](MapOdometryConfig& config) { config.sweep.deskew = false; }},
-    {"no-map", [](MapOdometryConfig& config) { config.mapping.memory_scans = 0.0; }},
-    {"no-search", [](MapOdometryConfig& config) { config.search_start = false; }}};
-
 constexpr Part<WindowOdometryConfig> kWindowParts[] = {
     {"none", [](WindowOdometryConfig&) {}},
     {"no-vf", [](WindowOdometryConfig& config) { config.ego_motion.filter.enabled = false; }},
@@ -56,7 +45,6 @@ template <class PipelineConfig>
 constexpr Part<PipelineConfig> kNoParts[] = {{"none", [](PipelineConfig&) {}}};
 
 std::span<const Part<PaperConfig>> parts_of(const PaperConfig& /*config*/) { return kPaperParts; }
-std::span<const Part<MapOdometryConfig>> parts_of(const MapOdometryConfig& /*config*/) { return kMapOdometryParts; }
 std::span<const Part<WindowOdometryConfig>> parts_of(const WindowOdometryConfig& /*config*/) { return kWindowParts; }
 template <class PipelineConfig>
 std::span<const Part<PipelineConfig>> parts_of(const PipelineConfig& /*config*/) {
@@ -77,7 +65,7 @@ void switch_off(PipelineConfig& config, std::string_view name) {
     return;
   }
   const std::string own = fmt::format("{}", fmt::join(ablation_names(config), ", "));
-  if (is_part(kMapOdometryParts, name) || is_part(kWindowParts, name)) {
+  if (is_part(kWindowParts, name)) {
     throw UsageError(
         fmt::format("ablation '{}' is about a part that this pipeline does not have; it has: {}", name, own));
   }
@@ -91,8 +79,6 @@ void apply_ablation(Config& config, std::string_view name) {
 }
 
 void apply_ablation(PaperConfig& config, std::string_view name) { switch_off(config, name); }
-
-void apply_ablation(MapOdometryConfig& config, std::string_view name) { switch_off(config, name); }
 
 void apply_ablation(WindowOdometryConfig& config, std::string_view name) { switch_off(config, name); }
 

@@ -46,14 +46,10 @@ TEST(CompensatedMotion, AVelocityIsThatOfTheMotion) {
   EXPECT_NEAR(propagate(found, 0.1).covariance(1, 1), 1e-2 + 0.09, 1e-12) << "3 m/s^2 for 0.1 s are 0.3 m/s";
 }
 
-template <class PipelineConfig>
-class CompensatedMotionWithAMap : public testing::Test {};
-TYPED_TEST_SUITE(CompensatedMotionWithAMap, PipelinesWithAMap);
-
-TYPED_TEST(CompensatedMotionWithAMap, FollowsALivelyDriveAndItsObjects) {
+TEST(CompensatedMotion, FollowsALivelyDriveAndItsObjects) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
     const Drive drive{street_with_cars(), agile(10.0), sensor};
-    const auto odometry = make_odometry(with_ablation<TypeParam>(), {}, 2);
+    const auto odometry = make_odometry(WindowOdometryConfig{}, {}, 2);
     const std::vector<Frame> frames = run(drive, *odometry, 16);
     const MotionError error = rms_error(drive, frames, 3);
     EXPECT_LT(error.move_m, 0.02) << sensor.sweep_s;
@@ -70,9 +66,9 @@ TYPED_TEST(CompensatedMotionWithAMap, FollowsALivelyDriveAndItsObjects) {
   }
 }
 
-TYPED_TEST(CompensatedMotionWithAMap, ATunnelIsHonestAboutWhatItDoesNotKnow) {
+TEST(CompensatedMotion, ATunnelIsHonestAboutWhatItDoesNotKnow) {
   const Drive drive{tunnel(), circle(12.0, 0.0), {}};
-  const auto odometry = make_odometry(with_ablation<TypeParam>(), {}, 1);
+  const auto odometry = make_odometry(WindowOdometryConfig{}, {}, 1);
   const std::vector<Frame> frames = run(drive, *odometry, 6);
   EXPECT_EQ(frames.back().status, FrameStatus::kDegenerate) << "smooth walls hold nothing along the way";
 }
@@ -111,7 +107,7 @@ TEST(CompensatedMotion, DopplerIcpIsLeftWithItsGeometry) {
 }
 
 TEST(CompensatedMotion, IsSaid) {
-  for (const Config& config : {Config(PaperConfig{}), Config(MapOdometryConfig{}), Config(WindowOdometryConfig{})}) {
+  for (const Config& config : {Config(PaperConfig{}), Config(WindowOdometryConfig{})}) {
     SensorContext context;
     EXPECT_TRUE(make_odometry(config, context, 1)->assumptions().empty());
     context.doppler_kind = DopplerKind::kCompensated;

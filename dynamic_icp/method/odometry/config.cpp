@@ -86,44 +86,6 @@ ConfigFields fields(PaperConfig& config) {
   return all;
 }
 
-ConfigFields fields(MapOdometryConfig& config) {
-  EgoMotionConfig& ego_motion = config.ego_motion;
-  ConfigFields all;
-  append_preprocess(all, config.preprocess);
-  append_fields(all, "ego_motion.filter", fields(ego_motion.filter));
-  append_fields(
-      all, "ego_motion",
-      {{"use_consensus", &ego_motion.use_consensus, 0, 0, "",
-        "find the static scene by consensus; off: Huber regression, as from scan to scan"},
-       {"static_sigmas", &ego_motion.static_sigmas, 0.0, 100.0, "",
-        "with a local map a point is moving only beyond this many standard deviations of the static Doppler"}});
-  if (!ego_motion.use_consensus) {
-    append_fields(all, "ego_motion.regression", fields(ego_motion.regression));
-  }
-  append_fields(all, "ego_motion.consensus", fields(ego_motion.consensus));
-  append_fields(all, "ego_motion.drift", fields(ego_motion.drift));
-  append_fields(all, "sweep", fields(config.sweep));
-  append_fields(all, "mapping", fields(config.mapping));
-  append_fields(all, "registration.map", fields(config.map_align));
-  append_fields(all, "rotation", fields(config.rotation));
-  append_fields(all, "dynamics", {{"predict", &config.track_objects, 0, 0, "", kPredict}});
-  append_fields(all, "tracking", fields(config.tracking));
-  append_fields(
-      all, "odometry",
-      {{"use_displacement", &config.use_displacement, 0, 0, "",
-        "with a local map: the translation integrated from Doppler velocities is a term of the alignment"},
-       {"displacement_sigma_mps", &config.displacement_sigma_mps, 0.0, 10.0, "m/s",
-        "standard deviation of that translation over the time between scans, beyond the errors of the velocities"},
-       {"search_start", &config.search_start, 0, 0, "",
-        "with a local map: try several rotations for the first two scans"},
-       {"lost_match", &config.lost_match, 0.0, 1.0, "",
-        "with a local map: lost when less than this share of the usual number of points fits the map"},
-       {"unobservable_sigma_m", &config.unobservable_sigma_m, 1e-6, 1e3, "m",
-        "with a local map: directions with a larger standard deviation are reported as degenerate"}});
-  append_stream(all, config.stream);
-  return all;
-}
-
 ConfigFields fields(WindowOdometryConfig& config) {
   EgoMotionConfig& ego_motion = config.ego_motion;
   ConfigFields all;
@@ -234,12 +196,6 @@ void check_noise(const ego_motion::ConsensusRegressionConfig& consensus) {
 
 }  // namespace
 
-void check(const MapOdometryConfig& config) {
-  check_ranges(config);
-  check_together(config.preprocess);
-  check_noise(config.ego_motion.consensus);
-}
-
 void check(const WindowOdometryConfig& config) {
   check_ranges(config);
   check_together(config.preprocess);
@@ -269,7 +225,6 @@ const std::vector<Pipeline>& pipelines() {
   using registration::GeometryTerm;
   static const std::vector<Pipeline> all = {{"dynamic-icp", "default", WindowOdometryConfig{}},
                                             {"dynamic-icp", "paper", PaperConfig{}},
-                                            {"dynamic-icp", "fast", MapOdometryConfig{}},
                                             {"doppler-icp", "", DopplerIcpConfig{}},
                                             {"point-to-point", "", icp(GeometryTerm::kPointToPoint)},
                                             {"point-to-plane", "", icp(GeometryTerm::kPointToPlane)},
@@ -301,7 +256,6 @@ std::span<const std::pair<std::string_view, std::string_view>> renamed_keys() {
       {"tracking.confirm_deviation_mps", "tracking.confirm_sigma_mps"},
       {"tracking.least_speed_mps", "tracking.min_speed_mps"},
       {"tracking.tangential_deviation_mps", "tracking.tangential_sigma_mps"},
-      {"odometry.displacement_deviation_mps", "odometry.displacement_sigma_mps"},
       {"odometry.unknown_deviation_m", "odometry.unobservable_sigma_m"},
       {"sweep.undo", "sweep.deskew"},
   };

@@ -13,7 +13,6 @@
 #include "dynamic_icp/method/dynamics/object_velocity.hpp"
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
-#include "dynamic_icp/method/ego_motion/ego_filter.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/mapping/mapping_config.hpp"
 #include "dynamic_icp/method/motion/rotation_filter_config.hpp"
@@ -72,34 +71,9 @@ struct EgoMotionConfig {
   /// Static Doppler scatters by the noise alone once the regression is not biased: a narrower threshold than the
   /// paper's.
   ego_motion::VelocityFilterConfig filter{.tau_0_mps = 0.2, .kappa_per_s = 0.0};
-  bool use_consensus = true;                       ///< off: Huber regression (ablation "no-consensus")
-  ego_motion::DopplerRegressionConfig regression;  ///< read, and among the fields, only without consensus
   ego_motion::ConsensusRegressionConfig consensus;
-  ego_motion::DriftConfig drift;
   double static_sigmas = 4.0;  ///< a point moves only beyond so many standard deviations of the static Doppler
 };
-
-/// Dynamic-ICP beyond the paper as a chain of filters, for sensors with a constant Doppler error at most: preset
-/// `fast`.
-struct MapOdometryConfig {
-  PreprocessConfig preprocess;
-  EgoMotionConfig ego_motion;
-  motion::SweepConfig sweep;
-  mapping::PlaneMapConfig mapping;
-  mapping::MapAlignConfig map_align;
-  motion::RotationFilterConfig rotation;
-  bool track_objects = true;  ///< off: moving points are left out (ablation "no-dpp")
-  tracking::TrackerConfig tracking;
-  bool use_displacement = true;  ///< the translation between scans from the Doppler, as a term of the alignment
-  double displacement_sigma_mps = 0.003;  ///< error of the integrated velocity over the time between two scans
-  bool search_start = true;               ///< try several turns for the first pair of scans
-  double lost_match = 0.5;                ///< lost when less than this share of the usual number of points fits
-  double unobservable_sigma_m = 0.1;      ///< directions known worse than this are degenerate
-  StreamConfig stream;
-};
-
-ConfigFields fields(MapOdometryConfig& config);
-void check(const MapOdometryConfig& config);
 
 /// Dynamic-ICP with one estimator of motion and Doppler errors: preset `default`.
 struct WindowOdometryConfig {
@@ -169,8 +143,7 @@ ConfigFields fields(KissIcpConfig& config);
 void check(const KissIcpConfig& config);
 
 /// The configuration of any pipeline; `Config{}` is preset `default`.
-using Config = std::variant<WindowOdometryConfig, MapOdometryConfig, PaperConfig, ScanToScanIcpConfig, DopplerIcpConfig,
-                            KissIcpConfig>;
+using Config = std::variant<WindowOdometryConfig, PaperConfig, ScanToScanIcpConfig, DopplerIcpConfig, KissIcpConfig>;
 
 ConfigFields fields(Config& config);
 void check(const Config& config);
@@ -178,7 +151,7 @@ void check(const Config& config);
 /// A pipeline as a user calls it.
 struct Pipeline {
   std::string_view method;
-  std::string_view preset;  ///< "default", "fast" or "paper" for dynamic-icp; empty for methods that have no presets
+  std::string_view preset;  ///< "default" or "paper" for dynamic-icp; empty for methods that have no presets
   Config config;
 };
 
@@ -194,19 +167,17 @@ std::span<const std::pair<std::string_view, std::string_view>> renamed_keys();
 std::vector<std::string_view> preset_names();
 
 /// The configuration of a method by name. The preset is that of dynamic-icp: "default" is the best this program can do;
-/// "fast" takes less time and expects a sensor whose Doppler is off by a constant at most; "paper" is the paper's
-/// method with its published values and nothing added. Throws UsageError with the known names for any other.
+/// "paper" is the paper's method with its published values and nothing added. Throws UsageError with the known names
+/// for any other.
 Config configuration(std::string_view method, std::string_view preset = "default");
 
 /// Switches a part off: "none"; as in the paper's ablation study "no-vf" (no velocity filter: all points count as
 /// static), "no-dpp" (no prediction: moving points are left out; with the local map: no tracking), "no-dr" (no Doppler
-/// term in the alignment); with the local map also "no-bias" (no error of the Doppler is looked for), "no-deskew",
-/// "no-map" (only the last scan), "no-search" (first pair from one start); with preset "default" "no-planes",
-/// "no-support" and "no-vibration", with preset "fast" "no-consensus" (Huber regression of the ego velocity). Throws
-/// UsageError for other names, and for parts the pipeline does not have.
+/// term in the alignment); with preset "default" also "no-bias" (no error of the Doppler is looked for), "no-deskew",
+/// "no-map" (only the last scan), "no-search" (first pair from one start), "no-planes", "no-support" and
+/// "no-vibration". Throws UsageError for other names, and for parts the pipeline does not have.
 void apply_ablation(Config& config, std::string_view name);
 void apply_ablation(PaperConfig& config, std::string_view name);
-void apply_ablation(MapOdometryConfig& config, std::string_view name);
 void apply_ablation(WindowOdometryConfig& config, std::string_view name);
 
 /// The parts that a pipeline has, "none" first.

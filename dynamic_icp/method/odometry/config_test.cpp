@@ -122,12 +122,9 @@ TEST(OdometryConfig, PipelinesHaveTheKeysOfTheirOwnPartsOnly) {
   EXPECT_TRUE(has(configuration("gicp"), "preprocess.normals."));
   EXPECT_FALSE(has(configuration("gicp"), "doppler_icp."));
   EXPECT_FALSE(has(PaperConfig{}, "mapping."));
-  EXPECT_FALSE(has(MapOdometryConfig{}, "registration.tolerance"));
+  EXPECT_FALSE(has(WindowOdometryConfig{}, "registration.tolerance"));
   EXPECT_FALSE(has(KissIcpConfig{}, "preprocess."));
-  MapOdometryConfig config;
-  EXPECT_FALSE(has(config, "ego_motion.regression.")) << "read only where there is no consensus";
-  config.ego_motion.use_consensus = false;
-  EXPECT_TRUE(has(config, "ego_motion.regression."));
+  EXPECT_FALSE(has(WindowOdometryConfig{}, "ego_motion.regression."));
 }
 
 TEST(OdometryConfig, ValuesThatDoNotGoTogetherAreRefused) {
@@ -137,7 +134,7 @@ TEST(OdometryConfig, ValuesThatDoNotGoTogetherAreRefused) {
   DopplerIcpConfig doppler_icp;
   doppler_icp.icp.preprocess.range.min_range_m = 500.0;
   EXPECT_THROW(check(doppler_icp), UsageError);
-  MapOdometryConfig config;
+  WindowOdometryConfig config;
   config.preprocess.voxel.voxel_size_m = 1e-5;
   EXPECT_THROW(check(config), UsageError);
   config.preprocess.voxel.voxel_size_m = 0.0;

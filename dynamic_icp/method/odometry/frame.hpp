@@ -45,7 +45,7 @@ std::string_view verdict(FrameStatus status);
 /// Whether the pose comes from an alignment that met its stopping rule.
 inline bool converged(FrameStatus status) { return status == FrameStatus::kConverged; }
 
-/// Where the time of a frame went. Presets `default` and `fast` sort the Doppler into cells in kPreprocess, beside
+/// Where the time of a frame went. Preset `default` sorts the Doppler into cells in kPreprocess, beside
 /// the voxel grid, and update the map in kDynamics.
 enum class Stage { kPreprocess, kNormals, kEgoMotion, kDynamics, kRegistration };
 inline constexpr std::size_t kStageCount = 5;

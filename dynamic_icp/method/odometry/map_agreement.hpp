@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-// What presets `default` and `fast` ask of an alignment with their map.
+// What preset `default` asks of an alignment with its map.
 namespace dynamic_icp::odometry {
 
 /// Fewer agree with a map only by chance: of the points on its patches, and of all. A sparse radar meets few patches in

@@ -7,7 +7,6 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/odometry/dynamic_icp.hpp"
 #include "dynamic_icp/method/odometry/kiss_icp.hpp"
-#include "dynamic_icp/method/odometry/map_odometry.hpp"
 #include "dynamic_icp/method/odometry/scan_to_scan_icp.hpp"
 #include "dynamic_icp/method/odometry/window_odometry.hpp"
 
@@ -35,9 +34,6 @@ struct Maker {
   const SensorContext& context;
   int threads;
 
-  std::unique_ptr<Odometry> operator()(const MapOdometryConfig& config) const {
-    return std::make_unique<MapOdometry>(config, threads, context.doppler_kind);
-  }
   std::unique_ptr<Odometry> operator()(const WindowOdometryConfig& config) const {
     return std::make_unique<WindowOdometry>(config, context, threads);
   }

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/method/odometry/map_odometry.hpp"
+#include "dynamic_icp/method/odometry/window_odometry.hpp"
 
 namespace {
 
@@ -64,7 +64,7 @@ RawScan hall(int k) {
 }
 
 TEST(SteadyMemory, NothingAsLargeAsAColumnOfAScanIsAllocated) {
-  MapOdometry odometry(MapOdometryConfig{}, 2);
+  WindowOdometry odometry(WindowOdometryConfig{}, 2);
   constexpr int kWarmUp = 6;
   for (int k = 0; k < kWarmUp + 6; ++k) {
     const RawScan raw = hall(k);

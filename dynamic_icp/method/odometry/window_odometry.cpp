@@ -157,7 +157,7 @@ void WindowOdometry::begin(const window::WindowScan& now, const Eigen::Isometry3
 
 /// Before the first scan in a map.
 window::StartOmega WindowOdometry::start_omega() const {
-  return {lever_arms_ ? lever_arms_->omega : Eigen::Vector3d::Zero(), config_.window.start_omega_rad_s};
+  return {lever_arm_omega_.value_or(Eigen::Vector3d::Zero()), config_.window.start_omega_rad_s};
 }
 
 /// Where the second scan is: its rotation is not known yet.

@@ -8,7 +8,7 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
-#include "dynamic_icp/method/ego_motion/rig_regression.hpp"
+#include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
 #include "dynamic_icp/method/mapping/map_alignment.hpp"
 #include "dynamic_icp/method/mapping/plane_map.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
@@ -81,8 +81,8 @@ class WindowOdometry final : public Odometry {
   ScanMemory memory_;
   Scan static_points_;
   ego_motion::EgoVelocity ego_;
-  ego_motion::AngularVelocity rig_rotation_;          ///< of a rig, by its Doppler alone
-  std::optional<ego_motion::RigDoppler> lever_arms_;  ///< out of a rig's Doppler while static points are found
+  ego_motion::AngularVelocity rig_rotation_;        ///< of a rig, by its Doppler alone
+  std::optional<Eigen::Vector3d> lever_arm_omega_;  ///< rad/s: with it the lever arms are out of the Doppler
   mapping::PlaneMap map_;
   window::WindowEstimator estimator_;
   Scan first_points_;  ///< the only scan in the map, until the next one shows how it turned

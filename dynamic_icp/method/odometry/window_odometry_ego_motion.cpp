@@ -25,23 +25,18 @@ constexpr double kNoBias_mps = 1e-3;
 /// What the rotation adds to the Doppler of the sensors of a rig: the consensus is about one velocity.
 void WindowOdometry::take_out_lever_arms() {
   Scan& whole = memory_.whole;
-  lever_arms_.reset();
+  lever_arm_omega_.reset();
   if (!whole.is_of_rig() || whole.doppler_kind() != DopplerKind::kRelative) {
     return;
   }
-  rig_rotation_ =
-      ego_motion::rig_angular_velocity(whole, config_.ego_motion.consensus, config_.ego_motion.drift, workers_);
-  lever_arms_.emplace();
-  lever_arms_->omega = estimator_.scans() > 0 ? estimator_.trajectory().at_end().omega : rig_rotation_.omega;
-  lever_arms_->bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(whole.mountings().size()));
-  ego_motion::reduce_to_origin(whole, *lever_arms_, workers_);
+  rig_rotation_ = ego_motion::rig_angular_velocity(whole, config_.ego_motion.consensus, workers_);
+  lever_arm_omega_ = estimator_.scans() > 0 ? estimator_.trajectory().at_end().omega : rig_rotation_.omega;
+  ego_motion::take_out_lever_arms(whole, *lever_arm_omega_, workers_);
 }
 
 ego_motion::EgoPrior WindowOdometry::ego_prior() const {
   ego_motion::EgoPrior prior;
-  if (estimator_.scans() == 0) {
-    prior = ego_motion::first_prior(config_.ego_motion.drift);
-  } else {
+  if (estimator_.scans() > 0) {
     prior.has_velocity = true;
     prior.mean.head<3>() = estimator_.trajectory().at_end().velocity;
     prior.covariance =
@@ -70,7 +65,7 @@ void WindowOdometry::separate_static_points() {
   const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
   ego_ = is_relative ? ego_motion::estimate_velocity(memory_.rows, ego_prior(), config_.ego_motion.consensus, workers_)
                      : velocity_before();
-  if (lever_arms_) {
+  if (lever_arm_omega_) {
     ego_.rotation = rig_rotation_;
   }
   clear_scans_ = ego_.status == ego_motion::EgoVelocityStatus::kAmbiguous ? 0 : std::min(kClearScans, clear_scans_ + 1);
@@ -84,8 +79,8 @@ void WindowOdometry::separate_static_points() {
     workers_.for_each(whole.size(), kPointBlock,
                       [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
   }
-  if (lever_arms_) {
-    ego_motion::reduce_to_origin(memory_.whole, *lever_arms_, workers_, -1.0);
+  if (lever_arm_omega_) {
+    ego_motion::take_out_lever_arms(memory_.whole, *lever_arm_omega_, workers_, -1.0);
   }
   static_points_ = whole.select(static_rows(memory_.thinned, memory_.is_moving));
 }

@@ -107,7 +107,7 @@ Finding doppler_bias(const Evidence& evidence) {
   } else if (is_told) {
     finding.verdict = Verdict::kSuspicious;
     finding.sentence = fmt::format(
-        "all Doppler is off by {:+.2f} m/s (+- {:.2f}); presets default and fast take that out by themselves, others "
+        "all Doppler is off by {:+.2f} m/s (+- {:.2f}); preset default takes that out by itself, others "
         "do not",
         bias, error);
   } else if (error < kWellKnown_mps) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
-#include "dynamic_icp/method/ego_motion/rig_regression.hpp"
+#include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -74,10 +74,8 @@ void take_out_lever_arms(Scan& scan, ScanLook& look, const Workers& workers) {
     for (const SensorLook& sensor : look.sensors) {
       velocities.push_back(sensor.ego);
     }
-    ego_motion::RigDoppler rig;
-    rig.omega = ego_motion::rig_angular_velocity(look.mountings, velocities).omega;
-    rig.bias_mps = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(scan.mountings().size()));
-    ego_motion::reduce_to_origin(scan, rig, workers);
+    const Eigen::Vector3d omega = ego_motion::rig_angular_velocity(look.mountings, velocities).omega;
+    ego_motion::take_out_lever_arms(scan, omega, workers);
   }
 }
 

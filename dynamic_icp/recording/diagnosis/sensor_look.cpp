@@ -10,7 +10,7 @@
 
 #include <Eigen/Cholesky>
 
-#include "dynamic_icp/method/ego_motion/rig_regression.hpp"
+#include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
 #include "dynamic_icp/recording/diagnosis/scan_look.hpp"
 
 namespace dynamic_icp::diagnosis {

@@ -44,9 +44,6 @@ std::optional<window::SensorCalibration> calibration_of(const RunSettings& setti
 
 /// What the configuration says of sweeps; nothing where the method does not look at it.
 motion::SweepConfig* sweep_config(odometry::Config& config) {
-  if (auto* with_map = std::get_if<odometry::MapOdometryConfig>(&config)) {
-    return &with_map->sweep;
-  }
   auto* with_window = std::get_if<odometry::WindowOdometryConfig>(&config);
   return with_window != nullptr ? &with_window->sweep : nullptr;
 }
