@@ -2,7 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <optional>
 
-#include "dynamic_icp/method/mapping/map_alignment.hpp"
+#include "dynamic_icp/method/mapping/pose_search.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/registration/align.hpp"
 
@@ -101,37 +101,22 @@ void align_scans(benchmark::State& state) {
 }
 BENCHMARK(align_scans)->Apply(one_and_two_threads);
 
-/// What is known of the last scan before it is compared with the map: its place to some cm, its turn to 0.2 degrees.
-mapping::MotionPrior prior_of(const KnownScan& scan) {
-  mapping::MotionPrior prior;
-  const double turn_rad = 0.003;
-  prior.R_map_sensor = Eigen::AngleAxisd(turn_rad, Eigen::Vector3d::UnitZ()) * scan.T_world_sensor.linear();
-  prior.sweep.velocity = scan.velocity_sensor;
-  prior.covariance = 1e-4 * motion::Matrix9d::Identity();
-  prior.covariance.topLeftCorner<3, 3>() = turn_rad * turn_rad * Eigen::Matrix3d::Identity();
-  prior.displacement_fixed = scan.T_world_sensor.translation() + Eigen::Vector3d(0.01, -0.01, 0.0);
-  prior.translation_covariance = 4e-4 * Eigen::Matrix3d::Identity();
-  return prior;
-}
-
-void align_to_map(benchmark::State& state) {
+/// As the second scan in a map: its place to some cm, its rotation to 3 degrees.
+void search_pose(benchmark::State& state) {
   const KnownScan& scan = known_scan(Sensor::kUsual, kScans - 1);
   const Workers workers(static_cast<int>(state.range(0)));
-  const auto config = odometry::WindowOdometryConfig{}.map_align;
-  const mapping::MotionPrior prior = prior_of(scan);
-  int rounds = 0;
+  mapping::PosePrior prior;
+  prior.R_map_sensor = Eigen::AngleAxisd(0.03, Eigen::Vector3d::UnitZ()) * scan.T_world_sensor.linear();
+  prior.rotation_sigma_rad = 0.05;
+  prior.displacement_fixed = scan.T_world_sensor.translation() + Eigen::Vector3d(0.01, -0.01, 0.0);
+  prior.position_sigma_m = 0.05;
+  prior.sweep.velocity = scan.velocity_sensor;
   for ([[maybe_unused]] auto _ : state) {
-    rounds = mapping::align_to_map(scan.still, known_map(), prior, config, workers).iterations;
+    benchmark::DoNotOptimize(mapping::search_pose(scan.still, known_map(), prior, workers));
   }
-  state.counters["rounds"] = rounds;
-  // In each round every point meets its patch and adds to normal equations of twelve unknowns (lower half: 180), with
-  // residual, Jacobian and weight (100).
-  const auto passes = static_cast<std::size_t>(rounds);
-  count_each(
-      state, scan.still.size(),
-      {.bytes = passes * kPointBytes, .lines = passes * (1 + sizeof(mapping::Patch) / 64), .operations = passes * 280});
+  count_each(state, scan.still.size(), {.bytes = kPointBytes, .lines = 1 + sizeof(mapping::Patch) / 64});
 }
-BENCHMARK(align_to_map)->Apply(one_and_two_threads);
+BENCHMARK(search_pose)->Apply(one_and_two_threads);
 
 }  // namespace
 }  // namespace dynamic_icp::kernels

@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
-"""Prints the numbers of the two derivations in this folder, with nothing but numpy and scipy.
+"""Prints the numbers of doppler-and-rotation.md, with nothing but numpy and scipy.
 
-usage: print_numbers.py                closed forms and small simulations
+usage: print_numbers.py                closed forms
        print_numbers.py DRIVE...       what the static points of simulated drives say of rotation; layout dicp, instant
                                        scans
        print_numbers.py --lost REFERENCE.tum ESTIMATE.tum...   scans more than 0.1 m off, and the errors of the others
@@ -73,143 +73,6 @@ def object_section():
               f"independent claim {1e3 * wrong:.2f} mm")
 
 
-def weights(samples, begin, end):
-    """So that weights . f(samples) is the integral of the polynomial through the samples."""
-    k = np.arange(len(samples))
-    return np.linalg.solve(np.power.outer(samples, k).T, (np.power(end, k + 1.0) - np.power(begin, k + 1.0)) / (k + 1))
-
-
-def sway_velocity(t, parts):
-    g = np.zeros((len(t), 3))
-    if "heave" in parts:
-        w = 2 * np.pi * 1.2
-        g[:, 2] += 0.012 * w * np.cos(w * t)
-    if "pitch" in parts:
-        w = 2 * np.pi * 0.9
-        angle = np.radians(0.4) * np.sin(w * t + 1.0)
-        rate = np.radians(0.4) * w * np.cos(w * t + 1.0)
-        g[:, 0] += 2.0 * rate * -np.sin(angle)
-        g[:, 2] += 2.0 * rate * np.cos(angle)
-    if "turn" in parts:
-        g[:, 0] += 8.0 * np.cos(0.6 * t)
-        g[:, 1] += 8.0 * np.sin(0.6 * t)
-    return g
-
-
-def quadrature_section():
-    print("## Quadrature: weights in units of the interval")
-    rules = {"trapezoid": np.array([-1.0, 0.0]), "three stamps": np.array([-2.0, -1.0, 0.0]),
-             "mid-sweep, one": np.array([-0.5]), "mid-sweep, three": np.array([-1.5, -0.5, 0.5])}
-    for name, samples in rules.items():
-        c = weights(samples, -1.0, 0.0)
-        print(f"  {name:17} {np.round(c, 6)}  noise {np.sqrt(c @ c):.3f} dt sigma_v")
-    print("  RMS error (mm) of a displacement, without noise")
-    ends = 1.0 + DT * np.arange(1000)
-    x, w = np.polynomial.legendre.leggauss(12)
-    for parts in (["heave"], ["pitch"], ["turn"], ["heave", "pitch", "turn"]):
-        truth = sum(DT / 2 * wi * sway_velocity(ends - DT / 2 + DT / 2 * xi, parts) for xi, wi in zip(x, w))
-        errors = []
-        for samples in rules.values():
-            c = weights(samples, -1.0, 0.0)
-            got = sum(DT * ci * sway_velocity(ends + DT * si, parts) for ci, si in zip(c, samples))
-            errors.append(1e3 * np.sqrt(np.mean(np.sum((got - truth) ** 2, axis=1))))
-        print(f"  {'+'.join(parts):17} " + "  ".join(f"{n} {e:.3f}" for n, e in zip(rules, errors)))
-
-
-def bias_section():
-    print("## Constant Doppler bias b, instant scans")
-    for width in (120, 60, 30):
-        u = view(width)[0]
-        leak = np.linalg.solve(u.T @ u, u.sum(axis=0))
-        left = 1.0 - u.mean(axis=0) @ leak
-        sigma = deviations(information(np.c_[u, -np.ones(len(u))]))
-        print(f"  {width:3} degrees: leak {np.round(leak, 3)}, left {left:.6f}, sigma_b {1e3 * sigma[3]:.2f} mm/s, "
-              f"v {np.round(1e3 * sigma[:3], 2)} mm/s, v_x with b known {1e3 * deviations(information(u))[0]:.2f} mm/s")
-
-
-def unexplained(rows, column, others):
-    """Share of a column's square that the other columns leave."""
-    fit = np.linalg.lstsq(rows[:, others], rows[:, column], rcond=None)[0]
-    return np.sum((rows[:, column] - rows[:, others] @ fit) ** 2) / np.sum(rows[:, column] ** 2)
-
-
-def sweep_rows(width, height=19.2):
-    u, share = view(width, height)
-    return np.c_[u, -np.ones(len(u)), (DT * share)[:, None] * u]
-
-
-def sweep_section():
-    print("## One sweep: unknowns v, b, a")
-    for width in (120, 60, 30):
-        rows = sweep_rows(width)
-        print(f"  {width:3} degrees: share of a_x left by v_y {unexplained(rows, 4, [1]):.5f}, "
-              f"of a_y left by v_x, b {unexplained(rows, 5, [0, 3]):.6f}")
-        for name, used in (("v, b, a", range(7)), ("v, a", [0, 1, 2, 4, 5, 6]), ("v, b", range(4)), ("v", range(3))):
-            used = list(used)
-            sigma = np.full(7, np.nan)
-            sigma[used] = deviations(information(rows[:, used]))
-            print(f"    {name:8} v {np.round(1e3 * sigma[:3], 2)} mm/s, b {1e3 * sigma[3]:.2f} mm/s, "
-                  f"a {np.round(sigma[4:], 3)} m/s^2")
-    for width in (60, 30):
-        sigma = deviations(information(sweep_rows(width, 2.0)))
-        print(f"  {width:3} degrees, elevations within 2 degrees only: v {np.round(1e3 * sigma[:3], 1)} mm/s")
-    print("  with acceleration left out: error of (v, b) per m/s^2, mm/s")
-    rows = sweep_rows(120)
-    for used in ([0, 1, 2, 3], [0, 1, 2]):
-        errors = 1e3 * np.linalg.lstsq(rows[:, used], rows[:, 4:6], rcond=None)[0]
-        print(f"    {'v, b' if 3 in used else 'v':5} a_x {np.round(errors[:, 0], 2)} a_y {np.round(errors[:, 1], 2)}")
-
-
-def average_section():
-    print("## A sweep measures averages: kappa of x, y, z; error (mm) of a displacement in a sway of 1.2 cm, 1.2 Hz")
-    print("   along one axis: one sample, three as if at mid-sweep, three with kappa")
-    rows = sweep_rows(120)[::10]
-    tau = DT * view(120)[1][::10]
-    w = 2 * np.pi * 1.2
-    starts = 1.0 + DT * np.arange(600)
-    for name, used in (("a known", [0, 1, 2]), ("a fitted", [0, 1, 2, 4, 5, 6])):
-        gain = np.linalg.pinv(rows[:, used])
-        kappa = np.diag(gain[:3] @ (rows[:, :3] * (tau**2 / 2)[:, None])) / (DT**2 / 24)
-        result = []
-        for axis in range(3):
-            middle = starts[:, None] + DT / 2
-            speed = 0.012 * w * np.cos(w * (middle + tau))
-            if name == "a known":
-                speed += 0.012 * w**2 * np.sin(w * middle) * tau
-            v = (rows[:, axis] * speed) @ gain[axis]
-            rules = [np.array([1, -2, 1]) * (1 - k) / 24 + [0, 1, 0] for k in (1.0, 0.0, kappa[axis])]
-            got = [DT * (c[0] * v[:-2] + c[1] * v[1:-1] + c[2] * v[2:]) for c in rules]
-            truth = 0.012 * (np.sin(w * starts[2:]) - np.sin(w * starts[1:-1]))
-            result.append([1e3 * np.sqrt(np.mean((g - truth) ** 2)) for g in got])
-        print(f"  {name:8} kappa {np.round(kappa, 2)}  x {np.round(result[0], 3)}  y {np.round(result[1], 3)}  "
-              f"z {np.round(result[2], 3)}")
-
-
-def filter_section(jerk=5.0):
-    print(f"## In a filter over scans: constant acceleration, jerk {jerk} m/s^3, bias wanders by 1 mm/s a scan")
-    F = np.eye(7)
-    F[0:3, 4:7] = DT * np.eye(3)
-    G = np.zeros((7, 3))
-    G[0:3], G[4:7] = 0.5 * DT**2 * np.eye(3), DT * np.eye(3)
-    Q = jerk**2 * G @ G.T
-    Q[3, 3] = 1e-6
-    for width in (120, 60, 30):
-        rows = sweep_rows(width)
-        for name in ("swept", "instant"):
-            J = rows.copy()
-            if name == "instant":
-                J[:, 4:] = 0.0
-            P = np.diag([1e4, 1e4, 1e4, 0.04, 1.0, 1.0, 1.0])
-            for scan in range(1, 101):
-                if scan > 1:
-                    P = F @ P @ F.T + Q
-                P = np.linalg.inv(np.linalg.inv(P) + information(J))
-                if scan in (1, 2, 5, 100):
-                    s = np.sqrt(np.diag(P))
-                    print(f"  {width:3} degrees, {name:7} scan {scan:3}: v {np.round(1e3 * s[:3], 2)} mm/s, "
-                          f"b {1e3 * s[3]:.2f} mm/s, a {np.round(s[4:], 3)} m/s^2")
-
-
 def normals_of(points, neighbours=30):
     """Unit normals, and which neighbourhoods are planes: smallest eigenvalue under 5 % of the middle one."""
     from scipy.spatial import cKDTree
@@ -256,7 +119,6 @@ def drive_section(folder):
           f"{m[6]:.4f} | {m[7]:.4f} |")
 
 
-
 def poses(path):
     from scipy.spatial.transform import Rotation
     table = np.loadtxt(path)
@@ -289,6 +151,5 @@ if __name__ == "__main__":
         for argument in sys.argv[1:]:
             drive_section(argument)
     else:
-        for section in (velocity_section, rotation_section, object_section, quadrature_section, bias_section,
-                        sweep_section, average_section, filter_section):
+        for section in (velocity_section, rotation_section, object_section):
             section()

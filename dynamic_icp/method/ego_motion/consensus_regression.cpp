@@ -253,7 +253,7 @@ EgoVelocityStatus status_of(const Fit& fit, const ModeHypothesis& hypothesis) {
 }
 
 /// The prior, as the result where the scan says nothing.
-EgoVelocity nothing_but_prior(std::size_t points, const EgoPrior& prior, const ConsensusRegressionConfig& config) {
+EgoVelocity nothing_but_prior(std::size_t points, const EgoPrior& prior) {
   EgoVelocity result;
   result.status = EgoVelocityStatus::kTooFewPoints;
   result.points = points;
@@ -314,7 +314,7 @@ EgoVelocity estimate_velocity(const Scan& scan, const EgoPrior& prior, const Con
 
 EgoVelocity estimate_velocity(const DopplerRows& rows, const EgoPrior& prior, const ConsensusRegressionConfig& config,
                               const Workers& workers) {
-  const EgoVelocity expected = nothing_but_prior(rows.size(), prior, config);
+  const EgoVelocity expected = nothing_but_prior(rows.size(), prior);
   EgoVelocity result = expected;
   if (rows.size() < kMinPoints) {
     return result;

@@ -59,7 +59,7 @@ TEST(DopplerFit, GradientIsThatOfTukeysCost) {
   const RobustScale scale{0.1, 0.4, 0.0};
   Vector7d x = state();
   x += Vector7d::Constant(0.05);
-  const FitSums sums = sum_fit(rows, x, scale, true, Workers(1));
+  const FitSums sums = sum_fit(rows, x, scale, Workers(1));
   for (int k = 0; k < 7; ++k) {
     const double h = 1e-5;
     const Vector7d step = h * Vector7d::Unit(k);
@@ -79,7 +79,7 @@ TEST(DopplerFit, SumsAreThoseOfTheTextbook) {
     weights += w;
   }
   std::vector<Vector7d> by_cell;
-  const FitSums sums = sum_fit(rows, state(), scale, true, Workers(1), &by_cell);
+  const FitSums sums = sum_fit(rows, state(), scale, Workers(1), &by_cell);
   EXPECT_LT((sums.H - H).norm(), 1e-10 * H.norm());
   EXPECT_NEAR(sums.weights, weights, 1e-9);
   Vector7d total = Vector7d::Zero();
@@ -87,18 +87,14 @@ TEST(DopplerFit, SumsAreThoseOfTheTextbook) {
     total += gradient;
   }
   EXPECT_LT((total - sums.gradient).norm(), 1e-8 * (1.0 + sums.gradient.norm()));
-  // Without the bias its row and column are empty.
-  const FitSums without = sum_fit(rows, state(), scale, false, Workers(1));
-  EXPECT_TRUE(without.H.row(6).isZero(0.0));
-  EXPECT_EQ(without.gradient[6], 0.0);
 }
 
 TEST(DopplerFit, InstantScansGiveTheSameSumsAsTimedOnesAtTheReferenceTime) {
   DopplerRows rows = measure(3, 500, state(), 0.1, false);
   ASSERT_FALSE(rows.takes_time);
-  const FitSums instant = sum_fit(rows, state(), {}, true, Workers(1));
+  const FitSums instant = sum_fit(rows, state(), {}, Workers(1));
   rows.takes_time = true;  // all dt are zero
-  const FitSums timed = sum_fit(rows, state(), {}, true, Workers(1));
+  const FitSums timed = sum_fit(rows, state(), {}, Workers(1));
   EXPECT_LT((instant.H - timed.H).norm(), 1e-12 * timed.H.norm());
   EXPECT_LT((instant.gradient - timed.gradient).norm(), 1e-10);
 }
@@ -114,9 +110,9 @@ TEST(DopplerFit, ACellThatCreepsLosesItsWeightThoughItsPointsDoNot) {
   const DopplerRows rows = sort_into_cells(Scan::from_raw(raw), 2.0, Workers(1));
   const RobustScale evaluated{0.05, 0.2, 0.015};
   const RobustScale plain{0.05, 0.2, 0.0};
-  const FitSums with = sum_fit(rows, Vector7d::Zero(), evaluated, true, Workers(1));
+  const FitSums with = sum_fit(rows, Vector7d::Zero(), evaluated, Workers(1));
   EXPECT_LE(with.inliers, 1u);
-  EXPECT_EQ(sum_fit(rows, Vector7d::Zero(), plain, true, Workers(1)).inliers, 41u);
+  EXPECT_EQ(sum_fit(rows, Vector7d::Zero(), plain, Workers(1)).inliers, 41u);
 }
 
 TEST(SolveFit, OneStepSolvesLeastSquaresWithPriors) {
@@ -155,7 +151,7 @@ TEST(SandwichCovariance, AgreesWithTheTextbookForIndependentNoise) {
   DopplerModel model;
   model.information.diagonal().tail<4>().setConstant(1e-6);
   std::vector<Vector7d> by_cell;
-  const FitSums sums = sum_fit(rows, state(), scale, true, Workers(1), &by_cell);
+  const FitSums sums = sum_fit(rows, state(), scale, Workers(1), &by_cell);
   const Matrix7d covariance = sandwich_covariance(rows, sums, Eigen::Matrix3d::Zero(), model, by_cell);
   const Matrix7d textbook = sums.H.inverse();
   for (int k = 0; k < 7; ++k) {
@@ -180,7 +176,7 @@ TEST(SandwichCovariance, GrowsWhereResidualsOfASectorDependOnEachOther) {
   DopplerModel model;
   model.information.diagonal().tail<4>().setConstant(1e-6);
   std::vector<Vector7d> by_cell;
-  const FitSums sums = sum_fit(rows, state(), {0.05, 100.0, 0.0}, true, Workers(1), &by_cell);
+  const FitSums sums = sum_fit(rows, state(), {0.05, 100.0, 0.0}, Workers(1), &by_cell);
   const Matrix7d covariance = sandwich_covariance(rows, sums, Eigen::Matrix3d::Zero(), model, by_cell);
   const double points_per_sector = 20'000.0 / static_cast<double>(rows.sectors);
   EXPECT_GT(covariance(0, 0), 0.7 * points_per_sector / sums.H(0, 0));

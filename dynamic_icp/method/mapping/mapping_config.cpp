@@ -17,18 +17,4 @@ ConfigFields fields(PlaneMapConfig& config) {
   return all;
 }
 
-ConfigFields fields(MapAlignConfig& config) {
-  return {
-      {"max_iterations", &config.max_iterations, 1, 1000, "",
-       "maximum number of steps of the alignment to the local map"},
-      {"min_sigma_m", &config.min_sigma_m, 1e-4, 1.0, "m", "smallest standard deviation of a point from its plane"},
-      {"model_sigma_m", &config.model_sigma_m, 0.0, 1.0, "m",
-       "standard deviation of patches of surface from planes, common to all points on a patch"},
-      {"kernel", &config.kernel, 1.0, 100.0, "", "Tukey cutoff in standard deviations"},
-      {"max_gate_m", &config.max_gate_m, 0.0, 100.0, "m", "largest Tukey cutoff while the start is uncertain"},
-      {"rotation_step_rad", &config.rotation_step_rad, 1e-12, 1.0, "rad", "converged when a step rotates by less"},
-      {"translation_step_m", &config.translation_step_m, 1e-12, 1.0, "m", "and translates by less"},
-  };
-}
-
 }  // namespace dynamic_icp::mapping

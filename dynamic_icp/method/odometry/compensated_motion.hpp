@@ -4,8 +4,6 @@
 
 #include <string>
 
-#include <Eigen/Geometry>
-
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
 
@@ -25,13 +23,5 @@ ego_motion::EgoVelocity static_frame(const Scan& scan);
 
 /// Before the first motion: zero, give or take what any vehicle drives (30 m/s).
 ego_motion::EgoVelocity unknown_velocity();
-
-/// `dt_s` later: the same, with what an unknown acceleration adds.
-ego_motion::EgoVelocity propagate(const ego_motion::EgoVelocity& velocity, double dt_s);
-
-/// The even velocity of a motion in `dt_s`, sensor axes; `position_covariance_map` (m^2) is of its end, in map axes.
-ego_motion::EgoVelocity velocity_of(const Eigen::Isometry3d& T_source_target, double dt_s,
-                                    const Eigen::Matrix3d& R_map_target,
-                                    const Eigen::Matrix3d& position_covariance_map);
 
 }  // namespace dynamic_icp::odometry

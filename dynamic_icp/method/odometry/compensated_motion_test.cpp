@@ -34,18 +34,6 @@ std::vector<Frame> run(const Drive& drive, Odometry& odometry, int scans) {
   return frames;
 }
 
-TEST(CompensatedMotion, AVelocityIsThatOfTheMotion) {
-  const Vector3d velocity(10.0, 0.5, -0.1);
-  const Vector3d omega(0.01, -0.02, 0.4);
-  const Eigen::Isometry3d T = motion::motion_of(omega, velocity, 0.1);
-  EXPECT_NEAR(T.translation().norm(), 0.1 * velocity.norm(), 1e-3);
-  const ego_motion::EgoVelocity found =
-      velocity_of(T, 0.1, Eigen::Matrix3d::Identity(), 1e-4 * Eigen::Matrix3d::Identity());
-  EXPECT_LT((found.velocity_sensor - velocity).norm(), 1e-9);
-  EXPECT_NEAR(found.covariance(0, 0), 1e-2, 1e-12) << "0.01 m in 0.1 s are 0.1 m/s";
-  EXPECT_NEAR(propagate(found, 0.1).covariance(1, 1), 1e-2 + 0.09, 1e-12) << "3 m/s^2 for 0.1 s are 0.3 m/s";
-}
-
 TEST(CompensatedMotion, FollowsALivelyDriveAndItsObjects) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
     const Drive drive{street_with_cars(), agile(10.0), sensor};

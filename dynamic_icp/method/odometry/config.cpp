@@ -98,8 +98,6 @@ ConfigFields fields(WindowOdometryConfig& config) {
   append_fields(all, "ego_motion.consensus", fields(ego_motion.consensus));
   append_fields(all, "sweep", fields(config.sweep));
   append_fields(all, "mapping", fields(config.mapping));
-  append_fields(all, "registration.map", fields(config.map_align));
-  append_fields(all, "rotation", fields(config.rotation));
   append_fields(all, "window", fields(config.window));
   append_fields(all, "dynamics", {{"predict", &config.track_objects, 0, 0, "", kPredict}});
   append_fields(all, "tracking", fields(config.tracking));
@@ -248,11 +246,6 @@ std::span<const std::pair<std::string_view, std::string_view>> renamed_keys() {
       {"ego_motion.static_deviations", "ego_motion.static_sigmas"},
       {"ego_motion.consensus.vote_width_mps", "ego_motion.consensus.inlier_threshold_mps"},
       {"dynamics.velocity.max_deviation_mps", "dynamics.velocity.max_sigma_mps"},
-      {"registration.map.min_deviation_m", "registration.map.min_sigma_m"},
-      {"registration.map.model_deviation_m", "registration.map.model_sigma_m"},
-      {"turn.start_omega_rad_s", "rotation.start_omega_rad_s"},
-      {"turn.alpha_rad_s2", "rotation.alpha_rad_s2"},
-      {"turn.alpha_time_s", "rotation.alpha_time_s"},
       {"tracking.confirm_deviation_mps", "tracking.confirm_sigma_mps"},
       {"tracking.least_speed_mps", "tracking.min_speed_mps"},
       {"tracking.tangential_deviation_mps", "tracking.tangential_sigma_mps"},

@@ -15,7 +15,6 @@
 #include "dynamic_icp/method/ego_motion/doppler_regression.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/mapping/mapping_config.hpp"
-#include "dynamic_icp/method/motion/rotation_filter_config.hpp"
 #include "dynamic_icp/method/motion/sweep_times.hpp"
 #include "dynamic_icp/method/preprocess/normals.hpp"
 #include "dynamic_icp/method/preprocess/range_crop.hpp"
@@ -81,8 +80,6 @@ struct WindowOdometryConfig {
   EgoMotionConfig ego_motion;
   motion::SweepConfig sweep;
   mapping::PlaneMapConfig mapping;
-  mapping::MapAlignConfig map_align;  ///< of the first two scans
-  motion::RotationFilterConfig rotation;
   window::WindowConfig window;
   bool track_objects = true;
   tracking::TrackerConfig tracking;

@@ -152,7 +152,7 @@ TEST(WindowOdometryLost, LeavesOutPointsThatAreNoNumbers) {
 
 TEST(WindowOdometryLost, RefusesConfigurationsOutOfRange) {
   WindowOdometryConfig config = WindowOdometryConfig{};
-  config.map_align.max_iterations = 0;
+  config.window.max_iterations = 0;
   EXPECT_THROW(make_odometry(config, {}, 1), UsageError);
 }
 

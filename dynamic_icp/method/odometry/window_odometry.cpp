@@ -7,15 +7,15 @@
 #include <utility>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
+#include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/ego_motion/support_plane.hpp"
-#include "dynamic_icp/method/mapping/rotation_search.hpp"
+#include "dynamic_icp/method/mapping/pose_search.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/motion/motion_uncertainty.hpp"
 #include "dynamic_icp/method/motion/twist.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_labels.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
-#include "dynamic_icp/method/odometry/map_agreement.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
 #include "dynamic_icp/method/registration/gauss_newton.hpp"
 #include "dynamic_icp/method/registration/translation_search.hpp"
@@ -29,10 +29,20 @@ constexpr double kMaxSweep_s = 0.5;
 // The velocity of traffic that may be followed for that of the sensor, m/s.
 constexpr double kTraffic_mps = 3.0;
 
+// Fewer agree with a map only by chance: of the points on its patches, and of all. A sparse radar meets few patches in
+// the map of one scan (2 % of its points agree), and fits those well.
+constexpr double kMinAgreement = 0.2;
+constexpr double kMinMatch = 0.01;
+
+// The usual share of points that agree with the map follows the last scans with this weight for the newest.
+constexpr double kUsualMatchGain = 0.2;
+
 // Where less of the second scan fits the map of the first, one scan alone makes no map.
 constexpr double kMapOfOneScan = 0.1;
 
-// How far the second scan may be from where the first velocity leads.
+// How fast a sensor may turn of which nothing is known, and how far its second scan may be from where the first
+// velocity leads.
+constexpr double kSecondOmega_rad_s = 0.5;
 constexpr double kSecondPosition_m = 0.05;
 constexpr double kSearchedPosition_m = 0.2;  // where no Doppler tells
 
@@ -104,17 +114,29 @@ Frame WindowOdometry::process(const ScanView& raw) {
   return frame;
 }
 
+/// A driver may forget the mountings of a rig now and then: those of the scan before hold on.
+ScanView WindowOdometry::with_mountings(ScanView raw) const {
+  const auto largest = std::ranges::max_element(raw.sensor);
+  if (raw.mountings.empty() && largest != raw.sensor.end() && *largest < mountings_.size()) {
+    raw.mountings = mountings_;
+  }
+  return raw;
+}
+
 /// The scan in range without the error of its Doppler that is known, the rows that the voxel grid keeps, and its
 /// Doppler by cells.
 void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
   frame.sweep = motion::sweep_as_configured(raw, config_.sweep);
-  ScanView timed = motion::retimed(raw, config_.sweep, memory_.times);
+  ScanView timed = motion::retimed(with_mountings(raw), config_.sweep, memory_.times);
   Scan& whole = memory_.whole;
   assign(timed, config_.preprocess, workers_, whole, frame);
   if (const motion::TimeSpan span = motion::time_span(whole); span.last - span.first > kMaxSweep_s) {
     frame.dropped = {};
     timed.times = {};  // no sweep of a moving sensor: the trajectory would have thousands of knots
     assign(timed, config_.preprocess, workers_, whole, frame);
+  }
+  if (whole.is_of_rig()) {
+    mountings_ = whole.mountings();
   }
   memory_.measured = whole.doppler();
   workers_.both(
@@ -164,15 +186,13 @@ window::StartOmega WindowOdometry::start_omega() const {
 std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::WindowScan& now) const {
   const double dt_s = now.stamp_s - estimator_.stamp_s();
   const Eigen::Isometry3d T_map_last = estimator_.trajectory().pose(estimator_.stamp_s());
-  mapping::MotionPrior prior;
-  motion::RotationState rotation = motion::first_rotation_state(config_.rotation);
-  rotation.R_map_sensor = T_map_last.linear();
-  rotation = motion::predict(rotation, dt_s, config_.rotation);
-  prior.R_map_sensor = rotation.R_map_sensor;
-  prior.covariance = rotation.covariance;
+  mapping::PosePrior prior;
+  prior.sweep.omega = estimator_.trajectory().at_end().omega;  // the first scan was deskewed by it
+  prior.R_map_sensor = T_map_last.linear() * exp_so3(dt_s * prior.sweep.omega);
+  prior.rotation_sigma_rad = kSecondOmega_rad_s * dt_s;
   prior.sweep.velocity = ego_.velocity_sensor - ego_.reference_time_s * ego_.acceleration_sensor;
   prior.sweep.acceleration = ego_.acceleration_sensor;
-  double position_sigma_m = kSecondPosition_m;
+  prior.position_sigma_m = kSecondPosition_m;
   if (now.measured == nullptr) {
     const registration::PreparedTarget target = registration::search_target(static_points_, workers_);
     const registration::InitialTranslation translation =
@@ -181,14 +201,12 @@ std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::Win
       return std::nullopt;
     }
     prior.sweep.velocity = motion::mean_twist(translation.T_target_source.inverse(), dt_s).tail<3>();
-    position_sigma_m = kSearchedPosition_m;
+    prior.position_sigma_m = kSearchedPosition_m;
   }
   const Eigen::Vector3d half = 0.5 * dt_s * prior.sweep.velocity;
   prior.displacement_fixed = T_map_last * half;
   prior.displacement_rotated = half;
-  prior.translation_covariance = position_sigma_m * position_sigma_m * Eigen::Matrix3d::Identity();
-  const mapping::MapAlignment found =
-      mapping::search_and_align(*now.static_points, map_, prior, config_.map_align, workers_);
+  const mapping::FoundPose found = mapping::search_pose(*now.static_points, map_, prior, workers_);
   if (found.diverged || found.matched < kMinAgreement * static_cast<double>(found.on_planes)) {
     return std::nullopt;
   }
@@ -268,7 +286,7 @@ void WindowOdometry::predict_only(double stamp_s, FrameStatus status, Frame& fra
   const double dt_s = std::min(stamp_s - stamp_s_, kMaxPrediction_s);
   const window::TrajectoryPoint last = estimator_.trajectory().at(estimator_.stamp_s());
   set_motion(frame, status, T_world_sensor_, motion::motion_of(last.omega, last.velocity, -dt_s));
-  const double turned_rad = config_.rotation.start_omega_rad_s * dt_s;
+  const double turned_rad = kSecondOmega_rad_s * dt_s;
   const double moved_m = 0.5 * kUnmodelledAcceleration_mps2 * dt_s * dt_s;
   Matrix6d covariance = Matrix6d::Zero();
   covariance.diagonal().head<3>().setConstant(turned_rad * turned_rad);

@@ -8,9 +8,9 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
-#include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
-#include "dynamic_icp/method/mapping/map_alignment.hpp"
+#include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
 #include "dynamic_icp/method/mapping/plane_map.hpp"
+#include "dynamic_icp/method/motion/sweep_motion.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
@@ -57,6 +57,7 @@ class WindowOdometry final : public Odometry {
     spatial::CellOrder sort;
   };
 
+  [[nodiscard]] ScanView with_mountings(ScanView raw) const;
   void thin_and_sort(const ScanView& raw, Frame& frame);
   void separate_static_points();
   [[nodiscard]] ego_motion::VelocityFilterConfig filter_for(const ego_motion::EgoVelocity& ego) const;
@@ -82,6 +83,7 @@ class WindowOdometry final : public Odometry {
   Scan static_points_;
   ego_motion::EgoVelocity ego_;
   ego_motion::AngularVelocity rig_rotation_;        ///< of a rig, by its Doppler alone
+  std::vector<Eigen::Isometry3d> mountings_;        ///< of a rig, as its last scan has them
   std::optional<Eigen::Vector3d> lever_arm_omega_;  ///< rad/s: with it the lever arms are out of the Doppler
   mapping::PlaneMap map_;
   window::WindowEstimator estimator_;

@@ -7,6 +7,7 @@
 
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/method/ego_motion/creeping_cells.hpp"
+#include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"

@@ -145,11 +145,10 @@ FieldColumns DopplerErrorField::columns(const DopplerCell& cell) const {
   return result;
 }
 
-std::vector<FieldColumns> DopplerErrorField::columns(const std::vector<DopplerCell>& cells,
-                                                     const Workers& workers) const {
-  std::vector<FieldColumns> result(cells.size());
+void DopplerErrorField::columns(const std::vector<DopplerCell>& cells, const Workers& workers,
+                                std::vector<FieldColumns>& result) const {
+  result.resize(cells.size());
   workers.for_each(cells.size(), kFieldBlock, [&](std::size_t k) { result[k] = columns(cells[k]); });
-  return result;
 }
 
 FieldColumns DopplerErrorField::shared_columns(const DopplerCell& cell) const {

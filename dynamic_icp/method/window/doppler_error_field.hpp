@@ -64,8 +64,8 @@ class DopplerErrorField {
   [[nodiscard]] std::size_t size() const { return size_; }
   [[nodiscard]] FieldColumns columns(const DopplerCell& cell) const;
 
-  /// Of all cells.
-  [[nodiscard]] std::vector<FieldColumns> columns(const std::vector<DopplerCell>& cells, const Workers& workers) const;
+  /// Of all cells; the memory of `result` is used again.
+  void columns(const std::vector<DopplerCell>& cells, const Workers& workers, std::vector<FieldColumns>& result) const;
 
   /// Those that points seen in nearly the same direction share, and those that each has for itself.
   [[nodiscard]] FieldColumns shared_columns(const DopplerCell& cell) const;

@@ -60,7 +60,11 @@ struct CellProblem {
     return {cells, columns(), trajectory, theta, stamp_s, kCellVariance, has_lever_arms, kOneThread};
   }
 
-  [[nodiscard]] std::vector<FieldColumns> columns() const { return field->columns(cells, kOneThread); }
+  [[nodiscard]] std::vector<FieldColumns> columns() const {
+    std::vector<FieldColumns> result;
+    field->columns(cells, kOneThread, result);
+    return result;
+  }
 
   [[nodiscard]] Layout layout() const { return {theta.size(), static_cast<Index>(trajectory.coefficients().size())}; }
 

@@ -286,7 +286,7 @@ void WindowEstimator::average_doppler(const WindowScan& scan, bool is_first_pass
   cells_.average(*scan.whole, *scan.is_moving, *scan.measured, predicted_, is_first_pass ? kFirstGate_mps : kGate_mps,
                  workers);
   if (field_) {
-    columns_ = field_->columns(cells_.cells(), workers);
+    field_->columns(cells_.cells(), workers, columns_);
     weigh_doppler(scan, workers);
   }
 }
