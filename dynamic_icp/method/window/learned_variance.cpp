@@ -36,6 +36,16 @@ double LearnedVariance::propose(double estimate, double posterior_variance) {
   return renew(next_squares_, next_counts_);
 }
 
+double LearnedVariance::propose_change(double change, double posterior_variance, double expected,
+                                       double prior_variance) {
+  // With the share k that the data know of the change, it is k times what they measured, and the rest was expected.
+  const double known = std::clamp(1.0 - posterior_variance / prior_variance, 0.0, 1.0);
+  const double measured = change - (1.0 - known) * expected;
+  next_squares_ = kMemory * squares_ + 0.5 * (measured * measured - prior_variance * known * (1.0 - known));
+  next_counts_ = kMemory * counts_ + known * known;
+  return renew(next_squares_, next_counts_);
+}
+
 void LearnedVariance::keep() {
   squares_ = next_squares_;
   counts_ = next_counts_;

@@ -40,6 +40,39 @@ TEST(LearnedVariance, FollowsWhatIsMeasured) {
 
 TEST(LearnedVariance, IsSmallWhereNothingVaries) { EXPECT_LT(learned(0.0, 5.0), 0.2 * kMeasured * kMeasured); }
 
+// Unknowns x_k of which only changes are measured, by an instrument that is off by `drift`: a filter takes the drift
+// for a growing offset, unless their variance bounds it.
+TEST(LearnedVariance, ChangesTellOfUnknownsThatDriftTogether) {
+  constexpr double kSigma = 2.0;
+  for (const double drift : {0.0, 0.6}) {
+    LearnedVariance variance({.sigma = 0.5, .counts = 2.0, .min_sigma = 1e-3, .max_sigma = 1e3});
+    std::mt19937 random(3);
+    std::normal_distribution<double> normal;
+    double last = 0.0;      // x_{k-1}
+    double estimate = 0.0;  // of it
+    double of_estimate = 0.0;
+    double sum = 0.0;
+    constexpr int kScans = 4000;
+    for (int k = 0; k < kScans; ++k) {
+      const double now = kSigma * normal(random);
+      const double measured = now - last + drift + kMeasured * normal(random);
+      const double q = variance.value();
+      const double prior = q + of_estimate;
+      const double gain = prior / (prior + kMeasured * kMeasured);
+      const double innovation = measured + estimate;
+      variance.propose_change(-estimate + gain * innovation, (1.0 - gain) * prior, -estimate, prior);
+      variance.keep();
+      estimate = q / (prior + kMeasured * kMeasured) * innovation;
+      of_estimate = q * (of_estimate + kMeasured * kMeasured) / (prior + kMeasured * kMeasured);
+      last = now;
+      sum += k >= kScans / 4 ? variance.value() : 0.0;
+    }
+    const double mean = sum / (0.75 * kScans);
+    EXPECT_GT(mean, 0.6 * kSigma * kSigma) << drift;
+    EXPECT_LT(mean, 1.7 * kSigma * kSigma) << drift;
+  }
+}
+
 TEST(LearnedVariance, ABetterEstimateReplacesTheOneBefore) {
   LearnedVariance once({.sigma = 1.0, .counts = 2.0, .min_sigma = 0.0, .max_sigma = 10.0});
   LearnedVariance again = once;

@@ -97,6 +97,7 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
   take(scan);
   first_ = {scan.stamp_s, scan.begin_s, scan.end_s};
   stamp_errors_.setZero();
+  this_stamp_ = {};
   map_error_.setZero();
   scans_ = 1;
   const std::size_t coefficients = trajectory_.coefficients().size();
@@ -216,6 +217,7 @@ void WindowEstimator::linearise_here() {
 void WindowEstimator::advance(const WindowScan& scan) {
   quadratic_->next_stamp();
   stamp_errors_ << stamp_errors_[1], 0.0;
+  last_stamp_ = this_stamp_;
   quadratic_->append_coefficients(trajectory_.extend(scan.stamp_s + std::max(0.0, scan.end_s), kEven_s));
   const TrajectoryPoint to = trajectory_.at(scan.stamp_s);
   Matrix6d B = Matrix6d::Zero();

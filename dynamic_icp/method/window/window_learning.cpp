@@ -37,10 +37,18 @@ void WindowEstimator::learn_motion(double from_s, double to_s) {
                       rest_factor_);
 }
 
-/// How far stamps are off; by which share their variance grew.
+/// How far stamps are off; by which share their variance grew. A scan shows the change from the last stamp to its own:
+/// what stamps have in common drifts where Doppler and planes differ by a speed, and is no evidence.
 double WindowEstimator::learn_stamps() {
-  const Eigen::VectorXd now = Eigen::VectorXd::Unit(rest_factor_.size(), rest_layout().stamp());
-  return stamp_variance_.propose(stamp_errors_[1], rest_factor_.covariance_root(now).squaredNorm());
+  const Layout at = rest_layout();
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(rest_factor_.size(), 2);
+  rows(at.last_stamp(), 0) = -1.0;
+  rows(at.stamp(), 0) = 1.0;
+  rows(at.stamp(), 1) = 1.0;
+  const Eigen::VectorXd variances = rest_factor_.covariance_root(rows).colwise().squaredNorm();
+  this_stamp_ = {stamp_errors_[1], variances[1]};
+  return stamp_variance_.propose_change(stamp_errors_[1] - stamp_errors_[0], variances[0], -last_stamp_.error_s,
+                                        stamp_variance_.value() + last_stamp_.variance);
 }
 
 /// And what all Doppler values of a scan have in common.
