@@ -36,6 +36,7 @@ constexpr Part<WindowOdometryConfig> kWindowParts[] = {
     {"no-planes", [](WindowOdometryConfig& config) { config.window.use_planes = false; }},
     {"no-support", [](WindowOdometryConfig& config) { config.find_support = false; }},
     {"no-vibration", [](WindowOdometryConfig& config) { config.window.learn_vibration = false; }},
+    {"no-pointing", [](WindowOdometryConfig& config) { config.window.learn_pointing = false; }},
     {"no-deskew", [](WindowOdometryConfig& config) { config.sweep.deskew = false; }},
     {"no-map", [](WindowOdometryConfig& config) { config.mapping.memory_scans = 0.0; }},
     {"no-search", [](WindowOdometryConfig& config) { config.search_start = false; }}};

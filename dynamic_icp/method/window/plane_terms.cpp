@@ -243,6 +243,20 @@ void PlaneTerms::add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& 
   g.noalias() -= U * by_offset;
 }
 
+std::vector<PlaneTerms::Residual> PlaneTerms::residuals() const {
+  std::vector<Residual> result;
+  result.reserve(rows_.size());
+  for (const Slice& slice : slices_) {
+    for (std::size_t k = slice.begin; k < slice.end; ++k) {
+      const Row& row = rows_[k];
+      if (row.w > 0.0) {
+        result.push_back({order_[k], row.e, row.w, slice.at.R.transpose() * row.m.tail<3>()});
+      }
+    }
+  }
+  return result;
+}
+
 PlaneQuality PlaneTerms::quality() const {
   PlaneQuality result;
   result.held = held_;

@@ -57,6 +57,15 @@ class PlaneTerms {
   /// Adds the terms at the trajectory of the last `associate`; to the lower triangle of H.
   void add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
 
+  /// What is left of a point that has a weight at the last `associate`.
+  struct Residual {
+    std::uint32_t row = 0;                                    ///< of the scan
+    double e = 0.0;                                           ///< m
+    double w = 0.0;                                           ///< 1/m^2
+    Eigen::Vector3d normal_sensor = Eigen::Vector3d::Zero();  ///< of its plane, in the middle of its slice
+  };
+  [[nodiscard]] std::vector<Residual> residuals() const;
+
   /// Fit at the last `associate`, and how far patches are from planes after the best rigid motion of the whole scan:
   /// a false pose is not taken for roughness.
   [[nodiscard]] PlaneQuality quality() const;

@@ -9,6 +9,7 @@ ConfigFields fields(WindowConfig& config) {
       {"use_doppler", &config.use_doppler, 0, 0, "", "the Doppler takes part"},
       {"use_planes", &config.use_planes, 0, 0, "", "the planes of the map take part"},
       {"learn_field", &config.learn_field, 0, 0, "", "learn the error field of the Doppler"},
+      {"learn_pointing", &config.learn_pointing, 0, 0, "", "learn where lines point"},
       {"learn_vibration", &config.learn_vibration, 0, 0, "", "learn how the sensor vibrates"},
       {"knot_spacing_s", &config.knot_spacing_s, 1e-3, 1.0, "s", "between the knots of the trajectory"},
       {"start_jerk_mps3", &config.start_jerk_mps3, 1e-3, 1e6, "m/s^3",

@@ -87,6 +87,12 @@ void WindowEstimator::sort(const Scan& whole, const Workers& workers) {
   cells_.sort(whole, config_.knot_spacing_s, workers);
 }
 
+void WindowEstimator::correct_pointing(Scan& static_points) {
+  if (config_.learn_pointing) {
+    pointing_.correct(static_points);
+  }
+}
+
 void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor,
                             const Eigen::Vector3d& velocity, const StartOmega& start, const Workers& workers) {
   const auto lay_trajectory = [&] {
@@ -180,6 +186,9 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
         compare_with_planes(false, *planes);
         motion.planes = planes->quality();
       });
+  if (config_.use_planes && config_.learn_pointing) {
+    pointing_.learn(*scan.static_points, *planes);
+  }
   join(scan_terms(planes, first_new), workers);
   if (!elimination_.is_solvable() || !rest_factor_.is_solvable()) {
     motion.diverged = true;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kGain = 0.2;
 constexpr double kMinCellVariance = 1e-6;
 constexpr double kMaxCellVariance = 0.1;
-constexpr double kMinModelSigma_m = 3e-4;
+constexpr double kMinModelSigma_m = 1e-3;
 
 // The field walks by this share of its scale in so many scans; its velocity-like part in each.
 constexpr int kWalkPeriod = 5;
