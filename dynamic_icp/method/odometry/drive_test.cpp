@@ -176,7 +176,7 @@ TEST(WindowOdometryDrive, StatesHowWellTheMotionIsKnown) {
     }
     this->RecordProperty("motion", std::to_string(motion / count));
     EXPECT_LT(motion / count, 12.0);
-    EXPECT_GT(motion / count, 0.5);
+    EXPECT_GT(motion / count, 0.4);
     EXPECT_LT(twist / count, 12.0);
     EXPECT_GT(twist / count, 0.5);
   }

@@ -26,7 +26,7 @@ class LinePointing {
   void correct(Scan& points);
 
   /// Learns from the points that were corrected last. `planes` are their terms, at the solution of the scan.
-  void learn(const Scan& points, const PlaneTerms& planes);
+  void learn(const PlaneTerms& planes);
 
   /// rad, [azimuth; elevation] of the line that the row of the scan corrected last belongs to: measured minus true.
   [[nodiscard]] const Eigen::Vector2d& error(std::size_t row) const { return line_of_row_[row]->error; }

@@ -53,7 +53,7 @@ Scan learn_from(const Scan& scan, const mapping::PlaneMap& map, LinePointing& po
   pointing.correct(corrected);
   PlaneTerms planes(corrected, map, 0.0, kLineKnots_s, kOneThread);
   planes.associate(standing(), Eigen::VectorXd::Zero(Layout::kMapError), {}, false);
-  pointing.learn(corrected, planes);
+  pointing.learn(planes);
   return corrected;
 }
 

@@ -11,6 +11,7 @@
 #include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/mapping/patch_scatter.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
+#include "dynamic_icp/method/window/measured_angles.hpp"
 
 namespace dynamic_icp::window {
 namespace {
@@ -18,6 +19,7 @@ namespace {
 constexpr std::uint32_t kInformativePoints = 5;  // a patch tells of itself with so many points on it
 constexpr std::size_t kInformativePatches = 50;  // and all patches together when there are so many
 constexpr double kMinHeld = 1e-6;
+constexpr double kNoPointing = 1e-14;  // rad^2
 
 }  // namespace
 
@@ -92,6 +94,7 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
     row.m << in_reference.cross(n), n;
     row.phase = plane.phase;
     row.e = plane.distance(in_map) - row.m.dot(start + row.phase * change);
+    row.J = by_angles(scan_, i).transpose() * (slice.at.R.transpose() * n);
     row.own = std::max(plane.variance, min_variance);
     row.in_common = plane.height_variance(in_map) + model_variance;
   }
@@ -100,6 +103,7 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
 void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error,
                            const PlaneNoise& noise, bool adapt) {
   R_map_reference_ = trajectory.reference().linear();
+  pointing_variance_ = noise.pointing_variance;
   workers_.for_each(slices_.size(), 1, [&](std::size_t s) { place(trajectory, map_error, noise, slices_[s]); });
   members_.assign(map_.patch_limit(), 0);
   squares_.clear();
@@ -129,6 +133,9 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
 void PlaneTerms::sum(Slice& slice) const {
   slice.S.fill(Matrix6d::Zero());
   slice.E.fill(Vector6d::Zero());
+  slice.P.fill(Pointing::Zero());
+  slice.PP.setZero();
+  slice.PE.setZero();
   slice.noise.setZero();
   slice.matched = 0.0;
   slice.squares = 0.0;
@@ -144,6 +151,11 @@ void PlaneTerms::sum(Slice& slice) const {
     slice.S[2] += row.phase * row.phase * wmm;
     slice.E[0] += row.e * wm;
     slice.E[1] += (row.phase * row.e) * wm;
+    const Pointing wmJ = wm * row.J.transpose();
+    slice.P[0] += wmJ;
+    slice.P[1] += row.phase * wmJ;
+    slice.PP += row.w * row.J * row.J.transpose();
+    slice.PE += (row.w * row.e) * row.J;
     const mapping::Plane& plane = row.patch->plane;
     slice.noise += (row.w * plane.variance / plane.points) * plane.tangential;
     const double robust = row.w * row.all;
@@ -170,29 +182,50 @@ void PlaneTerms::hold_directions(double max_noise_share) {
     const double share = by_noise / std::max(1e-9, in_axes(k, k));
     held_[k] = std::clamp(1.0 - share / max_noise_share, kMinHeld, 1.0 - 1e-9);
   }
-  offset_information_ = in_axes;
+  common_information_.setZero();
+  common_information_.topLeftCorner<3, 3>() = in_axes;
   for (Eigen::Index k = 0; k < 3; ++k) {
-    offset_information_(k, k) += in_axes(k, k) * held_[k] / (1.0 - held_[k]) + 1e-9;
+    common_information_(k, k) += in_axes(k, k) * held_[k] / (1.0 - held_[k]) + 1e-9;
   }
+  for (const Slice& slice : slices_) {
+    const Eigen::Matrix<double, 2, 3> coupling = slice.P[0].bottomRows<3>().transpose() * axes_;
+    common_information_.bottomLeftCorner<2, 3>() += coupling;
+    common_information_.topRightCorner<3, 2>() += coupling.transpose();
+    common_information_.bottomRightCorner<2, 2>() += slice.PP;
+  }
+  common_information_.diagonal().tail<2>().array() += pointing_variance_.array().max(kNoPointing).inverse();
 }
 
-/// The terms of one slice, and in U those with the offsets of the map.
-void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g,
-                           Eigen::MatrixXd& U) const {
-  const Eigen::Index d = layout.map_error();
-  // m -> the change of the residual with [phi; p].
+namespace {
+
+/// m -> the change of the residual with [phi; p].
+Matrix6d by_coefficients(const TrajectoryPoint& at) {
   Matrix6d M = Matrix6d::Identity();
-  const Eigen::Matrix3d JR = slice.at.J.transpose() * slice.at.R.transpose();
+  const Eigen::Matrix3d JR = at.J.transpose() * at.R.transpose();
   M.topLeftCorner<3, 3>() = JR;
-  M.topRightCorner<3, 3>() = -JR * skew(slice.at.p);
+  M.topRightCorner<3, 3>() = -JR * skew(at.p);
+  return M;
+}
+
+/// A later stamp moves the points of the slice as the sensor moves: m . [omega; velocity of the origin].
+Vector6d along_motion(const TrajectoryPoint& at) {
+  Vector6d along;
+  along.head<3>() = at.R * at.omega;
+  along.tail<3>() = at.R * at.velocity - Eigen::Vector3d(along.head<3>()).cross(at.p);
+  return along;
+}
+
+}  // namespace
+
+/// The terms of one slice, had map and pointing no error of their own.
+void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) {
+  const Eigen::Index d = layout.map_error();
+  const Matrix6d M = by_coefficients(slice.at);
   const Matrix6d S0 = M * slice.S[0] * M.transpose();
   const Matrix6d at_start = M * (slice.S[0] - slice.S[1]);
   const Matrix6d at_end = M * slice.S[1];
   const Vector6d E0 = M * slice.E[0];
-  // A later stamp moves the points of the slice as the sensor moves: m . [omega; velocity of the origin].
-  Vector6d along;
-  along.head<3>() = slice.at.R * slice.at.omega;
-  along.tail<3>() = slice.at.R * slice.at.velocity - Eigen::Vector3d(along.head<3>()).cross(slice.at.p);
+  const Vector6d along = along_motion(slice.at);
   const Vector6d S_along = slice.S[0] * along;
   const Vector6d M_along = M * S_along;
   const Vector6d along_end = slice.S[1] * along;
@@ -201,8 +234,6 @@ void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::Matr
   g[stamp] += along.dot(slice.E[0]);
   H.block<1, 6>(stamp, d) -= (S_along - along_end).transpose();
   H.block<1, 6>(stamp, d + 6) -= along_end.transpose();
-  U.row(stamp) += (S_along.tail<3>().transpose() * axes_);
-  const Eigen::Matrix<double, 6, 3> offset = M * slice.S[0].rightCols<3>() * axes_;
   for (std::size_t i = 0; i < 4; ++i) {
     const Eigen::Index row = layout.coefficient(slice.at.first + i);
     const double wi = slice.at.weight[i];
@@ -213,34 +244,59 @@ void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::Matr
     H.block<6, 6>(row, d + 6) -= wi * at_end;
     H.block<6, 1>(row, stamp) += wi * M_along;
     g.segment<6>(row) += wi * E0;
-    U.block<6, 3>(row, 0) += wi * offset;
   }
   H.block<6, 6>(d, d) += slice.S[0] - 2.0 * slice.S[1] + slice.S[2];
   H.block<6, 6>(d + 6, d) += slice.S[1] - slice.S[2];
   H.block<6, 6>(d + 6, d + 6) += slice.S[2];
   g.segment<6>(d) -= slice.E[0] - slice.E[1];
   g.segment<6>(d + 6) -= slice.E[1];
-  U.block<6, 3>(d, 0) -= (slice.S[0] - slice.S[1]).rightCols<3>() * axes_;
-  U.block<6, 3>(d + 6, 0) -= slice.S[1].rightCols<3>() * axes_;
 }
 
-void PlaneTerms::add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const {
-  Eigen::MatrixXd U = Eigen::MatrixXd::Zero(layout.size(), 3);  // terms x offset along the axes
-  Eigen::Vector3d by_offset = Eigen::Vector3d::Zero();
+PlaneTerms::Common PlaneTerms::common(const Layout& layout) const {
+  Common common{Eigen::MatrixXd::Zero(layout.size(), 5), Vector5d::Zero()};
+  const Eigen::Index d = layout.map_error();
   for (const Slice& slice : slices_) {
     if (slice.matched <= 0.0) {
       continue;
     }
-    add_slice(slice, layout, H, g, U);
-    by_offset += axes_.transpose() * slice.E[0].tail<3>();
+    Eigen::Matrix<double, 6, 5> by_common;  // sum of w m by [offset along the axes; pointing]
+    by_common << slice.S[0].rightCols<3>() * axes_, slice.P[0];
+    Eigen::Matrix<double, 6, 5> at_end;
+    at_end << slice.S[1].rightCols<3>() * axes_, slice.P[1];
+    const Eigen::Matrix<double, 6, 5> of_coefficients = by_coefficients(slice.at) * by_common;
+    for (std::size_t i = 0; i < 4; ++i) {
+      common.U.middleRows<6>(layout.coefficient(slice.at.first + i)) += slice.at.weight[i] * of_coefficients;
+    }
+    common.U.row(layout.stamp()) += along_motion(slice.at).transpose() * by_common;
+    common.U.middleRows<6>(d) -= by_common - at_end;
+    common.U.middleRows<6>(d + 6) -= at_end;
+    common.gradient.head<3>() += axes_.transpose() * slice.E[0].tail<3>();
+    common.gradient.tail<2>() += slice.PE;
   }
-  const Eigen::LLT<Eigen::Matrix3d> offsets(offset_information_);
-  offsets.matrixU().solveInPlace<Eigen::OnTheRight>(U);
-  offsets.matrixL().solveInPlace(by_offset);
+  return common;
+}
+
+void PlaneTerms::add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const {
+  for (const Slice& slice : slices_) {
+    if (slice.matched > 0.0) {
+      add_slice(slice, layout, H, g);
+    }
+  }
+  auto [U, gradient] = common(layout);
+  const Eigen::LLT<Matrix5d> information(common_information_);
+  information.matrixU().solveInPlace<Eigen::OnTheRight>(U);
+  information.matrixL().solveInPlace(gradient);
   const Eigen::Index first = layout.map_error();
   const Eigen::Index n = layout.head() - first;  // the vibration moves nothing
   H.block(first, first, n, n).selfadjointView<Eigen::Lower>().rankUpdate(U.middleRows(first, n), -1.0);
-  g.noalias() -= U * by_offset;
+  g.noalias() -= U * gradient;
+}
+
+PlaneTerms::ScanPointing PlaneTerms::scan_pointing(const Layout& layout) const {
+  const Common in_common = common(layout);
+  const Matrix5d covariance = common_information_.llt().solve(Matrix5d::Identity());
+  return {(covariance * in_common.gradient).tail<2>(), covariance.diagonal().tail<2>(),
+          in_common.U * covariance.rightCols<2>()};
 }
 
 std::vector<PlaneTerms::Residual> PlaneTerms::residuals() const {
@@ -250,7 +306,7 @@ std::vector<PlaneTerms::Residual> PlaneTerms::residuals() const {
     for (std::size_t k = slice.begin; k < slice.end; ++k) {
       const Row& row = rows_[k];
       if (row.w > 0.0) {
-        result.push_back({order_[k], row.e, row.w, slice.at.R.transpose() * row.m.tail<3>()});
+        result.push_back({order_[k], row.e, row.w, row.J});
       }
     }
   }

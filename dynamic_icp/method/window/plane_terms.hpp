@@ -25,6 +25,7 @@ struct PlaneNoise {
   double repeated = 2.5;          ///< the same error of a patch comes again in so many scans
   double kernel = 4.0;            ///< Tukey: points beyond so many standard deviations have no weight
   double max_noise_share = 0.04;  ///< of the information along a direction that is the noise of normals: none is left
+  Eigen::Vector2d pointing_variance = Eigen::Vector2d::Zero();  ///< rad^2, of azimuth and elevation of a whole scan
 };
 
 /// How well the points of a scan fit the planes.
@@ -59,18 +60,29 @@ class PlaneTerms {
 
   /// What is left of a point that has a weight at the last `associate`.
   struct Residual {
-    std::uint32_t row = 0;                                    ///< of the scan
-    double e = 0.0;                                           ///< m
-    double w = 0.0;                                           ///< 1/m^2
-    Eigen::Vector3d normal_sensor = Eigen::Vector3d::Zero();  ///< of its plane, in the middle of its slice
+    std::uint32_t row = 0;                        ///< of the scan
+    double e = 0.0;                               ///< m
+    double w = 0.0;                               ///< 1/m^2
+    Eigen::Vector2d J = Eigen::Vector2d::Zero();  ///< m/rad, of e by azimuth and elevation of the point
   };
   [[nodiscard]] std::vector<Residual> residuals() const;
+
+  /// By how much the whole scan points elsewhere, [azimuth; elevation] (rad), given the other unknowns as they are; its
+  /// variances given them, and how it changes with each of them.
+  struct ScanPointing {
+    Eigen::Vector2d error = Eigen::Vector2d::Zero();
+    Eigen::Vector2d variance = Eigen::Vector2d::Zero();
+    Eigen::MatrixXd by_unknowns;  ///< unknowns x 2
+  };
+  [[nodiscard]] ScanPointing scan_pointing(const Layout& layout) const;
 
   /// Fit at the last `associate`, and how far patches are from planes after the best rigid motion of the whole scan:
   /// a false pose is not taken for roughness.
   [[nodiscard]] PlaneQuality quality() const;
 
  private:
+  using Vector5d = Eigen::Matrix<double, 5, 1>;
+  using Matrix5d = Eigen::Matrix<double, 5, 5>;
   struct Row {
     Vector6d m = Vector6d::Zero();  ///< [X x n; n], reference frame
     double e = 0.0;                 ///< m
@@ -79,8 +91,10 @@ class PlaneTerms {
     double all = 0.0;               ///< m^2, as one of these points
     double phase = 0.0;             ///< of the patch
     double w = 0.0;
+    Eigen::Vector2d J = Eigen::Vector2d::Zero();  ///< of the residual by azimuth and elevation, m/rad
     const mapping::Patch* patch = nullptr;
   };
+  using Pointing = Eigen::Matrix<double, 6, 2>;
   struct Slice {
     std::size_t begin = 0;
     std::size_t end = 0;
@@ -88,6 +102,9 @@ class PlaneTerms {
     TrajectoryPoint at;
     std::array<Matrix6d, 3> S;                        ///< sum of w phase^k m m^T
     std::array<Vector6d, 2> E;                        ///< sum of w e phase^k m
+    std::array<Pointing, 2> P;                        ///< sum of w phase^k m J^T, J of azimuth and elevation
+    Eigen::Matrix2d PP = Eigen::Matrix2d::Zero();     ///< sum of w J J^T
+    Eigen::Vector2d PE = Eigen::Vector2d::Zero();     ///< sum of w e J
     Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();  ///< sum of w Sigma_n
     double matched = 0.0;
     double squares = 0.0;
@@ -97,8 +114,13 @@ class PlaneTerms {
   void place(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
              Slice& slice);
   void sum(Slice& slice) const;
-  void add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g,
-                 Eigen::MatrixXd& U) const;
+  /// What the terms have in common with the offsets of the map along the axes and with the pointing of the scan.
+  struct Common {
+    Eigen::MatrixXd U;  ///< unknowns x 5
+    Vector5d gradient = Vector5d::Zero();
+  };
+  [[nodiscard]] Common common(const Layout& layout) const;
+  static void add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g);
   void hold_directions(double max_noise_share);
 
   const Scan& scan_;
@@ -113,7 +135,8 @@ class PlaneTerms {
   std::vector<double> squares_;          ///< e^2 over the variance of each row on a patch
   Eigen::Matrix3d R_map_reference_ = Eigen::Matrix3d::Identity();
   Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  ///< directions of translation, reference frame
-  Eigen::Matrix3d offset_information_ = Eigen::Matrix3d::Identity();
+  Eigen::Vector2d pointing_variance_ = Eigen::Vector2d::Zero();
+  Matrix5d common_information_ = Matrix5d::Identity();  ///< of [offsets of the map along the axes; pointing]
   Eigen::Vector3d held_ = Eigen::Vector3d::Ones();
 };
 

@@ -57,6 +57,10 @@ constexpr std::size_t kMaxFaces = 8;
 
 constexpr double kScanError_mps = 0.003;
 
+// Where a whole scan points looks like a rotation and confirms itself: it is never taken for larger.
+constexpr double kStartPointing_rad = 3e-5;
+constexpr double kMaxPointing_rad = 2e-4;
+
 Matrix12d twice(const Matrix6d& A) {
   Matrix12d result = Matrix12d::Zero();
   result.topLeftCorner<6, 6>() = A;
@@ -74,11 +78,16 @@ LearnedVariance::Prior WindowEstimator::scan_error_prior(double sigma_mps) {
   return {.sigma = sigma_mps, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
 }
 
+LearnedVariance::Prior WindowEstimator::pointing_prior() {
+  return {.sigma = kStartPointing_rad, .counts = 2.0, .min_sigma = 1e-7, .max_sigma = kMaxPointing_rad};
+}
+
 WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_scans)
     : config_(config),
       map_memory_scans_(std::max(kMinScans, map_memory_scans)),
       trajectory_(config.knot_spacing_s),
       motion_prior_(config),
+      pointing_variance_(pointing_prior()),
       stamp_variance_(stamp_prior(config.start_stamp_sigma_s)),
       scan_error_variance_(scan_error_prior(kScanError_mps)),
       model_sigma_m_(config.model_sigma_m) {}
@@ -171,23 +180,25 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
     if (motion.diverged) {
       return motion;
     }
+    learn_pointing(*planes);
     if (std::max(learn_stamps(), learn_scan_errors()) < kMuchNoise) {
       break;
     }
   }
   stamp_variance_.keep();
   scan_error_variance_.keep();
+  pointing_variance_.keep();
   workers.both(
       [&] {
         learn_motion(last_s, stamp_s());
         motion_prior_.keep();
       },
       [&] {
-        compare_with_planes(false, *planes);
+        compare_with_planes(*scan.static_points, false, *planes);
         motion.planes = planes->quality();
       });
   if (config_.use_planes && config_.learn_pointing) {
-    pointing_.learn(*scan.static_points, *planes);
+    pointing_.learn(*planes);
   }
   join(scan_terms(planes, first_new), workers);
   if (!elimination_.is_solvable() || !rest_factor_.is_solvable()) {
@@ -264,7 +275,7 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
             linearise();
           }
         },
-        [&] { compare_with_planes(true, *planes); });
+        [&] { compare_with_planes(*scan.static_points, true, *planes); });
     const Problem rest = scan_terms(planes, first_new);
     if (motion.iterations == 0) {
       factor_tail(rest);
@@ -278,11 +289,17 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
   }
 }
 
-void WindowEstimator::compare_with_planes(bool adapt, PlaneTerms& planes) const {
+void WindowEstimator::compare_with_planes(const Scan& points, bool adapt, PlaneTerms& planes) const {
   planes.set_stamp(stamp_s());
-  planes.associate(
-      trajectory_, map_error_,
-      {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel, config_.max_noise_share}, adapt);
+  planes.associate(trajectory_, map_error_,
+                   {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel,
+                    config_.max_noise_share, pointing_variance(points)},
+                   adapt);
+}
+
+/// A mirror face may sweep a whole scan; the sensors of a rig have none in common.
+Eigen::Vector2d WindowEstimator::pointing_variance(const Scan& points) const {
+  return Eigen::Vector2d::Constant(config_.learn_pointing && !points.is_of_rig() ? pointing_variance_.value() : 0.0);
 }
 
 /// Weights of points around the trajectory of the moment.

@@ -124,6 +124,7 @@ class WindowEstimator {
 
   static LearnedVariance::Prior stamp_prior(double sigma_s);
   static LearnedVariance::Prior scan_error_prior(double sigma_mps);
+  static LearnedVariance::Prior pointing_prior();
   void take(const WindowScan& scan);
   void linearise_here();
   bool settle_first(const WindowScan& scan, double omega_sigma_rad_s, const Workers& workers);
@@ -135,7 +136,8 @@ class WindowEstimator {
   [[nodiscard]] bool is_averaged_here() const;
   void weigh_doppler(const WindowScan& scan, const Workers& workers);
   [[nodiscard]] SampledMotion sampled_motion() const;
-  void compare_with_planes(bool adapt, PlaneTerms& planes) const;
+  [[nodiscard]] Eigen::Vector2d pointing_variance(const Scan& points) const;
+  void compare_with_planes(const Scan& points, bool adapt, PlaneTerms& planes) const;
   double solve(const Problem& rest);
   void factor(const Problem& rest);
   void factor_tail(const Problem& rest);
@@ -158,6 +160,7 @@ class WindowEstimator {
   void learn_motion(double from_s, double to_s);
   double learn_stamps();
   double learn_scan_errors();
+  void learn_pointing(const PlaneTerms& planes);
   void learn_roughness(const PlaneQuality& planes);
   void learn_cell_variance(const Workers& workers);
   void walk_field();
@@ -198,7 +201,8 @@ class WindowEstimator {
   Eigen::MatrixXd field_covariance_root_;
   MotionPrior motion_prior_;
   LinePointing pointing_;
-  LearnedVariance stamp_variance_;  ///< s^2
+  LearnedVariance pointing_variance_;  ///< rad^2, of azimuth and elevation of a whole scan
+  LearnedVariance stamp_variance_;     ///< s^2
   struct StampError {
     double error_s = 0.0;
     double variance = 0.0;  ///< s^2

@@ -61,6 +61,17 @@ double WindowEstimator::learn_scan_errors() {
   return scan_error_variance_.propose(scan_error_.value, variance);
 }
 
+/// And where all of a scan points: by its elevation, for an azimuth looks like a rotation.
+void WindowEstimator::learn_pointing(const PlaneTerms& planes) {
+  if (!config_.use_planes || !config_.learn_pointing) {
+    return;
+  }
+  const PlaneTerms::ScanPointing scan = planes.scan_pointing(rest_layout());
+  const Eigen::Vector2d variances =
+      scan.variance + rest_factor_.covariance_root(scan.by_unknowns).colwise().squaredNorm().transpose();
+  pointing_variance_.propose(scan.error[1], variances[1]);
+}
+
 /// How rough the surfaces are.
 void WindowEstimator::learn_roughness(const PlaneQuality& planes) {
   if (planes.model_sigma_m) {
