@@ -126,7 +126,7 @@ TEST_F(Benchmark, FinishedCellsStayChangedOnesRunAgain) {
   write_file(folder_ / "my.yaml", "preprocess:\n  voxel:\n    voxel_size_m: 0.5\n");
   for (const std::string& change :
        {std::string("--max-frames 5"), std::string("--start 1"), std::string("--preset paper"),
-        std::string("--threads 1"), std::string("--set registration.map.max_iterations=3"),
+        std::string("--threads 1"), std::string("--set window.max_iterations=3"),
         "--config " + (folder_ / "my.yaml").string(), std::string("--force")}) {
     const auto before = run_times();
     ASSERT_EQ(benchmark(kOurs + "--ablations none --quiet " + change).status, 0) << change;

@@ -15,9 +15,8 @@ using nlohmann::json;
 class CommandLine : public ProgramTest {};
 
 TEST_F(CommandLine, AnOptionTakesOneValueAndLeavesTheRest) {
-  run_and_summarise("--max-frames 2 --set registration.map.max_iterations=7 " + street().string());
-  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"]["registration.map.max_iterations"],
-            7);
+  run_and_summarise("--max-frames 2 --set window.max_iterations=9 " + street().string());
+  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"]["window.max_iterations"], 9);
 }
 
 // A file that lists the keys of other pipelines too, with the values they have, as earlier versions printed it.
@@ -32,7 +31,7 @@ TEST_F(CommandLine, AFileMayListWhatThePipelineDoesNotRead) {
 }
 
 TEST_F(CommandLine, KeysOfTheLastReleaseAreReadWithANote) {
-  write_file(folder_ / "old.yaml", "turn:\n  alpha_rad_s2: 0.25\n");
+  write_file(folder_ / "old.yaml", "tracking:\n  least_speed_mps: 0.25\n");
   const Outcome run =
       run_program("run " + street().string() + " --quiet --max-frames 2 --config " + (folder_ / "old.yaml").string() +
                   " --set odometry.unknown_deviation_m=0.2 --output " + (folder_ / "out").string());
@@ -40,7 +39,7 @@ TEST_F(CommandLine, KeysOfTheLastReleaseAreReadWithANote) {
   EXPECT_NE(run.text.find("'odometry.unknown_deviation_m' is now 'odometry.unobservable_sigma_m'"), std::string::npos)
       << run.text;
   const json configuration = json::parse(read_file(folder_ / "out" / "run.json"))["configuration"];
-  EXPECT_EQ(configuration["rotation.alpha_rad_s2"], 0.25);
+  EXPECT_EQ(configuration["tracking.min_speed_mps"], 0.25);
   EXPECT_EQ(configuration["odometry.unobservable_sigma_m"], 0.2);
 }
 

@@ -49,11 +49,11 @@ class Layouts : public ProgramTest {
     return path;
   }
 
-  /// The rows of the trajectory that `run` makes, without an error of each line and face, which not all layouts have.
+  /// The rows of the trajectory that `run` makes. Preset `paper` does not look at lines and faces, which not all
+  /// layouts have.
   std::vector<std::vector<double>> trajectory(const fs::path& input) {
     const fs::path out = input.string() + "-run";
-    const Outcome outcome =
-        run_program("run --quiet --ablation no-bias " + input.string() + " --output " + out.string());
+    const Outcome outcome = run_program("run --quiet --preset paper " + input.string() + " --output " + out.string());
     EXPECT_EQ(outcome.status, 0) << outcome.text;
     std::vector<std::vector<double>> rows;
     std::istringstream lines(read_file(out / "trajectory.tum"));

@@ -35,26 +35,32 @@ double LinePointing::sigma_rad() const { return std::sqrt(variance_.value()); }
 void LinePointing::correct(Scan& points) {
   line_of_row_.resize(points.size());
   for (std::size_t row = 0; row < points.size(); ++row) {
-    Line& line = lines_[line_of(points, row)];
-    line_of_row_[row] = &line;
-    points.displace(row, -by_angles(points, row) * line.error);
+    const auto [number, is_new] = numbers_.try_emplace(line_of(points, row), lines_.size());
+    if (is_new) {
+      lines_.emplace_back();
+    }
+    line_of_row_[row] = number->second;
+    points.displace(row, -by_angles(points, row) * lines_[number->second].error);
   }
 }
 
 void LinePointing::learn(const PlaneTerms& planes) {
-  for (auto& [key, line] : lines_) {
+  if (line_of_row_.empty()) {
+    return;
+  }
+  for (Line& line : lines_) {
     line.information *= kPlaneMemory;
     line.weighted *= kPlaneMemory;
   }
   for (const PlaneTerms::Residual& residual : planes.residuals()) {
-    Line& line = *line_of_row_[residual.row];
+    Line& line = lines_[line_of_row_[residual.row]];
     line.information += residual.w * residual.J * residual.J.transpose();
     line.weighted += residual.w * (residual.e + residual.J.dot(line.error)) * residual.J;
   }
   const double prior = variance_.value();
   double squares = 0.0;
   double known = 0.0;
-  for (auto& [key, line] : lines_) {
+  for (Line& line : lines_) {
     const Eigen::Matrix2d covariance = (line.information + Eigen::Matrix2d::Identity() / prior).inverse();
     line.error = covariance * line.weighted;
     squares += line.error.squaredNorm();

@@ -25,11 +25,12 @@ class LinePointing {
   /// Takes the errors that are known out of the points of a scan.
   void correct(Scan& points);
 
-  /// Learns from the points that were corrected last. `planes` are their terms, at the solution of the scan.
+  /// Learns from the points that were corrected last; nothing before any were. `planes` are their terms, at the
+  /// solution of the scan.
   void learn(const PlaneTerms& planes);
 
   /// rad, [azimuth; elevation] of the line that the row of the scan corrected last belongs to: measured minus true.
-  [[nodiscard]] const Eigen::Vector2d& error(std::size_t row) const { return line_of_row_[row]->error; }
+  [[nodiscard]] const Eigen::Vector2d& error(std::size_t row) const { return lines_[line_of_row_[row]].error; }
 
   /// rad, the standard deviation tau of the errors.
   [[nodiscard]] double sigma_rad() const;
@@ -41,9 +42,10 @@ class LinePointing {
     Eigen::Vector2d error = Eigen::Vector2d::Zero();
   };
 
-  std::map<std::uint32_t, Line> lines_;  ///< by sensor and line; pointers to its values stay
-  std::vector<Line*> line_of_row_;       ///< of the scan that was corrected last
-  LearnedVariance variance_;             ///< tau^2
+  std::map<std::uint32_t, std::size_t> numbers_;  ///< in `lines_`, by sensor and line
+  std::vector<Line> lines_;
+  std::vector<std::size_t> line_of_row_;  ///< of the scan that was corrected last
+  LearnedVariance variance_;              ///< tau^2
 };
 
 }  // namespace dynamic_icp::window

@@ -75,6 +75,18 @@ TEST(LinePointing, FindsTheErrorOfEachLine) {
   EXPECT_NEAR(pointing.sigma_rad(), 6.5e-4, 2e-4);
 }
 
+TEST(LinePointing, LearnsNothingOfPointsThatItDidNotSee) {
+  const Room room;
+  const mapping::PlaneMap map = room.map();
+  const Scan scan = Scan::from_raw(scan_of(room, 10, 1.0));
+  PlaneTerms planes(scan, map, 0.0, kLineKnots_s, kOneThread);
+  planes.associate(standing(), Eigen::VectorXd::Zero(Layout::kMapError), {}, false);
+  LinePointing pointing;
+  const double before = pointing.sigma_rad();
+  pointing.learn(planes);
+  EXPECT_EQ(pointing.sigma_rad(), before);
+}
+
 TEST(LinePointing, TakesTheErrorsOutOfThePoints) {
   const Room room;
   const mapping::PlaneMap map = room.map();

@@ -55,12 +55,6 @@ constexpr double kMinScans = 2.0;
 // Faces of a mirror: one scan may show one of them only.
 constexpr std::size_t kMaxFaces = 8;
 
-constexpr double kScanError_mps = 0.003;
-
-// Where a whole scan points looks like a rotation and confirms itself: it is never taken for larger.
-constexpr double kStartPointing_rad = 3e-5;
-constexpr double kMaxPointing_rad = 2e-4;
-
 Matrix12d twice(const Matrix6d& A) {
   Matrix12d result = Matrix12d::Zero();
   result.topLeftCorner<6, 6>() = A;
@@ -68,19 +62,9 @@ Matrix12d twice(const Matrix6d& A) {
   return result;
 }
 
+constexpr double kScanError_mps = 0.003;
+
 }  // namespace
-
-LearnedVariance::Prior WindowEstimator::stamp_prior(double sigma_s) {
-  return {.sigma = sigma_s, .counts = 2.0, .min_sigma = 1e-5, .max_sigma = 3e-3};
-}
-
-LearnedVariance::Prior WindowEstimator::scan_error_prior(double sigma_mps) {
-  return {.sigma = sigma_mps, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
-}
-
-LearnedVariance::Prior WindowEstimator::pointing_prior() {
-  return {.sigma = kStartPointing_rad, .counts = 2.0, .min_sigma = 1e-7, .max_sigma = kMaxPointing_rad};
-}
 
 WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_scans)
     : config_(config),
@@ -94,12 +78,6 @@ WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_s
 
 void WindowEstimator::sort(const Scan& whole, const Workers& workers) {
   cells_.sort(whole, config_.knot_spacing_s, workers);
-}
-
-void WindowEstimator::correct_pointing(Scan& static_points) {
-  if (config_.learn_pointing) {
-    pointing_.correct(static_points);
-  }
 }
 
 void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_map_sensor,
@@ -295,11 +273,6 @@ void WindowEstimator::compare_with_planes(const Scan& points, bool adapt, PlaneT
                    {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel,
                     config_.max_noise_share, pointing_variance(points)},
                    adapt);
-}
-
-/// A mirror face may sweep a whole scan; the sensors of a rig have none in common.
-Eigen::Vector2d WindowEstimator::pointing_variance(const Scan& points) const {
-  return Eigen::Vector2d::Constant(config_.learn_pointing && !points.is_of_rig() ? pointing_variance_.value() : 0.0);
 }
 
 /// Weights of points around the trajectory of the moment.

@@ -21,7 +21,34 @@ constexpr int kWalkPeriod = 5;
 constexpr double kWalkShare = 0.03;
 constexpr double kVelocityWalk_mps = 0.002;
 
+// Where a whole scan points looks like a rotation and confirms itself: it is never taken for larger.
+constexpr double kStartPointing_rad = 3e-5;
+constexpr double kMaxPointing_rad = 2e-4;
+
 }  // namespace
+
+LearnedVariance::Prior WindowEstimator::stamp_prior(double sigma_s) {
+  return {.sigma = sigma_s, .counts = 2.0, .min_sigma = 1e-5, .max_sigma = 3e-3};
+}
+
+LearnedVariance::Prior WindowEstimator::scan_error_prior(double sigma_mps) {
+  return {.sigma = sigma_mps, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
+}
+
+LearnedVariance::Prior WindowEstimator::pointing_prior() {
+  return {.sigma = kStartPointing_rad, .counts = 2.0, .min_sigma = 1e-7, .max_sigma = kMaxPointing_rad};
+}
+
+void WindowEstimator::correct_pointing(Scan& static_points) {
+  if (config_.learn_pointing) {
+    pointing_.correct(static_points);
+  }
+}
+
+/// A mirror face may sweep a whole scan; the sensors of a rig have none in common.
+Eigen::Vector2d WindowEstimator::pointing_variance(const Scan& points) const {
+  return Eigen::Vector2d::Constant(config_.learn_pointing && !points.is_of_rig() ? pointing_variance_.value() : 0.0);
+}
 
 /// The scales of the error field, from the covariance of the window.
 void WindowEstimator::learn_field() {
