@@ -7,10 +7,10 @@
 
 #include <gtest/gtest.h>
 
+#include "testing/random_points.hpp"
+
 namespace dynamic_icp::dynamics {
 namespace {
-
-using Points = std::vector<Eigen::Vector3d>;
 
 void expect_brute_force(const Points& points, std::size_t min_samples, int threads) {
   const spatial::KdTree tree(points);

@@ -14,8 +14,8 @@ FewNearestSearch::FewNearestSearch(const KdTree& tree, double max_distance_m)
 
 void FewNearestSearch::search(std::span<const Eigen::Vector3d> queries, std::span<FewNearest> found) {
   std::fill(found.begin(), found.end(), FewNearest{});
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  KdTree::Box box{Eigen::Array3d::Constant(kInfinity), Eigen::Array3d::Constant(-kInfinity)};
+  constexpr double kUnbounded = std::numeric_limits<double>::infinity();
+  KdTree::Box box{Eigen::Array3d::Constant(kUnbounded), Eigen::Array3d::Constant(-kUnbounded)};
   bool empty = true;
   for (const Eigen::Vector3d& query : queries) {
     if (query.allFinite()) {

@@ -21,12 +21,12 @@ using Objects = std::vector<TrackedObject>;
 /// Driving 8 m/s in a circle, 0.3 rad/s, tilted by two degrees.
 Eigen::Isometry3d turning_and_tilted(double t) {
   constexpr double kSpeed = 8.0;
-  constexpr double kRotation = 0.3;
-  const double heading = 0.7 + kRotation * t;
+  constexpr double kRotation_rad_s = 0.3;
+  const double heading = 0.7 + kRotation_rad_s * t;
   Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
   T.linear() = exp_so3({0.0, 0.0, heading}) * exp_so3({0.03, -0.04, 0.0});
   T.translation() =
-      kSpeed / kRotation * Vector3d(std::sin(heading) - std::sin(0.7), std::cos(0.7) - std::cos(heading), 0);
+      kSpeed / kRotation_rad_s * Vector3d(std::sin(heading) - std::sin(0.7), std::cos(0.7) - std::cos(heading), 0);
   return T;
 }
 
