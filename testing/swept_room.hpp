@@ -29,7 +29,10 @@ struct Room {
     std::map<std::vector<int>, double> heights;
     std::vector<Eigen::Vector3d> result;
     while (result.size() < count) {
-      Eigen::Vector3d point = half.cwiseProduct(Eigen::Vector3d(uniform(random), uniform(random), uniform(random)));
+      Eigen::Vector3d point;
+      for (int axis = 0; axis < 3; ++axis) {  // one after the other: compilers order the arguments of a call as they like
+        point[axis] = half[axis] * uniform(random);
+      }
       const int face = static_cast<int>(result.size() % (has_ends ? 6 : 4));
       const int axis = 2 - face / 2;
       point[axis] = (face % 2 == 0 ? 1.0 : -1.0) * half[axis];
