@@ -59,6 +59,7 @@ class WindowOdometry final : public Odometry {
 
   [[nodiscard]] ScanView with_mountings(ScanView raw) const;
   void thin_and_sort(const ScanView& raw, Frame& frame);
+  [[nodiscard]] tracking::SensorMotion predicted_motion() const;
   void separate_static_points();
   [[nodiscard]] ego_motion::VelocityFilterConfig filter_for(const ego_motion::EgoVelocity& ego) const;
   [[nodiscard]] window::WindowScan scan_at(double stamp_s) const;

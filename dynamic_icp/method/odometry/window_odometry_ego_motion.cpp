@@ -9,6 +9,7 @@
 #include "dynamic_icp/method/ego_motion/creeping_cells.hpp"
 #include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/method/motion/twist.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/odometry/window_odometry.hpp"
@@ -60,7 +61,20 @@ ego_motion::EgoVelocity WindowOdometry::velocity_before() const {
   return ego;
 }
 
-/// What is static, by the velocity that most of the scene agrees on.
+/// The sensor during the scan at hand, if it goes on as it did.
+tracking::SensorMotion WindowOdometry::predicted_motion() const {
+  tracking::SensorMotion sensor{T_world_sensor_};
+  if (estimator_.scans() > 0) {
+    const window::TrajectoryPoint last = estimator_.trajectory().at_end();
+    const double dt_s = stream_.elapsed_s() - stamp_s_;
+    sensor.T_world_sensor = T_world_sensor_ * motion::motion_of(last.omega, ego_.velocity_sensor, dt_s);
+    sensor.velocity_world = sensor.T_world_sensor.linear() * ego_.velocity_sensor;
+    sensor.angular_velocity_sensor = last.omega;
+  }
+  return sensor;
+}
+
+/// What is static, by the velocity that most of the scene agrees on and by what was seen to move.
 void WindowOdometry::separate_static_points() {
   const Scan& whole = memory_.whole;
   const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
@@ -80,6 +94,7 @@ void WindowOdometry::separate_static_points() {
     workers_.for_each(whole.size(), kPointBlock,
                       [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
   }
+  tracker_.flag_expected(whole, memory_.radial, predicted_motion(), workers_, memory_.is_moving);
   if (lever_arm_omega_) {
     ego_motion::take_out_lever_arms(memory_.whole, *lever_arm_omega_, workers_, -1.0);
   }

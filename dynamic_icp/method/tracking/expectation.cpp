@@ -24,14 +24,14 @@ struct Hit {
   Vector3d direction_world;
 };
 
+}  // namespace
+
 OrientedBox above_ground(OrientedBox box) {
   const double clearance = std::min(kGroundClearance_m, kGroundShare * box.size.z());
   box.size.z() -= clearance;
   box.centre.z() += 0.5 * clearance;
   return box;
 }
-
-}  // namespace
 
 Expectation::Expectation(const Track& predicted, const SensorMotion& sensor, const TrackerConfig& config)
     : box(predicted.box()), velocity(predicted.motion().velocity()) {

@@ -34,6 +34,11 @@ class ObjectTracker {
   ObjectTracker(ObjectTracker&&) noexcept;
   ObjectTracker& operator=(ObjectTracker&&) noexcept;
 
+  /// Sets `is_moving` of the rows that confirmed tracks expect to be theirs in a scan that is not deskewed: what
+  /// crosses the line of sight has no radial velocity, and tells itself from what stands by its past alone.
+  void flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
+                     const Workers& workers, std::vector<std::uint8_t>& is_moving) const;
+
   /// All tracks at the stamp of the scan, in the order of their birth, tentative ones too: report those that are
   /// confirmed.
   ///

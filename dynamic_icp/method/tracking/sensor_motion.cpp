@@ -11,13 +11,18 @@ Eigen::Vector3d SensorMotion::position(double time_s) const {
 }
 
 Eigen::Vector3d SensorMotion::direction_world(const Eigen::Vector3d& direction, double time_s) const {
-  if (time_s == 0.0) {
-    return T_world_sensor.linear() * direction;
-  }
-  // The rotation to second order: during a sweep it is small.
+  return time_s == 0.0 ? Eigen::Vector3d(T_world_sensor.linear() * direction) : turned(direction, time_s).normalized();
+}
+
+Eigen::Vector3d SensorMotion::point_world(const Eigen::Vector3d& point, double time_s) const {
+  return position(time_s) + turned(point, time_s);
+}
+
+/// The rotation to second order: during a sweep it is small.
+Eigen::Vector3d SensorMotion::turned(const Eigen::Vector3d& vector, double time_s) const {
   const Eigen::Vector3d angle = time_s * angular_velocity_sensor;
-  const Eigen::Vector3d first = angle.cross(direction);
-  return T_world_sensor.linear() * (direction + first + 0.5 * angle.cross(first)).normalized();
+  const Eigen::Vector3d first = angle.cross(vector);
+  return T_world_sensor.linear() * (vector + first + 0.5 * angle.cross(first));
 }
 
 SensorMotion continued_motion(const Eigen::Isometry3d& T_world_earlier, const Eigen::Isometry3d& T_world_sensor,

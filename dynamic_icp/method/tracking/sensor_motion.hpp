@@ -17,6 +17,12 @@ struct SensorMotion {
 
   /// A line of sight measured so long after the stamp, in world axes.
   [[nodiscard]] Eigen::Vector3d direction_world(const Eigen::Vector3d& direction, double time_s) const;
+
+  /// A point measured so long after the stamp, as it was seen then, in the world.
+  [[nodiscard]] Eigen::Vector3d point_world(const Eigen::Vector3d& point, double time_s) const;
+
+ private:
+  [[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& vector, double time_s) const;
 };
 
 /// The motion from the pose one scan earlier, `dt_s` > 0 before, taken as going on.

@@ -23,6 +23,8 @@ TEST(SensorMotion, GoesOnAsBefore) {
   const Vector3d u = Vector3d(1, 0.2, 0.1).normalized();
   EXPECT_TRUE(motion.direction_world(u, 0.1).isApprox(exp_so3({0, 0, 0.4}) * u, 1e-4)) << "second order in 0.05 rad";
   EXPECT_TRUE(motion.direction_world(u, 0.0).isApprox(exp_so3({0, 0, 0.35}) * u, 1e-12));
+  const Vector3d seen(20, -3, 1);
+  EXPECT_TRUE(motion.point_world(seen, 0.1).isApprox(Vector3d(2, 0, 0) + exp_so3({0, 0, 0.4}) * seen, 1e-4));
 }
 
 TEST(SensorMotion, AtRestNothingChanges) {
