@@ -30,7 +30,8 @@ struct Room {
     std::vector<Eigen::Vector3d> result;
     while (result.size() < count) {
       Eigen::Vector3d point;
-      for (int axis = 0; axis < 3; ++axis) {  // one after the other: compilers order the arguments of a call as they like
+      // One after the other: the order of the arguments of a call is open.
+      for (int axis = 0; axis < 3; ++axis) {
         point[axis] = half[axis] * uniform(random);
       }
       const int face = static_cast<int>(result.size() % (has_ends ? 6 : 4));

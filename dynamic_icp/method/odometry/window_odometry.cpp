@@ -57,7 +57,7 @@ WindowOdometry::WindowOdometry(const WindowOdometryConfig& config, const SensorC
       workers_(threads),
       expected_(context.doppler_kind),
       map_(config.mapping),
-      estimator_(config.window, config.mapping.memory_scans),
+      estimator_(config.window),
       tracker_(config.tracking),
       stream_(config.stream),
       clear_scans_(kClearScans) {

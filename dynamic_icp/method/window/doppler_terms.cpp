@@ -35,15 +35,16 @@ Vector6d motion_row(const DopplerCell& cell) {
 }  // namespace
 
 DopplerTerms::DopplerTerms(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
-                           const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double stamp_s,
-                           double cell_variance, bool has_lever_arms, const Workers& workers)
+                           const DopplerState& state, double stamp_s, double cell_variance, bool has_lever_arms,
+                           const Workers& workers)
     : stamp_s_(stamp_s),
       per_node_(has_lever_arms ? 6 : 3),
-      N_theta_(Eigen::MatrixXd::Zero(theta.size(), theta.size())),
-      b_theta_(Eigen::VectorXd::Zero(theta.size())),
-      N_theta_scan_(Eigen::VectorXd::Zero(theta.size())) {
+      N_theta_(Eigen::MatrixXd::Zero(state.theta.size(), state.theta.size())),
+      b_theta_(Eigen::VectorXd::Zero(state.theta.size())),
+      N_theta_scan_(Eigen::VectorXd::Zero(state.theta.size())) {
+  const SplineTrajectory& trajectory = state.trajectory;
   intervals_.resize(trajectory.coefficients().size() - 3);
-  const std::vector<double> w = weights(cells, columns, trajectory, theta, cell_variance, workers);
+  const std::vector<double> w = weights(cells, columns, state, cell_variance, workers);
   std::vector<std::vector<std::uint32_t>> members(intervals_.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
     if (w[k] > 0.0) {
@@ -66,12 +67,12 @@ DopplerTerms::DopplerTerms(const std::vector<DopplerCell>& cells, const std::vec
 /// The kernel's weight of each cell by how far it is from what is expected of it, against how far most of them are;
 /// over its variance.
 std::vector<double> DopplerTerms::weights(const std::vector<DopplerCell>& cells,
-                                          const std::vector<FieldColumns>& columns, const SplineTrajectory& trajectory,
-                                          const Eigen::VectorXd& theta, double cell_variance, const Workers& workers) {
+                                          const std::vector<FieldColumns>& columns, const DopplerState& state,
+                                          double cell_variance, const Workers& workers) {
   if (cells.empty()) {
     return {};
   }
-  std::vector<double> scaled = residuals(cells, columns, trajectory, theta, workers);
+  std::vector<double> scaled = residuals(cells, columns, state, workers);
   std::vector<double> size(cells.size());
   std::vector<double> w(cells.size());
   for (std::size_t k = 0; k < cells.size(); ++k) {
@@ -233,17 +234,16 @@ DopplerTerms::ScanError DopplerTerms::add_gradient(const SplineTrajectory& traje
 
 /// What is not explained of each cell.
 std::vector<double> DopplerTerms::residuals(const std::vector<DopplerCell>& cells,
-                                            const std::vector<FieldColumns>& columns,
-                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
+                                            const std::vector<FieldColumns>& columns, const DopplerState& state,
                                             const Workers& workers) const {
   const auto [first, last] = std::minmax_element(
       cells.begin(), cells.end(), [](const DopplerCell& a, const DopplerCell& b) { return a.time_s < b.time_s; });
-  const SampledMotion motion(trajectory, stamp_s_ + first->time_s, stamp_s_ + last->time_s);
+  const SampledMotion motion(state.trajectory, stamp_s_ + first->time_s, stamp_s_ + last->time_s);
   std::vector<double> result(cells.size());
   workers.for_each(cells.size(), kTermBlock, [&](std::size_t k) {
     const DopplerCell& cell = cells[k];
     const double time_s = stamp_s_ + cell.time_s;
-    result[k] = cell.s + cell.u.dot(motion.velocity(time_s)) - columns[k].dot(theta);
+    result[k] = cell.s + cell.u.dot(motion.velocity(time_s)) - columns[k].dot(state.theta) - state.scan_error_mps;
     if (per_node_ == 6) {
       result[k] += cell.lxu.dot(motion.omega(time_s));
     }
@@ -252,12 +252,12 @@ std::vector<double> DopplerTerms::residuals(const std::vector<DopplerCell>& cell
 }
 
 double DopplerTerms::unexplained_variance(const std::vector<DopplerCell>& cells,
-                                          const std::vector<FieldColumns>& columns, const SplineTrajectory& trajectory,
-                                          const Eigen::VectorXd& theta, const Workers& workers) const {
+                                          const std::vector<FieldColumns>& columns, const DopplerState& state,
+                                          const Workers& workers) const {
   if (cells.empty()) {
     return 0.0;
   }
-  const std::vector<double> unexplained = residuals(cells, columns, trajectory, theta, workers);
+  const std::vector<double> unexplained = residuals(cells, columns, state, workers);
   double sum = 0.0;
   double counts = 0.0;
   for (std::size_t k = 0; k < cells.size(); ++k) {

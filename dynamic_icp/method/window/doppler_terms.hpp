@@ -16,7 +16,11 @@ namespace dynamic_icp::window {
 /// How the unknowns stand in the vectors and matrices of the window: [theta; map error; stamp errors; coefficients;
 /// vibration].
 struct Layout {
-  static constexpr Eigen::Index kMapError = 12;  ///< [rotation; position] at the start and the end of the sweep
+  /// The map errs by a rigid displacement [rotation; position] that changes with the phase of the sweep in which its
+  /// patches were measured: linearly between so many phases, the first and the last among them. Wheels hop once within
+  /// a sweep, and the map takes that in.
+  static constexpr Eigen::Index kMapNodes = 5;
+  static constexpr Eigen::Index kMapError = 6 * kMapNodes;
 
   static constexpr Eigen::Index kStamps = 2;  ///< s, error of the stamp of the scan before and of the one at hand
   static constexpr Eigen::Index kBefore = kMapError + kStamps;  ///< what stands between theta and the coefficients
@@ -30,6 +34,7 @@ struct Layout {
   bool vibrates = false;          ///< each coefficient has six more: how far the vibration moved it
 
   [[nodiscard]] Eigen::Index map_error() const { return field; }
+  [[nodiscard]] Eigen::Index map_node(std::size_t j) const { return field + 6 * static_cast<Eigen::Index>(j); }
   [[nodiscard]] Eigen::Index last_stamp() const { return field + kMapError; }
   [[nodiscard]] Eigen::Index stamp() const { return field + kMapError + 1; }
   [[nodiscard]] Eigen::Index coefficient(std::size_t k) const {
@@ -43,6 +48,13 @@ struct Layout {
   }
 };
 
+/// What the Doppler depends on.
+struct DopplerState {
+  const SplineTrajectory& trajectory;
+  const Eigen::VectorXd& theta;
+  double scan_error_mps = 0.0;  ///< what all values of the scan have in common
+};
+
 /// The Doppler of one scan as normal equations in the motion at three nodes of each knot interval and in theta:
 ///   s = -u . v(t) - (l x u) . omega(t) + Phi theta + e,
 /// v and omega quadratic in t between the nodes. The points are read once: relinearising the trajectory costs nothing
@@ -50,11 +62,11 @@ struct Layout {
 class DopplerTerms {
  public:
   /// `columns` of the error field for each cell. `cell_variance` (m/s)^2 is what the points of a cell have in common.
-  /// Cells have times after `stamp_s`. Those far from what trajectory and theta say, against how far most are, move by
+  /// Cells have times after `stamp_s`. Those far from what the state says, against how far most are, move by
   /// themselves and have no weight.
   DopplerTerms(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
-               const SplineTrajectory& trajectory, const Eigen::VectorXd& theta, double stamp_s, double cell_variance,
-               bool has_lever_arms, const Workers& workers);
+               const DopplerState& state, double stamp_s, double cell_variance, bool has_lever_arms,
+               const Workers& workers);
 
   /// The error that all Doppler values of the scan have in common, N(0, `scan_variance`) (m/s)^2: it is eliminated.
   struct ScanError {
@@ -76,8 +88,7 @@ class DopplerTerms {
 
   /// Variance that cells show beyond the noise of their points, (m/s)^2, robust; at the given state.
   [[nodiscard]] double unexplained_variance(const std::vector<DopplerCell>& cells,
-                                            const std::vector<FieldColumns>& columns,
-                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
+                                            const std::vector<FieldColumns>& columns, const DopplerState& state,
                                             const Workers& workers) const;
 
  private:
@@ -93,8 +104,7 @@ class DopplerTerms {
   };
 
   [[nodiscard]] std::vector<double> weights(const std::vector<DopplerCell>& cells,
-                                            const std::vector<FieldColumns>& columns,
-                                            const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
+                                            const std::vector<FieldColumns>& columns, const DopplerState& state,
                                             double cell_variance, const Workers& workers);
   void sum_field(const std::vector<DopplerCell>& cells, const std::vector<FieldColumns>& columns,
                  const std::vector<double>& w);
@@ -106,8 +116,7 @@ class DopplerTerms {
   [[nodiscard]] Eigen::VectorXd motion_at_nodes(const Interval& interval, const SplineTrajectory& trajectory) const;
   [[nodiscard]] Eigen::VectorXd scan_column(const Layout& layout) const;
   [[nodiscard]] std::vector<double> residuals(const std::vector<DopplerCell>& cells,
-                                              const std::vector<FieldColumns>& columns,
-                                              const SplineTrajectory& trajectory, const Eigen::VectorXd& theta,
+                                              const std::vector<FieldColumns>& columns, const DopplerState& state,
                                               const Workers& workers) const;
 
   double stamp_s_ = 0.0;

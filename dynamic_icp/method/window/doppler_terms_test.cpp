@@ -36,6 +36,7 @@ struct CellProblem {
   std::vector<DopplerCell> cells;
   std::optional<DopplerErrorField> field;
   VectorXd theta;
+  double scan_error_mps = 0.0;
 
   explicit CellProblem(double stamp = 7.3, bool lever_arms = false, std::size_t count = 400)
       : stamp_s(stamp), has_lever_arms(lever_arms) {
@@ -57,8 +58,10 @@ struct CellProblem {
   }
 
   [[nodiscard]] DopplerTerms terms() const {
-    return {cells, columns(), trajectory, theta, stamp_s, kCellVariance, has_lever_arms, kOneThread};
+    return {cells, columns(), state(), stamp_s, kCellVariance, has_lever_arms, kOneThread};
   }
+
+  [[nodiscard]] DopplerState state() const { return {trajectory, theta, scan_error_mps}; }
 
   [[nodiscard]] std::vector<FieldColumns> columns() const {
     std::vector<FieldColumns> result;
@@ -301,12 +304,11 @@ TEST(DopplerTerms, TheKernelWidensWithTheScatter) {
 
 TEST(DopplerTerms, OfNoCellsAddNothing) {
   CellProblem problem;
-  const DopplerTerms terms({}, {}, problem.trajectory, problem.theta, problem.stamp_s, kCellVariance, false,
-                           kOneThread);
+  const DopplerTerms terms({}, {}, problem.state(), problem.stamp_s, kCellVariance, false, kOneThread);
   const Sums sums = sums_of(problem, terms);
   EXPECT_EQ(sums.H.norm(), 0.0);
   EXPECT_EQ(sums.g.norm(), 0.0);
-  EXPECT_EQ(terms.unexplained_variance({}, {}, problem.trajectory, problem.theta, kOneThread), 0.0);
+  EXPECT_EQ(terms.unexplained_variance({}, {}, problem.state(), kOneThread), 0.0);
 }
 
 TEST(DopplerTerms, TellTheVarianceBeyondThatOfPoints) {
@@ -318,17 +320,23 @@ TEST(DopplerTerms, TellTheVarianceBeyondThatOfPoints) {
     cell.s -= problem.residual(cell);
     cell.s += std::sqrt(1.0 / cell.weight + unexplained * unexplained) * normal(random);
   }
-  const double found = problem.terms().unexplained_variance(problem.cells, problem.columns(), problem.trajectory,
-                                                            problem.theta, kOneThread);
+  const auto variance = [&] {
+    return problem.terms().unexplained_variance(problem.cells, problem.columns(), problem.state(), kOneThread);
+  };
   // Of normal errors the kernel, 4.5 standard deviations wide, holds back 0.185 of the whole variance, here 0.0029.
-  EXPECT_NEAR(found, unexplained * unexplained - 0.185 * 0.0029, 0.1 * 0.0029);
+  EXPECT_NEAR(variance(), unexplained * unexplained - 0.185 * 0.0029, 0.1 * 0.0029);
+  const double without = variance();
+  for (DopplerCell& cell : problem.cells) {
+    cell.s += 0.3;
+  }
+  problem.scan_error_mps = 0.3;
+  EXPECT_NEAR(variance(), without, 1e-9) << "what the whole scan has in common is no error of cells";
+  problem.scan_error_mps = 0.0;
   for (DopplerCell& cell : problem.cells) {
     cell.s -= problem.residual(cell);
     cell.s += 0.7 / std::sqrt(cell.weight) * normal(random);
   }
-  EXPECT_EQ(problem.terms().unexplained_variance(problem.cells, problem.columns(), problem.trajectory, problem.theta,
-                                                 kOneThread),
-            0.0);
+  EXPECT_EQ(variance(), 0.0);
 }
 
 }  // namespace

@@ -11,11 +11,8 @@ namespace {
 // What is left of the evidence after one more scan.
 constexpr double kMemory = 0.87;
 
-// One scan changes a variance by no more than this. Where much more was seen than expected, the fixed point is
-// overshot: it goes only a part of the way.
+// One scan changes a variance by no more than this.
 constexpr double kMaxChange = 8.0;
-constexpr double kMuchMore = 2.0;
-constexpr double kOvershoot = 1.8;
 
 }  // namespace
 
@@ -66,8 +63,7 @@ double LearnedVariance::renew(double squares, double counts) {
   const double before = variance_;
   const double ratio =
       std::clamp((squares + followed_squares_) / (counts + followed_counts_) / variance_, 1.0 / kMaxChange, kMaxChange);
-  const double moved = variance_ * (ratio > kMuchMore ? std::pow(ratio, kOvershoot) : ratio);
-  variance_ = std::clamp(moved, min_variance_, max_variance_);
+  variance_ = std::clamp(variance_ * ratio, min_variance_, max_variance_);
   return variance_ / before - 1.0;
 }
 

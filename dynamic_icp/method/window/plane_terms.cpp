@@ -21,6 +21,16 @@ constexpr std::size_t kInformativePatches = 50;  // and all patches together whe
 constexpr double kMinHeld = 1e-6;
 constexpr double kNoPointing = 1e-14;  // rad^2
 
+/// Of all nodes.
+template <typename Sums>
+typename Sums::value_type total(const Sums& sums) {
+  typename Sums::value_type sum = sums.front();
+  for (std::size_t j = 1; j < sums.size(); ++j) {
+    sum += sums[j];
+  }
+  return sum;
+}
+
 }  // namespace
 
 PlaneTerms::PlaneTerms(const Scan& points, const mapping::PlaneMap& map, double stamp_s, double slice_s,
@@ -68,8 +78,6 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
   slice.at = trajectory.at(slice.time_s);
   const Eigen::Isometry3d& T_map_reference = trajectory.reference();
   const Eigen::Matrix3d R_reference_map = T_map_reference.linear().transpose();
-  const Vector6d start = map_error.head<6>();
-  const Vector6d change = map_error.tail<6>() - start;
   const double min_variance = noise.min_sigma_m * noise.min_sigma_m;
   const double model_variance = noise.model_sigma_m * noise.model_sigma_m;
   slice.on_planes = 0;
@@ -92,8 +100,12 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
     const mapping::Plane& plane = row.patch->plane;
     const Eigen::Vector3d n = R_reference_map * plane.normal;
     row.m << in_reference.cross(n), n;
-    row.phase = plane.phase;
-    row.e = plane.distance(in_map) - row.m.dot(start + row.phase * change);
+    const double phase = plane.phase * static_cast<double>(kMapNodes - 1);
+    row.node = std::min(kMapNodes - 2, static_cast<std::size_t>(phase));
+    row.beyond = phase - static_cast<double>(row.node);
+    const auto before = map_error.segment<6>(6 * static_cast<Eigen::Index>(row.node));
+    const auto after = map_error.segment<6>(6 * static_cast<Eigen::Index>(row.node + 1));
+    row.e = plane.distance(in_map) - (1.0 - row.beyond) * row.m.dot(before) - row.beyond * row.m.dot(after);
     row.J = by_angles(scan_, i).transpose() * (slice.at.R.transpose() * n);
     row.own = std::max(plane.variance, min_variance);
     row.in_common = plane.height_variance(in_map) + model_variance;
@@ -131,7 +143,8 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
 }
 
 void PlaneTerms::sum(Slice& slice) const {
-  slice.S.fill(Matrix6d::Zero());
+  slice.LL.fill(Matrix6d::Zero());
+  slice.LL_next.fill(Matrix6d::Zero());
   slice.E.fill(Vector6d::Zero());
   slice.P.fill(Pointing::Zero());
   slice.PP.setZero();
@@ -146,14 +159,16 @@ void PlaneTerms::sum(Slice& slice) const {
     }
     const Vector6d wm = row.w * row.m;
     const Matrix6d wmm = wm * row.m.transpose();
-    slice.S[0] += wmm;
-    slice.S[1] += row.phase * wmm;
-    slice.S[2] += row.phase * row.phase * wmm;
-    slice.E[0] += row.e * wm;
-    slice.E[1] += (row.phase * row.e) * wm;
+    const double L = 1.0 - row.beyond;
+    const double L_next = row.beyond;
+    slice.LL[row.node] += (L * L) * wmm;
+    slice.LL_next[row.node] += (L * L_next) * wmm;
+    slice.LL[row.node + 1] += (L_next * L_next) * wmm;
+    slice.E[row.node] += (L * row.e) * wm;
+    slice.E[row.node + 1] += (L_next * row.e) * wm;
     const Pointing wmJ = wm * row.J.transpose();
-    slice.P[0] += wmJ;
-    slice.P[1] += row.phase * wmJ;
+    slice.P[row.node] += L * wmJ;
+    slice.P[row.node + 1] += L_next * wmJ;
     slice.PP += row.w * row.J * row.J.transpose();
     slice.PE += (row.w * row.e) * row.J;
     const mapping::Plane& plane = row.patch->plane;
@@ -164,13 +179,32 @@ void PlaneTerms::sum(Slice& slice) const {
   }
 }
 
+Matrix6d PlaneTerms::Slice::S(std::size_t node) const {
+  Matrix6d sum = LL[node];
+  if (node > 0) {
+    sum += LL_next[node - 1];
+  }
+  if (node + 1 < kMapNodes) {
+    sum += LL_next[node];
+  }
+  return sum;
+}
+
+Matrix6d PlaneTerms::Slice::S() const {
+  Matrix6d sum = LL.front();
+  for (std::size_t j = 1; j < kMapNodes; ++j) {
+    sum += LL[j] + 2.0 * LL_next[j - 1];
+  }
+  return sum;
+}
+
 /// Normals err, and along a direction that no surface faces the sum of w n n^T is their noise alone. The map, which
 /// moves with us, confirms any speed along it. There the map gets an offset of its own in each scan.
 void PlaneTerms::hold_directions(double max_noise_share) {
   Eigen::Matrix3d nn = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
   for (const Slice& slice : slices_) {
-    nn += slice.S[0].bottomRightCorner<3, 3>();
+    nn += slice.S().bottomRightCorner<3, 3>();
     noise += slice.noise;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(nn);
@@ -188,7 +222,8 @@ void PlaneTerms::hold_directions(double max_noise_share) {
     common_information_(k, k) += in_axes(k, k) * held_[k] / (1.0 - held_[k]) + 1e-9;
   }
   for (const Slice& slice : slices_) {
-    const Eigen::Matrix<double, 2, 3> coupling = slice.P[0].bottomRows<3>().transpose() * axes_;
+    const Pointing P = total(slice.P);
+    const Eigen::Matrix<double, 2, 3> coupling = P.bottomRows<3>().transpose() * axes_;
     common_information_.bottomLeftCorner<2, 3>() += coupling;
     common_information_.topRightCorner<3, 2>() += coupling.transpose();
     common_information_.bottomRightCorner<2, 2>() += slice.PP;
@@ -219,58 +254,62 @@ Vector6d along_motion(const TrajectoryPoint& at) {
 
 /// The terms of one slice, had map and pointing no error of their own.
 void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) {
-  const Eigen::Index d = layout.map_error();
   const Matrix6d M = by_coefficients(slice.at);
-  const Matrix6d S0 = M * slice.S[0] * M.transpose();
-  const Matrix6d at_start = M * (slice.S[0] - slice.S[1]);
-  const Matrix6d at_end = M * slice.S[1];
-  const Vector6d E0 = M * slice.E[0];
+  const Matrix6d S = slice.S();
+  const Vector6d E = total(slice.E);
+  const Matrix6d MSM = M * S * M.transpose();
+  const Vector6d ME = M * E;
   const Vector6d along = along_motion(slice.at);
-  const Vector6d S_along = slice.S[0] * along;
+  const Vector6d S_along = S * along;
   const Vector6d M_along = M * S_along;
-  const Vector6d along_end = slice.S[1] * along;
   const Eigen::Index stamp = layout.stamp();
   H(stamp, stamp) += along.dot(S_along);
-  g[stamp] += along.dot(slice.E[0]);
-  H.block<1, 6>(stamp, d) -= (S_along - along_end).transpose();
-  H.block<1, 6>(stamp, d + 6) -= along_end.transpose();
+  g[stamp] += along.dot(E);
   for (std::size_t i = 0; i < 4; ++i) {
     const Eigen::Index row = layout.coefficient(slice.at.first + i);
     const double wi = slice.at.weight[i];
     for (std::size_t j = 0; j <= i; ++j) {
-      H.block<6, 6>(row, layout.coefficient(slice.at.first + j)) += (wi * slice.at.weight[j]) * S0;
+      H.block<6, 6>(row, layout.coefficient(slice.at.first + j)) += (wi * slice.at.weight[j]) * MSM;
     }
-    H.block<6, 6>(row, d) -= wi * at_start;
-    H.block<6, 6>(row, d + 6) -= wi * at_end;
     H.block<6, 1>(row, stamp) += wi * M_along;
-    g.segment<6>(row) += wi * E0;
+    g.segment<6>(row) += wi * ME;
   }
-  H.block<6, 6>(d, d) += slice.S[0] - 2.0 * slice.S[1] + slice.S[2];
-  H.block<6, 6>(d + 6, d) += slice.S[1] - slice.S[2];
-  H.block<6, 6>(d + 6, d + 6) += slice.S[2];
-  g.segment<6>(d) -= slice.E[0] - slice.E[1];
-  g.segment<6>(d + 6) -= slice.E[1];
+  for (std::size_t j = 0; j < kMapNodes; ++j) {
+    const Matrix6d S_node = slice.S(j);
+    const Matrix6d MS_node = M * S_node;
+    const Eigen::Index d = layout.map_node(j);
+    H.block<6, 6>(d, d) += slice.LL[j];
+    if (j + 1 < kMapNodes) {
+      H.block<6, 6>(layout.map_node(j + 1), d) += slice.LL_next[j];
+    }
+    g.segment<6>(d) -= slice.E[j];
+    H.block<1, 6>(stamp, d) -= (S_node * along).transpose();
+    for (std::size_t i = 0; i < 4; ++i) {
+      H.block<6, 6>(layout.coefficient(slice.at.first + i), d) -= slice.at.weight[i] * MS_node;
+    }
+  }
 }
 
 PlaneTerms::Common PlaneTerms::common(const Layout& layout) const {
+  using ByCommon = Eigen::Matrix<double, 6, 5>;  // sum of w m by [offset along the axes; pointing]
   Common common{Eigen::MatrixXd::Zero(layout.size(), 5), Vector5d::Zero()};
-  const Eigen::Index d = layout.map_error();
   for (const Slice& slice : slices_) {
     if (slice.matched <= 0.0) {
       continue;
     }
-    Eigen::Matrix<double, 6, 5> by_common;  // sum of w m by [offset along the axes; pointing]
-    by_common << slice.S[0].rightCols<3>() * axes_, slice.P[0];
-    Eigen::Matrix<double, 6, 5> at_end;
-    at_end << slice.S[1].rightCols<3>() * axes_, slice.P[1];
-    const Eigen::Matrix<double, 6, 5> of_coefficients = by_coefficients(slice.at) * by_common;
+    ByCommon all = ByCommon::Zero();
+    for (std::size_t j = 0; j < kMapNodes; ++j) {
+      ByCommon of_node;
+      of_node << slice.S(j).rightCols<3>() * axes_, slice.P[j];
+      common.U.middleRows<6>(layout.map_node(j)) -= of_node;
+      all += of_node;
+    }
+    const ByCommon of_coefficients = by_coefficients(slice.at) * all;
     for (std::size_t i = 0; i < 4; ++i) {
       common.U.middleRows<6>(layout.coefficient(slice.at.first + i)) += slice.at.weight[i] * of_coefficients;
     }
-    common.U.row(layout.stamp()) += along_motion(slice.at).transpose() * by_common;
-    common.U.middleRows<6>(d) -= by_common - at_end;
-    common.U.middleRows<6>(d + 6) -= at_end;
-    common.gradient.head<3>() += axes_.transpose() * slice.E[0].tail<3>();
+    common.U.row(layout.stamp()) += along_motion(slice.at).transpose() * all;
+    common.gradient.head<3>() += axes_.transpose() * total(slice.E).tail<3>();
     common.gradient.tail<2>() += slice.PE;
   }
   return common;
@@ -323,8 +362,8 @@ PlaneQuality PlaneTerms::quality() const {
     result.on_planes += slice.on_planes;
     result.matched += slice.matched;
     squares += slice.squares;
-    S += slice.S[0];
-    E += slice.E[0];
+    S += slice.S();
+    E += total(slice.E);
   }
   result.rms_m = result.matched > 0.0 ? std::sqrt(squares / result.matched) : 0.0;
   const Vector6d rigid = (S + 1e-6 * Matrix6d::Identity()).ldlt().solve(E);
@@ -334,14 +373,19 @@ PlaneQuality PlaneTerms::quality() const {
     std::uint32_t points = 0;
   };
   std::vector<Mean> patches(members_.size());
+  double weights = 0.0;
   for (const Row& row : rows_) {
     if (row.patch != nullptr && row.w > 0.0) {
+      const double members = members_[row.patch->id];
+      weights += row.w;
+      result.share += row.w * members / (row.patch->plane.points + members);
       Mean& mean = patches[row.patch->id];
       mean.e += row.e - row.m.dot(rigid);
       mean.explained += row.own / row.patch->plane.points;
       ++mean.points;
     }
   }
+  result.share = weights > 0.0 ? result.share / weights : 0.0;
   std::vector<mapping::PatchMean> means;
   for (const Row& row : rows_) {
     if (row.patch == nullptr || row.w <= 0.0) {

@@ -34,14 +34,16 @@ struct PlaneQuality {
   double matched = 0.0;                            ///< sum of the kernel's weights
   double rms_m = 0.0;                              ///< of those
   Eigen::Vector3d held = Eigen::Vector3d::Ones();  ///< share of the information that is not noise of normals, by axis
+  double share = 0.0;                              ///< of the scan in the patches it meets, once it is added to them
   std::optional<double> model_sigma_m;
 };
 
 /// The point-to-plane terms of one scan in continuous time:
 ///   e = n . (p(t) + R(t) x - m) - n . (d_p + d_phi x X) ,
-/// each point at its own time t, with d the error of the map, a rigid displacement that changes linearly over the
-/// phase of the sweep at which the patch was measured. Sums of w m m^T, m = [X x n; n], over slices of time stand for
-/// the points in all steps of the solution. An error of the stamp moves all points along the motion of the sensor.
+/// each point at its own time t, with d the error of the map, a rigid displacement that changes with the phase of the
+/// sweep at which the patch was measured (Layout::kMapNodes). Sums of w m m^T, m = [X x n; n], over slices of time
+/// stand for the points in all steps of the solution. An error of the stamp moves all points along the motion of the
+/// sensor.
 class PlaneTerms {
  public:
   /// `points` static and thinned; scan and map must outlive it.
@@ -83,13 +85,15 @@ class PlaneTerms {
  private:
   using Vector5d = Eigen::Matrix<double, 5, 1>;
   using Matrix5d = Eigen::Matrix<double, 5, 5>;
+  static constexpr auto kMapNodes = static_cast<std::size_t>(Layout::kMapNodes);
   struct Row {
     Vector6d m = Vector6d::Zero();  ///< [X x n; n], reference frame
     double e = 0.0;                 ///< m
     double own = 0.0;               ///< m^2, of the point
     double in_common = 0.0;         ///< m^2, of all points on its patch
     double all = 0.0;               ///< m^2, as one of these points
-    double phase = 0.0;             ///< of the patch
+    std::size_t node = 0;           ///< of the map's error, at the phase of the patch or before
+    double beyond = 0.0;            ///< its distance from there, as a share of that between nodes
     double w = 0.0;
     Eigen::Vector2d J = Eigen::Vector2d::Zero();  ///< of the residual by azimuth and elevation, m/rad
     const mapping::Patch* patch = nullptr;
@@ -100,15 +104,20 @@ class PlaneTerms {
     std::size_t end = 0;
     double time_s = 0.0;  ///< its middle
     TrajectoryPoint at;
-    std::array<Matrix6d, 3> S;                        ///< sum of w phase^k m m^T
-    std::array<Vector6d, 2> E;                        ///< sum of w e phase^k m
-    std::array<Pointing, 2> P;                        ///< sum of w phase^k m J^T, J of azimuth and elevation
+    // With L the share of a node of the map's error in that of the patch.
+    std::array<Matrix6d, kMapNodes> LL;               ///< sum of w L^2 m m^T of each node
+    std::array<Matrix6d, kMapNodes - 1> LL_next;      ///< and of w L L_next m m^T with the next one
+    std::array<Vector6d, kMapNodes> E;                ///< sum of w L e m
+    std::array<Pointing, kMapNodes> P;                ///< sum of w L m J^T, J of azimuth and elevation
     Eigen::Matrix2d PP = Eigen::Matrix2d::Zero();     ///< sum of w J J^T
     Eigen::Vector2d PE = Eigen::Vector2d::Zero();     ///< sum of w e J
     Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();  ///< sum of w Sigma_n
     double matched = 0.0;
     double squares = 0.0;
     std::size_t on_planes = 0;
+
+    [[nodiscard]] Matrix6d S(std::size_t node) const;  ///< sum of w L m m^T
+    [[nodiscard]] Matrix6d S() const;                  ///< sum of w m m^T
   };
 
   void place(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,

@@ -134,8 +134,11 @@ struct Definition {
         continue;
       }
       const Vector3d X = trajectory.reference().inverse() * in_map(i);
-      const double phase = patches[i]->plane.phase;
-      const Vector6d d = (1.0 - phase) * map_error.head<6>() + phase * map_error.tail<6>();
+      Vector6d d = Vector6d::Zero();  // hats around the nodes
+      for (Index node = 0; node < Layout::kMapNodes; ++node) {
+        const double apart = std::abs(patches[i]->plane.phase * (Layout::kMapNodes - 1.0) - static_cast<double>(node));
+        d += std::max(0.0, 1.0 - apart) * map_error.segment<6>(6 * node);
+      }
       e[static_cast<Index>(i)] =
           patches[i]->plane.distance(in_map(i)) - normal(i).dot(Vector3d(d.tail<3>()) + Vector3d(d.head<3>()).cross(X));
     }
@@ -209,8 +212,10 @@ PlaneTermSums sums_of(const PlaneTerms& terms, const Layout& at) {
 }
 
 VectorXd some_map_error() {
-  VectorXd error(12);
-  error << 2e-4, -1e-4, 3e-4, 0.004, -0.002, 0.001, -1e-4, 2e-4, 1e-4, -0.003, 0.002, 0.002;
+  VectorXd error(Layout::kMapError);
+  for (Index k = 0; k < error.size(); ++k) {
+    error[k] = (k % 6 < 3 ? 3e-4 : 0.004) * std::sin(1.7 * static_cast<double>(k) + 0.5);
+  }
   return error;
 }
 
@@ -257,6 +262,8 @@ TEST(PlaneTerms, TellHowWellThePointsFit) {
                                                                                  definition.patches.end(), nullptr)));
   EXPECT_GT(quality.on_planes, 2500U);
   EXPECT_NEAR(quality.matched, definition.robust.sum(), 1e-3 * quality.matched);
+  // Points of the scan against those of the map, 3000 to 40000, everywhere.
+  EXPECT_NEAR(quality.share, 3.0 / 43.0, 0.01);
   const double squares = definition.robust.dot(definition.residuals().cwiseAbs2());
   EXPECT_NEAR(quality.rms_m, std::sqrt(squares / definition.robust.sum()), 1e-3 * quality.rms_m);
 }
@@ -268,7 +275,7 @@ TEST(PlaneTerms, PlacePointsAtTheirOwnTimes) {
   const PlaneMap map = room.map();
   const Scan scan = scan_of(room, true_trajectory(), 5000, false);
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
-  terms.associate(true_trajectory(), VectorXd::Zero(12), {}, false);
+  terms.associate(true_trajectory(), VectorXd::Zero(Layout::kMapError), {}, false);
   EXPECT_GT(terms.quality().matched, 4000.0);
   EXPECT_LT(terms.quality().rms_m, 1e-5);
 }
@@ -298,7 +305,7 @@ TEST(PlaneTerms, OneStepFindsTheMotion) {
     c[5] += 0.005;
   }
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
-  terms.associate(displaced, VectorXd::Zero(12), {}, true);
+  terms.associate(displaced, VectorXd::Zero(Layout::kMapError), {}, true);
   const Layout at{0, static_cast<Index>(displaced.coefficients().size())};
   const PlaneTermSums sums = sums_of(terms, at);
   MatrixXd B = MatrixXd::Zero(at.size(), 6);
@@ -316,7 +323,7 @@ TEST(PlaneTerms, ARoomHoldsAllDirections) {
   const PlaneMap map = room.map();
   const Scan scan = scan_of(room, true_trajectory(), 3000);
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
-  terms.associate(true_trajectory(), VectorXd::Zero(12), {}, false);
+  terms.associate(true_trajectory(), VectorXd::Zero(Layout::kMapError), {}, false);
   EXPECT_GT(terms.quality().held.minCoeff(), 0.97);
 }
 
@@ -326,13 +333,13 @@ TEST(PlaneTerms, ATunnelDoesNotHoldAlongItself) {
   const PlaneMap map = tunnel.map(8000);
   const Scan scan = scan_of(tunnel, true_trajectory(), 3000);
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
-  terms.associate(true_trajectory(), VectorXd::Zero(12), {}, false);
+  terms.associate(true_trajectory(), VectorXd::Zero(Layout::kMapError), {}, false);
   const Vector3d held = terms.quality().held;  // from the weakest axis to the strongest
   EXPECT_LT(held[0], 0.01);
   EXPECT_GT(held[1], 0.97);
   EXPECT_GT(held[2], 0.97);
   // Nothing is left of the information along the tunnel that the noise of the normals seems to give.
-  const Definition definition(scan, map, true_trajectory(), VectorXd::Zero(12), {}, false);
+  const Definition definition(scan, map, true_trajectory(), VectorXd::Zero(Layout::kMapError), {}, false);
   const Vector3d along = definition.trajectory.reference().linear().transpose() * Vector3d::UnitX();
   const double by_noise = (definition.normals() * along).cwiseAbs2().dot(definition.weights);
   ASSERT_GT(by_noise, 0.0);
@@ -358,12 +365,12 @@ TEST(PlaneTerms, LearnHowRoughSurfacesAre) {
     }
     const Scan scan = scan_of(Room{}, true_trajectory(), 6000);
     PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
-    terms.associate(trajectory, VectorXd::Zero(12), noise, true);
+    terms.associate(trajectory, VectorXd::Zero(Layout::kMapError), noise, true);
     ASSERT_TRUE(terms.quality().model_sigma_m);
     EXPECT_NEAR(*terms.quality().model_sigma_m, 0.01, 0.003) << "displaced by " << rigid_m;
     const PlaneMap flat = Room{}.map();
     PlaneTerms on_flat(scan, flat, kStamp_s, kSlice_s, kOneThread);
-    on_flat.associate(trajectory, VectorXd::Zero(12), {}, true);
+    on_flat.associate(trajectory, VectorXd::Zero(Layout::kMapError), {}, true);
     ASSERT_TRUE(on_flat.quality().model_sigma_m);
     EXPECT_LT(*on_flat.quality().model_sigma_m, 0.002) << "displaced by " << rigid_m;
   }
@@ -373,7 +380,7 @@ TEST(PlaneTerms, WithoutAMapAddNothing) {
   const PlaneMap map({});
   const Scan scan = scan_of(Room{}, true_trajectory(), 300);
   PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
-  terms.associate(true_trajectory(), VectorXd::Zero(12), {}, true);
+  terms.associate(true_trajectory(), VectorXd::Zero(Layout::kMapError), {}, true);
   const Layout at{3, static_cast<Index>(true_trajectory().coefficients().size())};
   const PlaneTermSums sums = sums_of(terms, at);
   EXPECT_EQ(sums.H.norm(), 0.0);

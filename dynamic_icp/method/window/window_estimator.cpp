@@ -14,8 +14,6 @@
 namespace dynamic_icp::window {
 namespace {
 
-using Matrix12d = Eigen::Matrix<double, 12, 12>;
-
 // The motion of so much time goes on evenly into the next scan.
 constexpr double kEven_s = 0.1;
 
@@ -49,26 +47,15 @@ constexpr double kGate_mps = 1.0;
 constexpr double kMuchNoise = 1.0;
 constexpr int kNoiseRounds = 3;
 
-// The map is never one scan alone.
-constexpr double kMinScans = 2.0;
-
 // Faces of a mirror: one scan may show one of them only.
 constexpr std::size_t kMaxFaces = 8;
-
-Matrix12d twice(const Matrix6d& A) {
-  Matrix12d result = Matrix12d::Zero();
-  result.topLeftCorner<6, 6>() = A;
-  result.bottomRightCorner<6, 6>() = A;
-  return result;
-}
 
 constexpr double kScanError_mps = 0.003;
 
 }  // namespace
 
-WindowEstimator::WindowEstimator(const WindowConfig& config, double map_memory_scans)
+WindowEstimator::WindowEstimator(const WindowConfig& config)
     : config_(config),
-      map_memory_scans_(std::max(kMinScans, map_memory_scans)),
       trajectory_(config.knot_spacing_s),
       motion_prior_(config),
       pointing_variance_(pointing_prior()),
@@ -91,6 +78,7 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
   first_ = {scan.stamp_s, scan.begin_s, scan.end_s};
   stamp_errors_.setZero();
   this_stamp_ = {};
+  scan_error_ = {};
   map_error_.setZero();
   scans_ = 1;
   const std::size_t coefficients = trajectory_.coefficients().size();
@@ -188,8 +176,8 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   find_twist();
   ++scans_;
   ++scans_ever_;
-  const double share = 1.0 / std::clamp(static_cast<double>(scans_), kMinScans, map_memory_scans_);
-  quadratic_->mix_map_error(share, sweep_rows(layout()));  // the map takes this sweep in
+  const double share = motion.planes.share;
+  quadratic_->mix_map_error(share, sweep_rows(stamp_s() + begin_s_, stamp_s() + end_s_, layout()));
   map_error_ *= 1.0 - share;
   walk_field();
   quadratic_->drop_coefficients(trajectory_.drop_before(stamp_s() + std::min(0.0, begin_s_)));
@@ -222,8 +210,9 @@ void WindowEstimator::advance(const WindowScan& scan) {
   B.topLeftCorner<3, 3>() = to.R;
   B.bottomRightCorner<3, 3>() = to.R;
   B.bottomLeftCorner<3, 3>() = skew(to.p) * to.R;
-  quadratic_->move_reference(trajectory_.move_reference(scan.stamp_s), twice(B));
-  map_error_ = twice(B).partialPivLu().solve(map_error_).eval();
+  quadratic_->move_reference(trajectory_.move_reference(scan.stamp_s), B);
+  map_error_.reshaped(6, Layout::kMapNodes) = B.partialPivLu().solve(map_error_.reshaped(6, Layout::kMapNodes)).eval();
+  scan_error_ = {};
   take(scan);
   linearise_here();
 }
@@ -238,7 +227,7 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
   motion.converged = false;
   double step = std::numeric_limits<double>::infinity();
   for (int k = 0; k < limit && !motion.converged; ++k, ++motion.iterations) {
-    if (is_second && motion.iterations > 0) {
+    if (is_second) {
       lay_first_again(first_points, map, workers);
     }
     if (is_second || !planes) {
@@ -309,7 +298,7 @@ bool WindowEstimator::is_averaged_here() const {
 
 /// Weights of cells around the trajectory of the moment.
 void WindowEstimator::weigh_doppler(const WindowScan& scan, const Workers& workers) {
-  doppler_.emplace(cells_.cells(), columns_, trajectory_, theta_, stamp_s(), cell_variance_, scan.whole->is_of_rig(),
+  doppler_.emplace(cells_.cells(), columns_, doppler_state(), stamp_s(), cell_variance_, scan.whole->is_of_rig(),
                    workers);
 }
 

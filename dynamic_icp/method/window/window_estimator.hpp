@@ -66,8 +66,7 @@ struct StartOmega {
 /// by Gauss and Newton; then it joins the past.
 class WindowEstimator {
  public:
-  /// `map_memory_scans` as that of the map: each scan takes such a share of its error.
-  WindowEstimator(const WindowConfig& config, double map_memory_scans);
+  explicit WindowEstimator(const WindowConfig& config);
 
   /// Before anything else of a scan: its points that are averaged together. It must stay the same until the next one.
   void sort(const Scan& whole, const Workers& workers);
@@ -134,6 +133,7 @@ class WindowEstimator {
   void average_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers);
   void renew_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers);
   [[nodiscard]] bool is_averaged_here() const;
+  [[nodiscard]] DopplerState doppler_state() const { return {trajectory_, theta_, scan_error_.value}; }
   void weigh_doppler(const WindowScan& scan, const Workers& workers);
   [[nodiscard]] SampledMotion sampled_motion() const;
   [[nodiscard]] Eigen::Vector2d pointing_variance(const Scan& points) const;
@@ -153,7 +153,7 @@ class WindowEstimator {
   [[nodiscard]] Problem scan_terms(const std::optional<PlaneTerms>& planes, std::size_t first_new) const;
   void tie_map_to_first_sweep(Problem& problem) const;
   [[nodiscard]] Eigen::MatrixXd displacement_rows(double time_s, const Layout& layout) const;
-  [[nodiscard]] Eigen::MatrixXd sweep_rows(const Layout& layout) const;
+  [[nodiscard]] Eigen::MatrixXd sweep_rows(double begin_s, double end_s, const Layout& layout) const;
 
   // window_learning.cpp
   void learn_field();
@@ -176,7 +176,6 @@ class WindowEstimator {
   [[nodiscard]] Layout rest_layout() const { return {0, layout().coefficients, layout().vibrates}; }
 
   WindowConfig config_;
-  double map_memory_scans_;
   SplineTrajectory trajectory_;
   std::optional<WindowQuadratic> quadratic_;
   std::optional<DopplerErrorField> field_;

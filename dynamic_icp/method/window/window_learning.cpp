@@ -111,9 +111,8 @@ void WindowEstimator::learn_roughness(const PlaneQuality& planes) {
 /// What the points of a cell have in common.
 void WindowEstimator::learn_cell_variance(const Workers& workers) {
   if (doppler_) {
-    const double seen =
-        std::clamp(doppler_->unexplained_variance(cells_.cells(), columns_, trajectory_, theta_, workers),
-                   kMinCellVariance, kMaxCellVariance);
+    const double seen = std::clamp(doppler_->unexplained_variance(cells_.cells(), columns_, doppler_state(), workers),
+                                   kMinCellVariance, kMaxCellVariance);
     cell_variance_ += (scans_ever_ == 0 ? 1.0 : kGain) * (seen - cell_variance_);
   }
 }

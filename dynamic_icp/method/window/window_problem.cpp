@@ -75,8 +75,7 @@ WindowEstimator::Problem WindowEstimator::terms_of_rest(const PlaneTerms* planes
     planes->add(at, problem.H, problem.g);
   }
   // What no scan shows of the map's error stays within what it may be.
-  Eigen::VectorXd information(Layout::kMapError);
-  information << kMapInformation, kMapInformation;
+  const Eigen::VectorXd information = kMapInformation.replicate<Layout::kMapNodes, 1>();
   problem.H.diagonal().segment<Layout::kMapError>(at.map_error()) += information;
   problem.g.segment<Layout::kMapError>(at.map_error()) += information.cwiseProduct(map_error_);
   motion_prior_.add(trajectory_, first_new, at, problem.H, problem.g);
@@ -143,24 +142,26 @@ Eigen::MatrixXd WindowEstimator::displacement_rows(double time_s, const Layout& 
   return rows;
 }
 
-/// The same at the start and the end of the sweep at hand.
-Eigen::MatrixXd WindowEstimator::sweep_rows(const Layout& layout) const {
+/// The same at the phases of a sweep at which the map's error has its nodes.
+Eigen::MatrixXd WindowEstimator::sweep_rows(double begin_s, double end_s, const Layout& layout) const {
   Eigen::MatrixXd rows(Layout::kMapError, 6 * layout.coefficients);
-  rows << displacement_rows(stamp_s() + begin_s_, layout), displacement_rows(stamp_s() + end_s_, layout);
+  for (Eigen::Index j = 0; j < Layout::kMapNodes; ++j) {
+    const double phase = static_cast<double>(j) / static_cast<double>(Layout::kMapNodes - 1);
+    rows.middleRows<6>(6 * j) = displacement_rows(begin_s + phase * (end_s - begin_s), layout);
+  }
   return rows;
 }
 
 void WindowEstimator::tie_map_to_first_sweep(Problem& problem) const {
   const Layout at = rest_layout();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(Layout::kMapError, at.size());
-  rows.block(0, at.coefficient(0), 6, 6 * at.coefficients) = -displacement_rows(first_.stamp_s + first_.begin_s, at);
-  rows.block(6, at.coefficient(0), 6, 6 * at.coefficients) = -displacement_rows(first_.stamp_s + first_.end_s, at);
+  rows.middleCols(at.coefficient(0), 6 * at.coefficients) =
+      -sweep_rows(first_.stamp_s + first_.begin_s, first_.stamp_s + first_.end_s, at);
   rows.block(0, at.map_error(), Layout::kMapError, Layout::kMapError).setIdentity();
   Vector6d information;
   information << Eigen::Vector3d::Constant(1.0 / (kTieRotation * kTieRotation)),
       Eigen::Vector3d::Constant(1.0 / (kTiePosition_m * kTiePosition_m));
-  Eigen::VectorXd w(Layout::kMapError);
-  w << information, information;
+  const Eigen::VectorXd w = information.replicate<Layout::kMapNodes, 1>();
   problem.H.noalias() += rows.transpose() * w.asDiagonal() * rows;
 }
 

@@ -145,12 +145,10 @@ void WindowQuadratic::keep_field_only(std::size_t coefficients) {
   g_.head(begin) = field_g;
 }
 
-void WindowQuadratic::move_reference(const std::vector<Matrix6d>& changes,
-                                     const Eigen::Matrix<double, 12, 12>& map_change) {
+void WindowQuadratic::move_reference(const std::vector<Matrix6d>& changes, const Matrix6d& map_change) {
   // A^T Q A, the lower triangle, block by block
-  const Eigen::Index d = layout_.map_error();
-  const auto apply = [&](Eigen::Index at, const auto& A) {
-    constexpr int n = std::decay_t<decltype(A)>::RowsAtCompileTime;
+  const auto apply = [&](Eigen::Index at, const Matrix6d& A) {
+    constexpr int n = 6;
     for (Eigen::Index k = 0; k < at + n; ++k) {
       Q_.col(k).segment<n>(at) = (A.transpose() * Q_.col(k).segment<n>(at)).eval();
     }
@@ -158,7 +156,9 @@ void WindowQuadratic::move_reference(const std::vector<Matrix6d>& changes,
     below = below.lazyProduct(A).eval();
     g_.segment<n>(at) = (A.transpose() * g_.segment<n>(at)).eval();
   };
-  apply(d, map_change);
+  for (std::size_t j = 0; j < static_cast<std::size_t>(Layout::kMapNodes); ++j) {
+    apply(layout_.map_node(j), map_change);
+  }
   for (std::size_t k = 0; k < changes.size(); ++k) {
     apply(layout_.coefficient(k), changes[k]);
     if (layout_.vibrates) {
@@ -174,7 +174,7 @@ void WindowQuadratic::mix_map_error(double share, const Eigen::MatrixXd& J) {
   const Eigen::Index c = layout_.coefficient(0);
   const Eigen::Index n = J.cols();
   const double scale = 1.0 / (1.0 - share);
-  const Eigen::MatrixXd B = -share * scale * J;  // 12 x n
+  const Eigen::MatrixXd B = -share * scale * J;
   const Eigen::MatrixXd d_rows = Q_.middleRows(d, Layout::kMapError);
   const Eigen::VectorXd d_g = g_.segment(d, Layout::kMapError);
   Q_.middleRows(c, n) += B.transpose() * d_rows;

@@ -45,8 +45,8 @@ class WindowQuadratic {
   void keep_field_only(std::size_t coefficients);
 
   /// The reference pose moved: coefficients changed by d c_before = A d c_after, see SplineTrajectory::move_reference;
-  /// the map error is a rigid displacement about the reference, `to` in the old frame.
-  void move_reference(const std::vector<Matrix6d>& changes, const Eigen::Matrix<double, 12, 12>& map_change);
+  /// the map error at each node is a rigid displacement about the reference and changes by `map_change`.
+  void move_reference(const std::vector<Matrix6d>& changes, const Matrix6d& map_change);
 
   /// The map takes in a scan: map error' = (1 - share) map error + share J dc, with the error of the sweep J dc.
   void mix_map_error(double share, const Eigen::MatrixXd& J);

@@ -63,17 +63,19 @@ void expect_marginal(const WindowQuadratic& marginal, const std::vector<Index>& 
 
 TEST(Layout, PlacesTheUnknownsOneAfterTheOther) {
   const Layout layout{kField, 2};
+  const Index nodes = 6 * Layout::kMapNodes;
   EXPECT_EQ(layout.map_error(), 5);
-  EXPECT_EQ(layout.last_stamp(), 17);
-  EXPECT_EQ(layout.stamp(), 18);
-  EXPECT_EQ(layout.coefficient(0), 19);
-  EXPECT_EQ(layout.coefficient(1), 25);
-  EXPECT_EQ(layout.size(), 31);
+  EXPECT_EQ(layout.map_node(1), 11);
+  EXPECT_EQ(layout.last_stamp(), 5 + nodes);
+  EXPECT_EQ(layout.stamp(), 6 + nodes);
+  EXPECT_EQ(layout.coefficient(0), 7 + nodes);
+  EXPECT_EQ(layout.coefficient(1), 13 + nodes);
+  EXPECT_EQ(layout.size(), 19 + nodes);
   const Layout vibrating{kField, 2, true};
-  EXPECT_EQ(vibrating.coefficient(1), 25);
-  EXPECT_EQ(vibrating.vibration(0), 31);
-  EXPECT_EQ(vibrating.vibration(1), 37);
-  EXPECT_EQ(vibrating.size(), 43);
+  EXPECT_EQ(vibrating.coefficient(1), 13 + nodes);
+  EXPECT_EQ(vibrating.vibration(0), 19 + nodes);
+  EXPECT_EQ(vibrating.vibration(1), 25 + nodes);
+  EXPECT_EQ(vibrating.size(), 31 + nodes);
 }
 
 TEST(WindowQuadratic, KnowsNothingAtFirst) {
@@ -180,8 +182,10 @@ TEST(WindowQuadratic, MovingTheReferenceIsAChangeOfVariables) {
   const Layout& at = before.layout();
   std::vector<Matrix6d> changes;
   MatrixXd whole = MatrixXd::Identity(at.size(), at.size());  // d_before = whole d_after
-  const Eigen::Matrix<double, 12, 12> map_change = dense::random_matrix(random, 12, 12);
-  whole.block(at.map_error(), at.map_error(), 12, 12) = map_change;
+  const Matrix6d map_change = dense::random_matrix(random, 6, 6);
+  for (std::size_t node = 0; node < static_cast<std::size_t>(Layout::kMapNodes); ++node) {
+    whole.block<6, 6>(at.map_node(node), at.map_node(node)) = map_change;
+  }
   for (std::size_t k = 0; k < kCoefficients; ++k) {
     changes.emplace_back(dense::random_matrix(random, 6, 6));
     whole.block(at.coefficient(k), at.coefficient(k), 6, 6) = changes.back();
@@ -207,8 +211,8 @@ TEST(WindowQuadratic, MixingTheMapErrorIsAChangeOfVariables) {
     for (int k = 0; k < 10; ++k) {
       const VectorXd d = dense::random_matrix(random, at.size(), 1);
       VectorXd mixed = d;
-      mixed.segment(at.map_error(), 12) =
-          (1.0 - share) * d.segment(at.map_error(), 12) + share * J * d.segment(at.coefficient(0), J.cols());
+      mixed.segment(at.map_error(), Layout::kMapError) = (1.0 - share) * d.segment(at.map_error(), Layout::kMapError) +
+                                                         share * J * d.segment(at.coefficient(0), J.cols());
       const double expected = value(before, d);
       EXPECT_NEAR(value(quadratic, mixed), expected, 1e-10 * std::abs(expected) + 1e-9);
     }
