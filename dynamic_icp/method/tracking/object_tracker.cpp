@@ -130,10 +130,7 @@ void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radi
       box.size.head<2>().array() += 2.0 * expected.back().gate_m;
     }
   }
-  if (expected.empty()) {
-    return;
-  }
-  workers.for_each(scan.size(), kPointBlock, [&](std::size_t row) {
+  workers.for_each(expected.empty() ? 0 : scan.size(), kPointBlock, [&](std::size_t row) {
     const double time_s = scan.has_times() ? scan.times()[row] : 0.0;
     const Vector3d point = sensor.point_world(scan.points()[row], time_s);
     for (const Expectation& expectation : expected) {

@@ -21,16 +21,6 @@ constexpr std::size_t kInformativePatches = 50;  // and all patches together whe
 constexpr double kMinHeld = 1e-6;
 constexpr double kNoPointing = 1e-14;  // rad^2
 
-/// Of all nodes.
-template <typename Sums>
-typename Sums::value_type total(const Sums& sums) {
-  typename Sums::value_type sum = sums.front();
-  for (std::size_t j = 1; j < sums.size(); ++j) {
-    sum += sums[j];
-  }
-  return sum;
-}
-
 }  // namespace
 
 PlaneTerms::PlaneTerms(const Scan& points, const mapping::PlaneMap& map, double stamp_s, double slice_s,
@@ -100,8 +90,8 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
     const mapping::Plane& plane = row.patch->plane;
     const Eigen::Vector3d n = R_reference_map * plane.normal;
     row.m << in_reference.cross(n), n;
-    const double phase = plane.phase * static_cast<double>(kMapNodes - 1);
-    row.node = std::min(kMapNodes - 2, static_cast<std::size_t>(phase));
+    const double phase = plane.phase * static_cast<double>(PlaneSums::kMapNodes - 1);
+    row.node = std::min(PlaneSums::kMapNodes - 2, static_cast<std::size_t>(phase));
     row.beyond = phase - static_cast<double>(row.node);
     const auto before = map_error.segment<6>(6 * static_cast<Eigen::Index>(row.node));
     const auto after = map_error.segment<6>(6 * static_cast<Eigen::Index>(row.node + 1));
@@ -143,12 +133,7 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
 }
 
 void PlaneTerms::sum(Slice& slice) const {
-  slice.LL.fill(Matrix6d::Zero());
-  slice.LL_next.fill(Matrix6d::Zero());
-  slice.E.fill(Vector6d::Zero());
-  slice.P.fill(Pointing::Zero());
-  slice.PP.setZero();
-  slice.PE.setZero();
+  slice.sums.clear();
   slice.noise.setZero();
   slice.matched = 0.0;
   slice.squares = 0.0;
@@ -157,20 +142,7 @@ void PlaneTerms::sum(Slice& slice) const {
     if (row.w <= 0.0) {
       continue;
     }
-    const Vector6d wm = row.w * row.m;
-    const Matrix6d wmm = wm * row.m.transpose();
-    const double L = 1.0 - row.beyond;
-    const double L_next = row.beyond;
-    slice.LL[row.node] += (L * L) * wmm;
-    slice.LL_next[row.node] += (L * L_next) * wmm;
-    slice.LL[row.node + 1] += (L_next * L_next) * wmm;
-    slice.E[row.node] += (L * row.e) * wm;
-    slice.E[row.node + 1] += (L_next * row.e) * wm;
-    const Pointing wmJ = wm * row.J.transpose();
-    slice.P[row.node] += L * wmJ;
-    slice.P[row.node + 1] += L_next * wmJ;
-    slice.PP += row.w * row.J * row.J.transpose();
-    slice.PE += (row.w * row.e) * row.J;
+    slice.sums.add(row);
     const mapping::Plane& plane = row.patch->plane;
     slice.noise += (row.w * plane.variance / plane.points) * plane.tangential;
     const double robust = row.w * row.all;
@@ -179,32 +151,13 @@ void PlaneTerms::sum(Slice& slice) const {
   }
 }
 
-Matrix6d PlaneTerms::Slice::S(std::size_t node) const {
-  Matrix6d sum = LL[node];
-  if (node > 0) {
-    sum += LL_next[node - 1];
-  }
-  if (node + 1 < kMapNodes) {
-    sum += LL_next[node];
-  }
-  return sum;
-}
-
-Matrix6d PlaneTerms::Slice::S() const {
-  Matrix6d sum = LL.front();
-  for (std::size_t j = 1; j < kMapNodes; ++j) {
-    sum += LL[j] + 2.0 * LL_next[j - 1];
-  }
-  return sum;
-}
-
 /// Normals err, and along a direction that no surface faces the sum of w n n^T is their noise alone. The map, which
 /// moves with us, confirms any speed along it. There the map gets an offset of its own in each scan.
 void PlaneTerms::hold_directions(double max_noise_share) {
   Eigen::Matrix3d nn = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
   for (const Slice& slice : slices_) {
-    nn += slice.S().bottomRightCorner<3, 3>();
+    nn += slice.sums.S().bottomRightCorner<3, 3>();
     noise += slice.noise;
   }
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(nn);
@@ -222,11 +175,10 @@ void PlaneTerms::hold_directions(double max_noise_share) {
     common_information_(k, k) += in_axes(k, k) * held_[k] / (1.0 - held_[k]) + 1e-9;
   }
   for (const Slice& slice : slices_) {
-    const Pointing P = total(slice.P);
-    const Eigen::Matrix<double, 2, 3> coupling = P.bottomRows<3>().transpose() * axes_;
+    const Eigen::Matrix<double, 2, 3> coupling = slice.sums.P().bottomRows<3>().transpose() * axes_;
     common_information_.bottomLeftCorner<2, 3>() += coupling;
     common_information_.topRightCorner<3, 2>() += coupling.transpose();
-    common_information_.bottomRightCorner<2, 2>() += slice.PP;
+    common_information_.bottomRightCorner<2, 2>() += slice.sums.PP();
   }
   common_information_.diagonal().tail<2>().array() += pointing_variance_.array().max(kNoPointing).inverse();
 }
@@ -255,8 +207,8 @@ Vector6d along_motion(const TrajectoryPoint& at) {
 /// The terms of one slice, had map and pointing no error of their own.
 void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) {
   const Matrix6d M = by_coefficients(slice.at);
-  const Matrix6d S = slice.S();
-  const Vector6d E = total(slice.E);
+  const Matrix6d S = slice.sums.S();
+  const Vector6d E = slice.sums.E();
   const Matrix6d MSM = M * S * M.transpose();
   const Vector6d ME = M * E;
   const Vector6d along = along_motion(slice.at);
@@ -274,15 +226,15 @@ void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::Matr
     H.block<6, 1>(row, stamp) += wi * M_along;
     g.segment<6>(row) += wi * ME;
   }
-  for (std::size_t j = 0; j < kMapNodes; ++j) {
-    const Matrix6d S_node = slice.S(j);
+  for (std::size_t j = 0; j < PlaneSums::kMapNodes; ++j) {
+    const Matrix6d S_node = slice.sums.S(j);
     const Matrix6d MS_node = M * S_node;
     const Eigen::Index d = layout.map_node(j);
-    H.block<6, 6>(d, d) += slice.LL[j];
-    if (j + 1 < kMapNodes) {
-      H.block<6, 6>(layout.map_node(j + 1), d) += slice.LL_next[j];
+    H.block<6, 6>(d, d) += slice.sums.LL(j);
+    if (j + 1 < PlaneSums::kMapNodes) {
+      H.block<6, 6>(layout.map_node(j + 1), d) += slice.sums.LL_next(j);
     }
-    g.segment<6>(d) -= slice.E[j];
+    g.segment<6>(d) -= slice.sums.E(j);
     H.block<1, 6>(stamp, d) -= (S_node * along).transpose();
     for (std::size_t i = 0; i < 4; ++i) {
       H.block<6, 6>(layout.coefficient(slice.at.first + i), d) -= slice.at.weight[i] * MS_node;
@@ -298,9 +250,9 @@ PlaneTerms::Common PlaneTerms::common(const Layout& layout) const {
       continue;
     }
     ByCommon all = ByCommon::Zero();
-    for (std::size_t j = 0; j < kMapNodes; ++j) {
+    for (std::size_t j = 0; j < PlaneSums::kMapNodes; ++j) {
       ByCommon of_node;
-      of_node << slice.S(j).rightCols<3>() * axes_, slice.P[j];
+      of_node << slice.sums.S(j).rightCols<3>() * axes_, slice.sums.P(j);
       common.U.middleRows<6>(layout.map_node(j)) -= of_node;
       all += of_node;
     }
@@ -309,8 +261,8 @@ PlaneTerms::Common PlaneTerms::common(const Layout& layout) const {
       common.U.middleRows<6>(layout.coefficient(slice.at.first + i)) += slice.at.weight[i] * of_coefficients;
     }
     common.U.row(layout.stamp()) += along_motion(slice.at).transpose() * all;
-    common.gradient.head<3>() += axes_.transpose() * total(slice.E).tail<3>();
-    common.gradient.tail<2>() += slice.PE;
+    common.gradient.head<3>() += axes_.transpose() * slice.sums.E().tail<3>();
+    common.gradient.tail<2>() += slice.sums.PE();
   }
   return common;
 }
@@ -362,8 +314,8 @@ PlaneQuality PlaneTerms::quality() const {
     result.on_planes += slice.on_planes;
     result.matched += slice.matched;
     squares += slice.squares;
-    S += slice.S();
-    E += total(slice.E);
+    S += slice.sums.S();
+    E += slice.sums.E();
   }
   result.rms_m = result.matched > 0.0 ? std::sqrt(squares / result.matched) : 0.0;
   const Vector6d rigid = (S + 1e-6 * Matrix6d::Identity()).ldlt().solve(E);

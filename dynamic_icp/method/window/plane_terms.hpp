@@ -14,6 +14,7 @@
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/mapping/plane_map.hpp"
 #include "dynamic_icp/method/window/doppler_terms.hpp"
+#include "dynamic_icp/method/window/plane_sums.hpp"
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
 
 namespace dynamic_icp::window {
@@ -85,39 +86,22 @@ class PlaneTerms {
  private:
   using Vector5d = Eigen::Matrix<double, 5, 1>;
   using Matrix5d = Eigen::Matrix<double, 5, 5>;
-  static constexpr auto kMapNodes = static_cast<std::size_t>(Layout::kMapNodes);
-  struct Row {
-    Vector6d m = Vector6d::Zero();  ///< [X x n; n], reference frame
-    double e = 0.0;                 ///< m
-    double own = 0.0;               ///< m^2, of the point
-    double in_common = 0.0;         ///< m^2, of all points on its patch
-    double all = 0.0;               ///< m^2, as one of these points
-    std::size_t node = 0;           ///< of the map's error, at the phase of the patch or before
-    double beyond = 0.0;            ///< its distance from there, as a share of that between nodes
-    double w = 0.0;
-    Eigen::Vector2d J = Eigen::Vector2d::Zero();  ///< of the residual by azimuth and elevation, m/rad
+  struct Row : PlaneRow {
+    double own = 0.0;        ///< m^2, of the point
+    double in_common = 0.0;  ///< m^2, of all points on its patch
+    double all = 0.0;        ///< m^2, as one of these points
     const mapping::Patch* patch = nullptr;
   };
-  using Pointing = Eigen::Matrix<double, 6, 2>;
   struct Slice {
     std::size_t begin = 0;
     std::size_t end = 0;
     double time_s = 0.0;  ///< its middle
     TrajectoryPoint at;
-    // With L the share of a node of the map's error in that of the patch.
-    std::array<Matrix6d, kMapNodes> LL;               ///< sum of w L^2 m m^T of each node
-    std::array<Matrix6d, kMapNodes - 1> LL_next;      ///< and of w L L_next m m^T with the next one
-    std::array<Vector6d, kMapNodes> E;                ///< sum of w L e m
-    std::array<Pointing, kMapNodes> P;                ///< sum of w L m J^T, J of azimuth and elevation
-    Eigen::Matrix2d PP = Eigen::Matrix2d::Zero();     ///< sum of w J J^T
-    Eigen::Vector2d PE = Eigen::Vector2d::Zero();     ///< sum of w e J
+    PlaneSums sums;
     Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();  ///< sum of w Sigma_n
     double matched = 0.0;
     double squares = 0.0;
     std::size_t on_planes = 0;
-
-    [[nodiscard]] Matrix6d S(std::size_t node) const;  ///< sum of w L m m^T
-    [[nodiscard]] Matrix6d S() const;                  ///< sum of w m m^T
   };
 
   void place(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
