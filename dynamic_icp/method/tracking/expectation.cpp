@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Geometry>
+
 namespace dynamic_icp::tracking {
 namespace {
 
@@ -24,14 +26,27 @@ struct Hit {
   Vector3d direction_world;
 };
 
-}  // namespace
-
 OrientedBox above_ground(OrientedBox box) {
   const double clearance = std::min(kGroundClearance_m, kGroundShare * box.size.z());
   box.size.z() -= clearance;
   box.centre.z() += 0.5 * clearance;
   return box;
 }
+
+/// The points of a few rows, which are seen near each other more often than not, and the box around them.
+struct Block {
+  std::vector<Vector3d> points;  ///< m, world
+  Eigen::AlignedBox3d around;
+  double latest_s = 0.0;  ///< time after the stamp, absolute
+
+  void add(const Vector3d& point, double time_s) {
+    points.push_back(point);
+    around.extend(point);
+    latest_s = std::max(latest_s, std::abs(time_s));
+  }
+};
+
+}  // namespace
 
 Expectation::Expectation(const Track& predicted, const SensorMotion& sensor, const TrackerConfig& config)
     : box(predicted.box()), velocity(predicted.motion().velocity()) {
@@ -102,6 +117,35 @@ void visit_static_points(const TrackingInput& input, std::span<const Expectation
       visit(hit.expectation, hit.row, hit.direction_world);
     }
   }
+}
+
+void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
+               std::span<const Expectation> expectations, const Workers& workers,
+               std::vector<std::uint8_t>& is_moving) {
+  const auto time_of = [&](std::size_t row) { return scan.has_times() ? scan.times()[row] : 0.0; };
+  workers.for_blocks(
+      expectations.empty() ? 0 : scan.size(), kPointBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+        Block block;
+        for (std::size_t row = begin; row < end; ++row) {
+          block.add(sensor.point_world(scan.points()[row], time_of(row)), time_of(row));
+        }
+        for (const Expectation& expected : expectations) {
+          OrientedBox box = above_ground(expected.box);
+          box.size.head<2>().array() += 2.0 * expected.gate_m;
+          const double reach = 0.5 * box.size.norm();
+          if (block.around.exteriorDistance(box.centre) > reach + block.latest_s * expected.velocity.norm()) {
+            continue;
+          }
+          for (std::size_t row = begin; row < end; ++row) {
+            const double time_s = time_of(row);
+            const Vector3d point = block.points[row - begin] - time_s * expected.velocity;
+            if ((point - box.centre).squaredNorm() < reach * reach && distance_outside(box, point) <= 0.0 &&
+                expected.gate_ratio(sensor.direction_world(scan.directions()[row], time_s), radial[row]) < 1.0) {
+              is_moving[row] = 1;
+            }
+          }
+        }
+      });
 }
 
 }  // namespace dynamic_icp::tracking

@@ -43,9 +43,6 @@ struct Expectation {
   [[nodiscard]] bool may_appear_static(const Eigen::Vector3d& sensor_world, double slow_mps) const;
 };
 
-/// The box without its lowest part, where the ground may be.
-OrientedBox above_ground(OrientedBox box);
-
 /// One scan, prepared for tracking.
 struct TrackingInput {
   const Scan& scan;
@@ -64,9 +61,14 @@ struct TrackingInput {
 /// Called with the number of an expectation, a row, and the row's line of sight in world axes.
 using StaticVisitor = std::function<void(std::size_t expectation, std::uint32_t row, const Eigen::Vector3d& direction)>;
 
-/// Visits each point that is not among the moving ones in the box of each expectation above the ground. In the order
-/// of the rows.
+/// Visits each point that is not among the moving ones in the box of each expectation, without the lowest part of the
+/// box, where the ground may be. In the order of the rows.
 void visit_static_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,
                          const StaticVisitor& visit);
+
+/// Sets `is_moving` of the rows of a scan that is not deskewed that an expectation may take for its own: in its box,
+/// without the lowest part but with its gate around, and with the radial velocity that it expects.
+void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
+               std::span<const Expectation> expectations, const Workers& workers, std::vector<std::uint8_t>& is_moving);
 
 }  // namespace dynamic_icp::tracking

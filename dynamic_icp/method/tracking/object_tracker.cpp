@@ -125,23 +125,9 @@ void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radi
       Track predicted = entry.track;
       predicted.predict(seconds_between(*first_stamp_, scan.stamp()), config_.track);
       expected.emplace_back(predicted, sensor, config_);
-      OrientedBox& box = expected.back().box;
-      box = above_ground(box);
-      box.size.head<2>().array() += 2.0 * expected.back().gate_m;
     }
   }
-  workers.for_each(expected.empty() ? 0 : scan.size(), kPointBlock, [&](std::size_t row) {
-    const double time_s = scan.has_times() ? scan.times()[row] : 0.0;
-    const Vector3d point = sensor.point_world(scan.points()[row], time_s);
-    for (const Expectation& expectation : expected) {
-      const double reach = 0.5 * expectation.box.size.norm();
-      if ((point - time_s * expectation.velocity - expectation.box.centre).squaredNorm() < reach * reach &&
-          expectation.outside(point, time_s) <= 0.0 &&
-          expectation.gate_ratio(sensor.direction_world(scan.directions()[row], time_s), radial[row]) < 1.0) {
-        is_moving[row] = 1;
-      }
-    }
-  });
+  flag_rows(scan, radial, sensor, expected, workers, is_moving);
 }
 
 /// Gives each cell to the track whose box and velocity fit it best.
