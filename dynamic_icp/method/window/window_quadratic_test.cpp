@@ -80,8 +80,9 @@ TEST(Layout, PlacesTheUnknownsOneAfterTheOther) {
 
 TEST(WindowQuadratic, KnowsNothingAtFirst) {
   const WindowQuadratic quadratic(kField, kCoefficients, true);
-  EXPECT_EQ(quadratic.Q(), MatrixXd::Zero(67, 67));
-  EXPECT_EQ(quadratic.g(), VectorXd::Zero(67));
+  const Index size = kField + Layout::kMapError + Layout::kStamps + 2 * 6 * static_cast<Index>(kCoefficients);
+  EXPECT_EQ(quadratic.Q(), MatrixXd::Zero(size, size));
+  EXPECT_EQ(quadratic.g(), VectorXd::Zero(size));
 }
 
 TEST(WindowQuadratic, NewCoefficientsAreUnknown) {
