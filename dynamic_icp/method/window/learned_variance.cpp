@@ -3,7 +3,6 @@
 #include "dynamic_icp/method/window/learned_variance.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 namespace dynamic_icp::window {
 namespace {
