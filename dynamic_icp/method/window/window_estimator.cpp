@@ -176,7 +176,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   find_twist();
   ++scans_;
   ++scans_ever_;
-  const double share = motion.planes.share;
+  const double share = motion.planes.share;  // the map takes this sweep in
   quadratic_->mix_map_error(share, sweep_rows(stamp_s() + begin_s_, stamp_s() + end_s_, layout()));
   map_error_ *= 1.0 - share;
   walk_field();
