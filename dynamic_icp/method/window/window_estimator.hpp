@@ -163,7 +163,7 @@ class WindowEstimator {
   void learn_pointing(const PlaneTerms& planes);
   void learn_roughness(const PlaneQuality& planes);
   void learn_cell_variance(const Workers& workers);
-  void walk_field();
+  void walk_field(double distance_m);
 
   // window_calibration.cpp
   void check_calibration(std::size_t faces) const;

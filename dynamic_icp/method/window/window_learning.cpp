@@ -16,10 +16,13 @@ constexpr double kMinCellVariance = 1e-6;
 constexpr double kMaxCellVariance = 0.1;
 constexpr double kMinModelSigma_m = 1e-3;
 
-// The field walks by this share of its scale in so many scans; its velocity-like part in each.
+// The field walks by this share of its scale in so many scans.
 constexpr int kWalkPeriod = 5;
 constexpr double kWalkShare = 0.03;
+
+// Its velocity-like part walks in each scan, and by a share of its scale with the distance driven.
 constexpr double kVelocityWalk_mps = 0.002;
+constexpr double kVelocityWalkShare_1_m = 0.2;
 
 // Where a whole scan points looks like a rotation and confirms itself: it is never taken for larger.
 constexpr double kStartPointing_rad = 3e-5;
@@ -118,8 +121,8 @@ void WindowEstimator::learn_cell_variance(const Workers& workers) {
 }
 
 /// The error of a sensor drifts. Its velocity-like part changes with the scene, too, and what planes say of it errs
-/// alike scan after scan: they tell of the last seconds only.
-void WindowEstimator::walk_field() {
+/// alike while the same surfaces are in view: what they told counts less with the distance driven.
+void WindowEstimator::walk_field(double distance_m) {
   if (!config_.learn_field) {
     return;
   }
@@ -128,7 +131,8 @@ void WindowEstimator::walk_field() {
     if (!is_velocity && scans_ever_ % kWalkPeriod != 0) {
       continue;
     }
-    const double sigma = is_velocity ? kVelocityWalk_mps : kWalkShare * group.tau;
+    const double sigma = is_velocity ? std::hypot(kVelocityWalk_mps, kVelocityWalkShare_1_m * distance_m * group.tau)
+                                     : kWalkShare * group.tau;
     quadratic_->walk_field(static_cast<Eigen::Index>(group.begin), sigma * sigma * group.K);
   }
 }
