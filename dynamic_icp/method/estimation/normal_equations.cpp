@@ -31,15 +31,18 @@ NormalEquations& NormalEquations::operator+=(const NormalEquations& other) {
   return *this;
 }
 
+SymmetricEigen symmetric_eigen(const Matrix6d& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(matrix);
+  return {eigen.eigenvalues(), eigen.eigenvectors()};
+}
+
 Solution solve(const NormalEquations& equations, double length_m, double rank_tolerance) {
   Vector6d scale = Vector6d::Ones();
   scale.head<3>().setConstant(1.0 / length_m);
   Matrix6d scaled = equations.H.selfadjointView<Eigen::Lower>();
   scaled = scale.asDiagonal() * scaled * scale.asDiagonal();
 
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(scaled);
-  const Vector6d& values = eigen.eigenvalues();
-  const Matrix6d& vectors = eigen.eigenvectors();
+  const auto [values, vectors] = symmetric_eigen(scaled);
   const double largest = values[5];
   Solution solution;
   solution.information_ratio = largest > 0.0 ? std::max(0.0, values[0]) / largest : 0.0;

@@ -26,6 +26,14 @@ struct NormalEquations {
   NormalEquations& operator+=(const NormalEquations& other);
 };
 
+/// Eigenvalues of a symmetric matrix, ascending, and its eigenvectors as columns.
+struct SymmetricEigen {
+  Vector6d values;
+  Matrix6d vectors;
+};
+
+SymmetricEigen symmetric_eigen(const Matrix6d& matrix);
+
 /// One direction of motion that the measurements do not constrain.
 struct DegenerateDirection {
   Vector6d direction = Vector6d::Zero();  ///< unit vector [omega * length_m; rho], all in metres

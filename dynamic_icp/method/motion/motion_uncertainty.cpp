@@ -4,8 +4,6 @@
 
 #include <algorithm>
 
-#include <Eigen/Eigenvalues>
-
 namespace dynamic_icp::motion {
 namespace {
 
@@ -20,16 +18,16 @@ Matrix6d in_metres(const Matrix6d& covariance, double length_m) {
 
 std::vector<estimation::DegenerateDirection> unobservable_directions(const Matrix6d& covariance, double length_m,
                                                                      double deviation_m) {
-  const Eigen::SelfAdjointEigenSolver<Matrix6d> eigen(in_metres(covariance, length_m));
+  const auto [values, vectors] = estimation::symmetric_eigen(in_metres(covariance, length_m));
   std::vector<estimation::DegenerateDirection> unknown;
-  for (int k = 5; k >= 0 && eigen.eigenvalues()[k] > deviation_m * deviation_m; --k) {
-    unknown.push_back({eigen.eigenvectors().col(k), std::max(0.0, eigen.eigenvalues()[0]) / eigen.eigenvalues()[k]});
+  for (int k = 5; k >= 0 && values[k] > deviation_m * deviation_m; --k) {
+    unknown.push_back({vectors.col(k), std::max(0.0, values[0]) / values[k]});
   }
   return unknown;
 }
 
 double information_ratio(const Matrix6d& covariance, double length_m) {
-  const Vector6d values = in_metres(covariance, length_m).selfadjointView<Eigen::Lower>().eigenvalues();
+  const Vector6d values = estimation::symmetric_eigen(in_metres(covariance, length_m)).values;
   return values[5] > 0.0 ? std::max(0.0, values[0]) / values[5] : 0.0;
 }
 

@@ -115,10 +115,11 @@ std::string cure_in_words(const Offset& off) {
   const double left = std::abs(off.left_rad) > off.left_limit_rad ? off.left_rad : 0.0;
   const double up = std::abs(off.up_rad) > off.up_limit_rad ? off.up_rad : 0.0;
   const Eigen::Vector3d seen(std::cos(up) * std::cos(left), std::cos(up) * std::sin(left), std::sin(up));
-  const Eigen::AngleAxisd cure(Eigen::Quaterniond::FromTwoVectors(seen, Eigen::Vector3d::UnitX()));
-  const Eigen::Vector3d axis = off.axes * cure.axis();
+  const Eigen::Vector3d normal = seen.cross(Eigen::Vector3d::UnitX());
+  const double angle_rad = std::atan2(normal.norm(), seen.x());
+  const Eigen::Vector3d axis = off.axes * normal.normalized();
   return fmt::format("rotating its mounting by {:.1f} degrees about ({:.2f}, {:.2f}, {:.2f}) in the axes of the scan",
-                     cure.angle() / kDegree, axis.x(), axis.y(), axis.z());
+                     angle_rad / kDegree, axis.x(), axis.y(), axis.z());
 }
 
 std::string sensor_in_words(const std::vector<RigLook>& rig_looks, const Judgement& judgement, std::size_t k,

@@ -4,14 +4,14 @@
 
 #include <cmath>
 
-#include <Eigen/SVD>
+#include <Eigen/Eigenvalues>
 
 namespace dynamic_icp::evaluation {
 namespace {
 
 // Positions closer together than this are one point: far below what any trajectory file resolves.
 constexpr double kPointSpreadM = 1e-9;
-// Relative size of a singular value that is rounding only.
+// Relative size of an eigenvalue that is rounding only.
 constexpr double kSingular = 1e-12;
 
 using Positions = Eigen::Matrix3Xd;
@@ -24,40 +24,46 @@ Positions positions_of(const formats::Trajectory& trajectory) {
   return positions;
 }
 
+/// The symmetric matrix N of Horn: a unit quaternion q of a rotation R has q^T N q = sum y^T R x / n.
+Eigen::Matrix4d horn_matrix(const Positions& x, const Positions& y) {
+  const Eigen::Matrix3d S = x * y.transpose() / static_cast<double>(x.cols());
+  const Eigen::Vector3d z(S(1, 2) - S(2, 1), S(2, 0) - S(0, 2), S(0, 1) - S(1, 0));
+  Eigen::Matrix4d N;
+  N << S.trace(), z.transpose(), z, S + S.transpose() - S.trace() * Eigen::Matrix3d::Identity();
+  return N;
+}
+
 /// Rotation and scale of the best alignment of centred positions x (estimate) with y (reference), into `result`.
-/// `R_first` takes the first estimated orientation to the first reference orientation.
+/// `R_first` takes the first estimated orientation to the first reference orientation; where several rotations are
+/// best, the one next to it is taken.
 void fit_rotation(const Positions& x, const Positions& y, const Eigen::Matrix3d& R_first, AbsoluteError& result) {
   const auto n = static_cast<double>(x.cols());
   const double spread_x = std::sqrt(x.squaredNorm() / n);
   const double spread_y = std::sqrt(y.squaredNorm() / n);
-  const Eigen::JacobiSVD<Eigen::Matrix3d> svd(y * x.transpose() / n, Eigen::ComputeFullU | Eigen::ComputeFullV);
-  const Eigen::Vector3d d = svd.singularValues();
-  const Eigen::Matrix3d& U = svd.matrixU();
-  const Eigen::Matrix3d& V = svd.matrixV();
-  const double sign = U.determinant() * V.determinant() < 0.0 ? -1.0 : 1.0;
-
-  if (spread_x <= kPointSpreadM || spread_y <= kPointSpreadM || d[0] <= kSingular * spread_x * spread_y) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d> eigen(horn_matrix(x, y));
+  const Eigen::Vector4d& values = eigen.eigenvalues();
+  if (spread_x <= kPointSpreadM || spread_y <= kPointSpreadM || values[3] <= kSingular * spread_x * spread_y) {
     result.status = AlignmentStatus::kPoint;
     result.T_reference_estimate.linear() = R_first;
     return;
   }
-  // A turn in the plane of two axes changes the sum of squares by their singular values' (signed) sum: where the
-  // smallest such sum vanishes, the turn is free.
-  if (d[1] + sign * d[2] <= kSingular * d[0]) {
+  Eigen::Vector4d q = eigen.eigenvectors().col(3);
+  result.status = AlignmentStatus::kUnique;
+  if (values[3] - values[2] <= kSingular * (values[3] + values[2])) {
+    // A turn about a line is free: of the quaternions that are best, the one next to that of R_first.
     result.status = AlignmentStatus::kLine;
-    const Eigen::Vector3d line = R_first * V.col(0);
-    result.T_reference_estimate.linear() =
-        Eigen::Quaterniond::FromTwoVectors(line, U.col(0)).toRotationMatrix() * R_first;
-  } else {
-    result.status = AlignmentStatus::kUnique;
-    result.T_reference_estimate.linear() = U * Eigen::Vector3d(1.0, 1.0, sign).asDiagonal() * V.transpose();
+    const Eigen::Quaterniond first(R_first);
+    const auto best = eigen.eigenvectors().rightCols<2>();
+    const Eigen::Vector4d next = best * (best.transpose() * Eigen::Vector4d(first.w(), first.x(), first.y(), first.z()));
+    q = next.norm() > kSingular ? next.normalized() : q;
   }
+  result.T_reference_estimate.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
   if (result.alignment == Alignment::kSim3) {
-    result.scale = (d[0] + d[1] + sign * d[2]) / (spread_x * spread_x);
+    result.scale = values[3] / (spread_x * spread_x);
   }
 }
 
-/// The closed form of Umeyama: least squares over rotation, translation and (kSim3) scale.
+/// Closed form (Horn): least squares over rotation, translation and (kSim3) scale.
 void fit_positions(const Positions& x, const Positions& y, const Eigen::Matrix3d& R_first, AbsoluteError& result) {
   const Eigen::Vector3d mean_x = x.rowwise().mean();
   const Eigen::Vector3d mean_y = y.rowwise().mean();

@@ -40,7 +40,7 @@ struct AbsoluteError {
 };
 
 /// The absolute trajectory error: distances between matched positions after the alignment, which is found in closed
-/// form (Umeyama 1991). Where the best alignment is not unique, the RMSE is that of all the best ones, and the rotation
+/// form (Horn 1987). Where the best alignment is not unique, the RMSE is that of all the best ones, and the rotation
 /// that is free comes from the orientations of the first matched poses, so that the answer is always the same one.
 /// A single pose has no error left after an alignment: there is no statistic then.
 AbsoluteError absolute_error(const Association& matched, Alignment alignment = Alignment::kSe3);
