@@ -54,7 +54,8 @@ void fit_rotation(const Positions& x, const Positions& y, const Eigen::Matrix3d&
     result.status = AlignmentStatus::kLine;
     const Eigen::Quaterniond first(R_first);
     const auto best = eigen.eigenvectors().rightCols<2>();
-    const Eigen::Vector4d next = best * (best.transpose() * Eigen::Vector4d(first.w(), first.x(), first.y(), first.z()));
+    const Eigen::Vector4d next =
+        best * (best.transpose() * Eigen::Vector4d(first.w(), first.x(), first.y(), first.z()));
     q = next.norm() > kSingular ? next.normalized() : q;
   }
   result.T_reference_estimate.linear() = Eigen::Quaterniond(q[0], q[1], q[2], q[3]).toRotationMatrix();
