@@ -13,6 +13,10 @@ constexpr double kMemory = 0.87;
 // One scan changes a variance by no more than this.
 constexpr double kMaxChange = 8.0;
 
+// Of a change that the data know less of than this share nothing is learned: what they say is their own errors, and a
+// variance that grows by them lets them say more.
+constexpr double kLeastKnown = 0.02;
+
 }  // namespace
 
 LearnedVariance::LearnedVariance(const Prior& prior)
@@ -36,6 +40,11 @@ double LearnedVariance::propose_change(double change, double posterior_variance,
                                        double prior_variance) {
   // With the share k that the data know of the change, it is k times what they measured, and the rest was expected.
   const double known = std::clamp(1.0 - posterior_variance / prior_variance, 0.0, 1.0);
+  if (known < kLeastKnown) {
+    next_squares_ = squares_;
+    next_counts_ = counts_;
+    return 0.0;
+  }
   const double measured = change - (1.0 - known) * expected;
   next_squares_ = kMemory * squares_ + 0.5 * (measured * measured - prior_variance * known * (1.0 - known));
   next_counts_ = kMemory * counts_ + known * known;

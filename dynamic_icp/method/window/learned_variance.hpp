@@ -25,7 +25,8 @@ class LearnedVariance {
   double propose(double estimate, double posterior_variance);
 
   /// The same from the change x_1 - x_0 of one unknown to the next, of variance 2 q, where the unknowns may drift
-  /// together. `expected` and `prior_variance` are mean and variance of the change before the scan was seen.
+  /// together. `expected` and `prior_variance` are mean and variance of the change before the scan was seen. A change
+  /// that the data hardly know teaches nothing.
   double propose_change(double change, double posterior_variance, double expected, double prior_variance);
 
   /// The evidence of the last `propose` becomes part of the past.

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/window/learned_variance.hpp"
 
+#include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
@@ -71,6 +72,17 @@ TEST(LearnedVariance, ChangesTellOfUnknownsThatDriftTogether) {
     EXPECT_GT(mean, 0.6 * kSigma * kSigma) << drift;
     EXPECT_LT(mean, 1.7 * kSigma * kSigma) << drift;
   }
+}
+
+/// In a tunnel planes claim to know a hundredth of a stamp along the motion, and are off by more than they claim.
+TEST(LearnedVariance, LearnsNothingOfAChangeThatIsNotSeen) {
+  LearnedVariance variance({.sigma = 1.0, .counts = 2.0, .min_sigma = 0.1, .max_sigma = 30.0});
+  for (int k = 0; k < 100; ++k) {
+    const double prior = 2.0 * variance.value();
+    EXPECT_EQ(variance.propose_change(0.3 * std::sqrt(prior), 0.99 * prior, 0.0, prior), 0.0);
+    variance.keep();
+  }
+  EXPECT_DOUBLE_EQ(variance.value(), 1.0);
 }
 
 TEST(LearnedVariance, ABetterEstimateReplacesTheOneBefore) {

@@ -22,7 +22,7 @@ constexpr double kWalkShare = 0.03;
 
 // Its velocity-like part walks in each scan, and by a share of its scale with the distance driven.
 constexpr double kVelocityWalk_mps = 0.002;
-constexpr double kVelocityWalkShare_1_m = 0.2;
+constexpr double kVelocityWalkShare_1_m = 0.1;
 
 // Where a whole scan points looks like a rotation and confirms itself: it is never taken for larger.
 constexpr double kStartPointing_rad = 3e-5;
@@ -121,18 +121,19 @@ void WindowEstimator::learn_cell_variance(const Workers& workers) {
 }
 
 /// The error of a sensor drifts. Its velocity-like part changes with the scene, too, and what planes say of it errs
-/// alike while the same surfaces are in view: what they told counts less with the distance driven.
+/// alike while the same surfaces are in view: what they told counts less with the distance driven. A calibration was
+/// learned among others and stays.
 void WindowEstimator::walk_field(double distance_m) {
   if (!config_.learn_field) {
     return;
   }
+  const double share = is_calibrated_ ? 0.0 : kVelocityWalkShare_1_m * distance_m;
   for (const DopplerErrorField::Group& group : field_->groups()) {
     const bool is_velocity = group.name == "velocity";
     if (!is_velocity && scans_ever_ % kWalkPeriod != 0) {
       continue;
     }
-    const double sigma = is_velocity ? std::hypot(kVelocityWalk_mps, kVelocityWalkShare_1_m * distance_m * group.tau)
-                                     : kWalkShare * group.tau;
+    const double sigma = is_velocity ? std::hypot(kVelocityWalk_mps, share * group.tau) : kWalkShare * group.tau;
     quadratic_->walk_field(static_cast<Eigen::Index>(group.begin), sigma * sigma * group.K);
   }
 }
