@@ -6,9 +6,9 @@
 #include <cmath>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Eigenvalues>
 
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/estimation/normal_equations.hpp"
 #include "dynamic_icp/method/mapping/patch_scatter.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/window/measured_angles.hpp"
@@ -20,6 +20,7 @@ constexpr std::uint32_t kInformativePoints = 5;  // a patch tells of itself with
 constexpr std::size_t kInformativePatches = 50;  // and all patches together when there are so many
 constexpr double kMinHeld = 1e-6;
 constexpr double kNoPointing = 1e-14;  // rad^2
+constexpr double kNoInformation = 1e-6;  // 1/rad^2 and 1/m^2
 
 }  // namespace
 
@@ -90,6 +91,7 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
     const mapping::Plane& plane = row.patch->plane;
     const Eigen::Vector3d n = R_reference_map * plane.normal;
     row.m << in_reference.cross(n), n;
+    row.lever = in_map - T_map_reference.translation();
     const double phase = plane.phase * static_cast<double>(PlaneSums::kMapNodes - 1);
     row.node = std::min(PlaneSums::kMapNodes - 2, static_cast<std::size_t>(phase));
     row.beyond = phase - static_cast<double>(row.node);
@@ -129,7 +131,7 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
     }
     sum(slice);
   });
-  hold_directions(noise.max_noise_share);
+  hold_motions(noise.max_noise_share);
 }
 
 void PlaneTerms::sum(Slice& slice) const {
@@ -144,40 +146,43 @@ void PlaneTerms::sum(Slice& slice) const {
     }
     slice.sums.add(row);
     const mapping::Plane& plane = row.patch->plane;
-    slice.noise += (row.w * plane.variance / plane.points) * plane.tangential;
+    const Eigen::Matrix3d noise = (row.w * plane.variance / plane.points) * plane.tangential;
+    const Eigen::Matrix3d turned = skew(row.lever) * noise;  // m = [X x n; n]
+    slice.noise.topLeftCorner<3, 3>() += turned * skew(row.lever).transpose();
+    slice.noise.topRightCorner<3, 3>() += turned;
+    slice.noise.bottomRightCorner<3, 3>() += noise;
     const double robust = row.w * row.all;
     slice.matched += robust;
     slice.squares += robust * row.e * row.e;
   }
 }
 
-/// Normals err, and along a direction that no surface faces the sum of w n n^T is their noise alone. The map, which
-/// moves with us, confirms any speed along it. There the map gets an offset of its own in each scan.
-void PlaneTerms::hold_directions(double max_noise_share) {
-  Eigen::Matrix3d nn = Eigen::Matrix3d::Zero();
-  Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();
+/// Normals err, and of a motion along which no surface lies across, as along a tunnel or around it, the sum of w m m^T
+/// is their noise alone. The map, which moves with us, confirms any speed of it, or none. The principal motions are
+/// those that have most and least of that noise in their information; of one that has too much the map has a
+/// displacement of its own in each scan.
+void PlaneTerms::hold_motions(double max_noise_share) {
+  Matrix6d information = kNoInformation * Matrix6d::Identity();
+  Matrix6d noise = Matrix6d::Zero();
   for (const Slice& slice : slices_) {
-    nn += slice.sums.S().bottomRightCorner<3, 3>();
+    information += slice.sums.S();
     noise += slice.noise;
   }
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> parts(nn);
-  axes_ = parts.eigenvectors();
-  const Eigen::Matrix3d in_axes = axes_.transpose() * nn * axes_;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    const Eigen::Vector3d axis = R_map_reference_ * axes_.col(k);
-    const double by_noise = axis.dot(noise * axis);
-    const double share = by_noise / std::max(1e-9, in_axes(k, k));
-    held_[k] = std::clamp(1.0 - share / max_noise_share, kMinHeld, 1.0 - 1e-9);
-  }
+  noise.bottomLeftCorner<3, 3>() = noise.topRightCorner<3, 3>().transpose();
+  Matrix6d to_map = Matrix6d::Zero();
+  to_map.topLeftCorner<3, 3>() = R_map_reference_;
+  to_map.bottomRightCorner<3, 3>() = R_map_reference_;
+  const Eigen::LLT<Matrix6d> root(information);
+  const Matrix6d whiten = root.matrixL().solve(Matrix6d(to_map.transpose()));
+  const estimation::SymmetricEigen shares = estimation::symmetric_eigen(whiten * noise * whiten.transpose());
+  motions_ = root.matrixU().solve(shares.vectors);
+  held_ = (1.0 - shares.values.array() / max_noise_share).max(kMinHeld).min(1.0 - 1e-9);
   common_information_.setZero();
-  common_information_.topLeftCorner<3, 3>() = in_axes;
-  for (Eigen::Index k = 0; k < 3; ++k) {
-    common_information_(k, k) += in_axes(k, k) * held_[k] / (1.0 - held_[k]) + 1e-9;
-  }
+  common_information_.diagonal().head<6>() = (1.0 - held_.array()).inverse();
   for (const Slice& slice : slices_) {
-    const Eigen::Matrix<double, 2, 3> coupling = slice.sums.P().bottomRows<3>().transpose() * axes_;
-    common_information_.bottomLeftCorner<2, 3>() += coupling;
-    common_information_.topRightCorner<3, 2>() += coupling.transpose();
+    const Eigen::Matrix<double, 2, 6> coupling = slice.sums.P().transpose() * motions_;
+    common_information_.bottomLeftCorner<2, 6>() += coupling;
+    common_information_.topRightCorner<6, 2>() += coupling.transpose();
     common_information_.bottomRightCorner<2, 2>() += slice.sums.PP();
   }
   common_information_.diagonal().tail<2>().array() += pointing_variance_.array().max(kNoPointing).inverse();
@@ -243,8 +248,8 @@ void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::Matr
 }
 
 PlaneTerms::Common PlaneTerms::common(const Layout& layout) const {
-  using ByCommon = Eigen::Matrix<double, 6, 5>;  // sum of w m by [offset along the axes; pointing]
-  Common common{Eigen::MatrixXd::Zero(layout.size(), 5), Vector5d::Zero()};
+  using ByCommon = Eigen::Matrix<double, 6, 8>;  // sum of w m by [displacement; pointing]
+  Common common{Eigen::MatrixXd::Zero(layout.size(), 8), Vector8d::Zero()};
   for (const Slice& slice : slices_) {
     if (slice.matched <= 0.0) {
       continue;
@@ -252,7 +257,7 @@ PlaneTerms::Common PlaneTerms::common(const Layout& layout) const {
     ByCommon all = ByCommon::Zero();
     for (std::size_t j = 0; j < PlaneSums::kMapNodes; ++j) {
       ByCommon of_node;
-      of_node << slice.sums.S(j).rightCols<3>() * axes_, slice.sums.P(j);
+      of_node << slice.sums.S(j) * motions_, slice.sums.P(j);
       common.U.middleRows<6>(layout.map_node(j)) -= of_node;
       all += of_node;
     }
@@ -261,7 +266,7 @@ PlaneTerms::Common PlaneTerms::common(const Layout& layout) const {
       common.U.middleRows<6>(layout.coefficient(slice.at.first + i)) += slice.at.weight[i] * of_coefficients;
     }
     common.U.row(layout.stamp()) += along_motion(slice.at).transpose() * all;
-    common.gradient.head<3>() += axes_.transpose() * slice.sums.E().tail<3>();
+    common.gradient.head<6>() += motions_.transpose() * slice.sums.E();
     common.gradient.tail<2>() += slice.sums.PE();
   }
   return common;
@@ -274,7 +279,7 @@ void PlaneTerms::add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& 
     }
   }
   auto [U, gradient] = common(layout);
-  const Eigen::LLT<Matrix5d> information(common_information_);
+  const Eigen::LLT<Matrix8d> information(common_information_);
   information.matrixU().solveInPlace<Eigen::OnTheRight>(U);
   information.matrixL().solveInPlace(gradient);
   const Eigen::Index first = layout.map_error();
@@ -285,7 +290,7 @@ void PlaneTerms::add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& 
 
 PlaneTerms::ScanPointing PlaneTerms::scan_pointing(const Layout& layout) const {
   const Common in_common = common(layout);
-  const Matrix5d covariance = common_information_.llt().solve(Matrix5d::Identity());
+  const Matrix8d covariance = common_information_.llt().solve(Matrix8d::Identity());
   return {(covariance * in_common.gradient).tail<2>(), covariance.diagonal().tail<2>(),
           in_common.U * covariance.rightCols<2>()};
 }

@@ -25,17 +25,17 @@ struct PlaneNoise {
   double model_sigma_m = 0.003;   ///< of a patch from a plane: common to all points on it
   double repeated = 2.5;          ///< the same error of a patch comes again in so many scans
   double kernel = 4.0;            ///< Tukey: points beyond so many standard deviations have no weight
-  double max_noise_share = 0.04;  ///< of the information along a direction that is the noise of normals: none is left
+  double max_noise_share = 0.2;  ///< of the information about a motion that is the noise of normals: none is left
   Eigen::Vector2d pointing_variance = Eigen::Vector2d::Zero();  ///< rad^2, of azimuth and elevation of a whole scan
 };
 
 /// How well the points of a scan fit the planes.
 struct PlaneQuality {
-  std::size_t on_planes = 0;                       ///< points with a patch
-  double matched = 0.0;                            ///< sum of the kernel's weights
-  double rms_m = 0.0;                              ///< of those
-  Eigen::Vector3d held = Eigen::Vector3d::Ones();  ///< share of the information that is not noise of normals, by axis
-  double share = 0.0;                              ///< of the scan in the patches it meets, once it is added to them
+  std::size_t on_planes = 0;         ///< points with a patch
+  double matched = 0.0;              ///< sum of the kernel's weights
+  double rms_m = 0.0;                ///< of those
+  Vector6d held = Vector6d::Ones();  ///< how much the noise of normals leaves of each principal motion, descending
+  double share = 0.0;                ///< of the scan in the patches it meets, once it is added to them
   std::optional<double> model_sigma_m;
 };
 
@@ -84,12 +84,13 @@ class PlaneTerms {
   [[nodiscard]] PlaneQuality quality() const;
 
  private:
-  using Vector5d = Eigen::Matrix<double, 5, 1>;
-  using Matrix5d = Eigen::Matrix<double, 5, 5>;
+  using Vector8d = Eigen::Matrix<double, 8, 1>;
+  using Matrix8d = Eigen::Matrix<double, 8, 8>;
   struct Row : PlaneRow {
     double own = 0.0;        ///< m^2, of the point
     double in_common = 0.0;  ///< m^2, of all points on its patch
     double all = 0.0;        ///< m^2, as one of these points
+    Eigen::Vector3d lever = Eigen::Vector3d::Zero();  ///< m, from the origin of the reference, map axes
     const mapping::Patch* patch = nullptr;
   };
   struct Slice {
@@ -98,7 +99,7 @@ class PlaneTerms {
     double time_s = 0.0;  ///< its middle
     TrajectoryPoint at;
     PlaneSums sums;
-    Eigen::Matrix3d noise = Eigen::Matrix3d::Zero();  ///< sum of w Sigma_n
+    Matrix6d noise = Matrix6d::Zero();  ///< sum of w Sigma_m by the noise of normals, about the reference, map axes
     double matched = 0.0;
     double squares = 0.0;
     std::size_t on_planes = 0;
@@ -107,14 +108,14 @@ class PlaneTerms {
   void place(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
              Slice& slice);
   void sum(Slice& slice) const;
-  /// What the terms have in common with the offsets of the map along the axes and with the pointing of the scan.
+  /// What the terms have in common with the displacement of the map in this scan and with the pointing of the scan.
   struct Common {
-    Eigen::MatrixXd U;  ///< unknowns x 5
-    Vector5d gradient = Vector5d::Zero();
+    Eigen::MatrixXd U;  ///< unknowns x 8
+    Vector8d gradient = Vector8d::Zero();
   };
   [[nodiscard]] Common common(const Layout& layout) const;
   static void add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g);
-  void hold_directions(double max_noise_share);
+  void hold_motions(double max_noise_share);
 
   const Scan& scan_;
   const mapping::PlaneMap& map_;
@@ -127,10 +128,10 @@ class PlaneTerms {
   std::vector<std::uint32_t> members_;   ///< points per patch
   std::vector<double> squares_;          ///< e^2 over the variance of each row on a patch
   Eigen::Matrix3d R_map_reference_ = Eigen::Matrix3d::Identity();
-  Eigen::Matrix3d axes_ = Eigen::Matrix3d::Identity();  ///< directions of translation, reference frame
+  Matrix6d motions_ = Matrix6d::Identity();  ///< the principal ones, columns [phi; p], reference frame
   Eigen::Vector2d pointing_variance_ = Eigen::Vector2d::Zero();
-  Matrix5d common_information_ = Matrix5d::Identity();  ///< of [offsets of the map along the axes; pointing]
-  Eigen::Vector3d held_ = Eigen::Vector3d::Ones();
+  Matrix8d common_information_ = Matrix8d::Identity();  ///< of [displacement of the map by these; pointing]
+  Vector6d held_ = Vector6d::Ones();
 };
 
 }  // namespace dynamic_icp::window

@@ -27,7 +27,7 @@ ConfigFields fields(WindowConfig& config) {
       {"repeated_patches", &config.repeated_patches, 1.0, 100.0, "",
        "the error of a patch comes again in so many scans"},
       {"max_noise_share", &config.max_noise_share, 1e-3, 1.0, "",
-       "a direction with this share of its information by the noise of normals is not held by planes"},
+       "a motion with this share of its information by the noise of normals is not held by planes"},
       {"max_iterations", &config.max_iterations, 1, 100, "", "Gauss-Newton steps of a scan"},
   };
 }

@@ -25,7 +25,7 @@ struct WindowConfig {
   double min_sigma_m = 0.005;         ///< smallest standard deviation of a point from its plane
   double model_sigma_m = 0.003;       ///< of a patch from a plane before it is learned
   double repeated_patches = 2.5;      ///< the error of a patch comes again in so many scans
-  double max_noise_share = 0.04;      ///< of information that may be noise of normals
+  double max_noise_share = 0.2;       ///< of information that may be noise of normals
   int max_iterations = 7;
 };
 
