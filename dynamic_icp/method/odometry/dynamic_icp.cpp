@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/odometry/dynamic_icp.hpp"
 
 #include "dynamic_icp/method/dynamics/prediction.hpp"
+#include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_labels.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
@@ -21,6 +22,16 @@ Scan static_points(const Scan& scan, const ego_motion::VelocityFilterConfig& fil
     }
   }
   return scan.select(rows);
+}
+
+/// The paper has one sensor: the Doppler of a rig becomes that of one at the origin of the points.
+std::optional<ego_motion::AngularVelocity> take_out_lever_arms(Scan& scan, const Workers& workers) {
+  if (!scan.is_of_rig() || scan.doppler_kind() != DopplerKind::kRelative) {
+    return std::nullopt;
+  }
+  const ego_motion::AngularVelocity rotation = ego_motion::rig_angular_velocity(scan, {}, workers);
+  ego_motion::take_out_lever_arms(scan, rotation.omega, workers);
+  return rotation;
 }
 
 }  // namespace
@@ -53,6 +64,7 @@ Frame DynamicIcp::process(const ScanView& raw) {
   Frame frame;
   StageClock clock(frame.times);
   Scan scan = preprocess(raw, config_.preprocess, workers_, frame);  // Eq. (1)
+  const std::optional<ego_motion::AngularVelocity> rig_rotation = take_out_lever_arms(scan, workers_);
   clock.finish(Stage::kPreprocess);
 
   frame.status = stream_.add(raw.stamp, scan.size());
@@ -66,6 +78,7 @@ Frame DynamicIcp::process(const ScanView& raw) {
   }
 
   const std::vector<double> compensated = estimate_ego_motion(scan, frame);  // Eq. (3)
+  frame.ego.rotation = rig_rotation;
   std::vector<std::uint8_t> is_dynamic =
       ego_motion::dynamic_mask(scan, compensated, config_.ego_motion.filter);  // Eq. (4)
   clock.finish(Stage::kEgoMotion);

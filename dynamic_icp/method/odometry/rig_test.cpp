@@ -42,6 +42,20 @@ TEST(WindowOdometryRig, LeverArmsDoNotPullInABend) {
   }
 }
 
+TEST(DynamicIcpRig, LeverArmsDoNotPullInABend) {
+  const Drive drive{street(), circle(8.0, 0.6), Sensor{}};
+  const auto odometry = make_odometry(PaperConfig{}, {}, 2);
+  std::vector<Frame> frames;
+  for (int k = 0; k < 8; ++k) {
+    frames.push_back(odometry->process(rig_scan(drive, kFrontPair, {}, k)));
+    const ego_motion::EgoVelocity& ego = frames.back().ego;
+    EXPECT_LT((ego.velocity_sensor - velocity_sensor(drive.path, k * kPeriod_s)).norm(), 0.1) << k;
+    EXPECT_NEAR(ego.rotation.value().omega.z(), 0.6, 0.05) << k;
+    EXPECT_LT(frames.back().dynamic_candidates, frames.back().points_used / 50) << "nothing moves";
+  }
+  EXPECT_LT(rms_error(drive, frames, 2).turn_deg, 0.2);
+}
+
 TEST(WindowOdometryRig, TheDopplerAloneShowsTheRotationAsWellAsItSays) {
   for (const Sensor& sensor : {Sensor{}, sweeping()}) {
     const Drive drive{street_with_cars(), agile(10.0), sensor};
