@@ -209,6 +209,7 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
       objects,
     },
     truth: truth ? { poses: truePoses } : null,
+    pictures: [{ title: 'Learned', caption: 'A square', svg: '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><rect width="40" height="40" fill="#0072b2"/></svg>' }],
     plots: [
       plot('ego_speed', 'Ego speed', 'm/s', [['estimate', series((k) => Math.hypot(...egoVelocity.slice(3 * k, 3 * k + 3)))],
         ...(truth ? [['truth', series(() => SPEED), true]] : [])], { fromZero: false }),

@@ -72,6 +72,20 @@ std::pair<std::size_t, double> between_nodes(double share, std::size_t count) {
   return {i, x - static_cast<double>(i)};
 }
 
+/// Of each line; one that shows nothing lies where the one before does.
+std::vector<double> mean_elevations(const std::vector<DopplerCell>& cells, std::size_t lines) {
+  std::vector<double> sums(lines, 0.0);
+  std::vector<double> counts(lines, 0.0);
+  for (const DopplerCell& cell : cells) {
+    sums[cell.line] += elevation_of(cell);
+    counts[cell.line] += 1.0;
+  }
+  for (std::size_t line = 0; line < lines; ++line) {
+    sums[line] = counts[line] > 0.0 ? sums[line] / counts[line] : line > 0 ? sums[line - 1] : 0.0;
+  }
+  return sums;
+}
+
 }  // namespace
 
 std::size_t DopplerErrorField::add_group(std::string_view name, Eigen::MatrixXd K, double tau, bool is_learned) {
@@ -87,16 +101,19 @@ FieldShape DopplerErrorField::shape_of(const std::vector<DopplerCell>& cells, st
   FieldShape shape;
   shape.faces = faces;
   std::size_t sensors = 1;
+  std::size_t lines = 0;
   double intensity_squares = 0.0;
   for (const DopplerCell& cell : cells) {
     sensors = std::max<std::size_t>(sensors, cell.sensor + 1U);
-    shape.lines = std::max<std::size_t>(shape.lines, cell.line + 1U);
+    lines = std::max<std::size_t>(lines, cell.line + 1U);
     shape.intensity_mean += cell.intensity / static_cast<double>(cells.size());
     intensity_squares += cell.intensity * cell.intensity / static_cast<double>(cells.size());
   }
   const double spread = std::sqrt(std::max(0.0, intensity_squares - shape.intensity_mean * shape.intensity_mean));
   shape.intensity_scale = spread > 0.0 ? 1.0 / spread : 0.0;
-  shape.lines = sensors > 1 || shape.lines > kMaxFieldLines ? 0 : shape.lines;
+  if (sensors == 1 && lines <= kMaxFieldLines) {
+    shape.line_elevations_rad = mean_elevations(cells, lines);
+  }
   for (std::size_t s = 0; s < sensors; ++s) {
     double azimuth_low = 4.0, azimuth_high = -4.0, elevation_low = 2.0, elevation_high = -2.0;
     for (const DopplerCell& cell : cells) {
@@ -126,7 +143,7 @@ DopplerErrorField::DopplerErrorField(const FieldShape& shape) : shape_(shape) {
       c.cross = add_group("cross",
                           kronecker(exponential_kernel(kCrossAzimuths, 3.0), exponential_kernel(kCrossElevations, 2.0)),
                           kStartTau, true);
-      c.line = shape.lines > 0 ? add_group("line", identity(shape.lines), kStartTau, true) : 0;
+      c.line = shape.lines() > 0 ? add_group("line", identity(shape.lines()), kStartTau, true) : 0;
       c.face = shape.faces > 1 ? add_group("face", identity(shape.faces), kStartTau, true)
                                : add_group("constant", identity(1), kStartTau, true);
       if (shape.faces <= 1) {
@@ -168,8 +185,8 @@ FieldColumns DopplerErrorField::shared_columns(const DopplerCell& cell) const {
     result.add(at + 1, (1.0 - a) * e);
     result.add(at + kCrossElevations, a * (1.0 - e));
     result.add(at + kCrossElevations + 1, a * e);
-    if (shape_.lines > 0) {
-      result.add(c.line + std::min<std::size_t>(cell.line, shape_.lines - 1), 1.0);
+    if (shape_.lines() > 0) {
+      result.add(c.line + std::min<std::size_t>(cell.line, shape_.lines() - 1), 1.0);
     }
     result.add(c.face + std::min<std::size_t>(cell.face, shape_.faces - 1), 1.0);
   }

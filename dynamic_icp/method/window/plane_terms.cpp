@@ -19,7 +19,7 @@ namespace {
 constexpr std::uint32_t kInformativePoints = 5;  // a patch tells of itself with so many points on it
 constexpr std::size_t kInformativePatches = 50;  // and all patches together when there are so many
 constexpr double kMinHeld = 1e-6;
-constexpr double kNoPointing = 1e-14;  // rad^2
+constexpr double kNoPointing = 1e-14;    // rad^2
 constexpr double kNoInformation = 1e-6;  // 1/rad^2 and 1/m^2
 
 }  // namespace

@@ -21,10 +21,10 @@ namespace dynamic_icp::window {
 
 /// How points on planes are believed.
 struct PlaneNoise {
-  double min_sigma_m = 0.005;     ///< smallest standard deviation of a point from its plane
-  double model_sigma_m = 0.003;   ///< of a patch from a plane: common to all points on it
-  double repeated = 2.5;          ///< the same error of a patch comes again in so many scans
-  double kernel = 4.0;            ///< Tukey: points beyond so many standard deviations have no weight
+  double min_sigma_m = 0.005;    ///< smallest standard deviation of a point from its plane
+  double model_sigma_m = 0.003;  ///< of a patch from a plane: common to all points on it
+  double repeated = 2.5;         ///< the same error of a patch comes again in so many scans
+  double kernel = 4.0;           ///< Tukey: points beyond so many standard deviations have no weight
   double max_noise_share = 0.2;  ///< of the information about a motion that is the noise of normals: none is left
   Eigen::Vector2d pointing_variance = Eigen::Vector2d::Zero();  ///< rad^2, of azimuth and elevation of a whole scan
 };
@@ -87,9 +87,9 @@ class PlaneTerms {
   using Vector8d = Eigen::Matrix<double, 8, 1>;
   using Matrix8d = Eigen::Matrix<double, 8, 8>;
   struct Row : PlaneRow {
-    double own = 0.0;        ///< m^2, of the point
-    double in_common = 0.0;  ///< m^2, of all points on its patch
-    double all = 0.0;        ///< m^2, as one of these points
+    double own = 0.0;                                 ///< m^2, of the point
+    double in_common = 0.0;                           ///< m^2, of all points on its patch
+    double all = 0.0;                                 ///< m^2, as one of these points
     Eigen::Vector3d lever = Eigen::Vector3d::Zero();  ///< m, from the origin of the reference, map axes
     const mapping::Patch* patch = nullptr;
   };

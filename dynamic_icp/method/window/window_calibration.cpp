@@ -2,10 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/window/learned_field.hpp"
 #include "dynamic_icp/method/window/window_estimator.hpp"
 
 // What was learned of a sensor, from one recording to another.
@@ -15,15 +15,10 @@ namespace {
 // The first scan of a recording does not show all directions.
 constexpr double kSameView_rad = 0.15;
 
-// More is no sensor; a field for them would fill the memory.
-constexpr std::size_t kMaxFileSensors = 64;
-constexpr std::size_t kMaxFileLines = 1024;
-constexpr std::size_t kMaxFileFaces = 256;
-
 std::string text_of(const FieldShape& shape, std::size_t sensor) {
   const FieldShape::View& view = shape.views[sensor];
   return fmt::format("{} sensor{}, {} lines, {} faces, azimuth {:.2f} to {:.2f} rad, elevation {:.2f} to {:.2f} rad",
-                     shape.views.size(), shape.views.size() == 1 ? "" : "s", shape.lines, shape.faces,
+                     shape.views.size(), shape.views.size() == 1 ? "" : "s", shape.lines(), shape.faces,
                      view.azimuth_first, view.azimuth_first + view.azimuth_span, view.elevation_first,
                      view.elevation_first + view.elevation_span);
 }
@@ -39,66 +34,17 @@ bool may_show(const FieldShape& whole, const FieldShape& seen, std::size_t senso
          within(a.elevation_first, a.elevation_span, b.elevation_first, b.elevation_span);
 }
 
-/// Whether there is a number for each unknown of the field.
-bool fits(const SensorCalibration& calibration, const DopplerErrorField& field) {
-  bool result = calibration.parts.size() == field.groups().size() && calibration.information.size() == field.size() &&
-                calibration.gradient.size() == field.size() && calibration.stamp_sigma_s > 0.0 &&
-                calibration.stamp_sigma_s < 1.0 && calibration.scan_error_mps > 0.0 &&
-                calibration.scan_error_mps < 10.0;
-  for (std::size_t k = 0; result && k < field.groups().size(); ++k) {
-    const SensorCalibration::Part& part = calibration.parts[k];
-    result = part.error_mps.size() == field.groups()[k].size() && part.name == field.groups()[k].name &&
-             part.scale_mps > 0.0;
-  }
-  for (std::size_t k = 0; result && k < field.size(); ++k) {
-    result = calibration.information[k].size() == k + 1;
-  }
-  return result;
-}
-
 }  // namespace
 
 void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
   if (!config_.learn_field) {
     throw UsageError("a calibration of the sensor has no effect where the error of the Doppler is not learned");
   }
-  const FieldShape& shape = calibration.shape;
-  if (shape.views.empty() || shape.views.size() > kMaxFileSensors || shape.lines > kMaxFileLines || shape.faces == 0 ||
-      shape.faces > kMaxFileFaces) {
-    throw UsageError(
-        fmt::format("a calibration of {} sensors, {} lines and {} faces; expected 1 to {}, 0 to {} and 1 to {}",
-                    shape.views.size(), shape.lines, shape.faces, kMaxFileSensors, kMaxFileLines, kMaxFileFaces));
-  }
-  DopplerErrorField field(shape);
-  const auto n = static_cast<Eigen::Index>(field.size());
-  if (!fits(calibration, field)) {
-    throw UsageError("the parts of the calibration do not fit its sensors, lines and faces");
-  }
-  Eigen::VectorXd theta(n);
-  for (std::size_t k = 0; k < field.groups().size(); ++k) {
-    DopplerErrorField::Group& group = field.groups()[k];
-    group.tau = calibration.parts[k].scale_mps;
-    for (std::size_t i = 0; i < group.size(); ++i) {
-      theta[static_cast<Eigen::Index>(group.begin + i)] = calibration.parts[k].error_mps[i];
-    }
-  }
-  Eigen::MatrixXd Q(n, n);
-  Eigen::VectorXd g(n);
-  for (Eigen::Index i = 0; i < n; ++i) {
-    g[i] = calibration.gradient[static_cast<std::size_t>(i)];
-    for (Eigen::Index j = 0; j <= i; ++j) {
-      Q(i, j) = Q(j, i) = calibration.information[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
-    }
-  }
-  Eigen::MatrixXd with_prior = Q;
-  field.add_prior_information(with_prior);
-  if (!with_prior.allFinite() || !g.allFinite() || !theta.allFinite() || with_prior.llt().info() != Eigen::Success) {
-    throw UsageError("the information of the calibration is no positive definite matrix of finite numbers");
-  }
-  field_ = std::move(field);
-  theta_ = theta;
-  quadratic_.emplace(n, 0, config_.learn_vibration);
-  quadratic_->set_field(Q, g);
+  LearnedField learned = learned_field(calibration);
+  theta_ = learned.theta;
+  quadratic_.emplace(theta_.size(), 0, config_.learn_vibration);
+  quadratic_->set_field(learned.information, learned.gradient);
+  field_ = std::move(learned.field);
   stamp_variance_ = LearnedVariance(stamp_prior(calibration.stamp_sigma_s));
   scan_error_variance_ = LearnedVariance(scan_error_prior(calibration.scan_error_mps));
   is_calibrated_ = true;
@@ -107,7 +53,7 @@ void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
 void WindowEstimator::check_calibration(std::size_t faces) const {
   const FieldShape& known = field_->shape();
   const FieldShape seen = DopplerErrorField::shape_of(cells_.cells(), faces);
-  if (known.views.size() != seen.views.size() || known.faces != seen.faces || known.lines < seen.lines) {
+  if (known.views.size() != seen.views.size() || known.faces != seen.faces || known.lines() < seen.lines()) {
     throw UsageError(fmt::format("the calibration is that of another sensor: {}; this one: {}", text_of(known, 0),
                                  text_of(seen, 0)));
   }

@@ -40,11 +40,13 @@ struct FieldShape {
     double elevation_first = 0.0;
     double elevation_span = 1.0;
   };
-  std::vector<View> views;  ///< of each sensor
-  std::size_t lines = 0;    ///< 0: none
+  std::vector<View> views;                  ///< of each sensor
+  std::vector<double> line_elevations_rad;  ///< of each line, about; empty without lines
   std::size_t faces = 1;
   double intensity_mean = 0.0;
   double intensity_scale = 0.0;  ///< 1 / standard deviation; 0: all alike
+
+  [[nodiscard]] std::size_t lines() const { return line_elevations_rad.size(); }
 };
 
 /// What the estimator learned of a sensor in one recording and may begin with in another one.

@@ -348,7 +348,7 @@ TEST(WindowEstimator, RefusesTheCalibrationOfAnotherSensor) {
   impossible.information[2][2] = std::nan("");
   EXPECT_THROW(drive({}, 1, {}, 1, impossible), UsageError);
   SensorCalibration huge = learned;
-  huge.shape.lines = 1000000;
+  huge.shape.line_elevations_rad.resize(1000000);
   EXPECT_THROW(drive({}, 1, {}, 1, huge), UsageError);
   WindowConfig without;
   without.learn_field = false;

@@ -36,8 +36,8 @@ std::string calibration_text(const SensorCalibration& calibration) {
       "it.\n"
       "version: 1\n";
   const FieldShape& shape = calibration.shape;
-  text += fmt::format("lines: {}\nfaces: {}\nintensity_mean: {}\nintensity_scale: {}\n", shape.lines, shape.faces,
-                      shape.intensity_mean, shape.intensity_scale);
+  text += fmt::format("line_elevations_rad: {}\nfaces: {}\nintensity_mean: {}\nintensity_scale: {}\n",
+                      list_of(shape.line_elevations_rad), shape.faces, shape.intensity_mean, shape.intensity_scale);
   text += fmt::format("stamp_sigma_s: {}\nscan_error_mps: {}\n", calibration.stamp_sigma_s, calibration.scan_error_mps);
   text += "sensors:  # directions in rad\n";
   for (const FieldShape::View& view : shape.views) {
@@ -61,7 +61,7 @@ SensorCalibration read_calibration(const std::filesystem::path& path) {
   SensorCalibration result;
   static_cast<void>(map.whole_number("version", {1, 1}));
   FieldShape& shape = result.shape;
-  shape.lines = static_cast<std::size_t>(map.whole_number("lines", {0, 1024}));
+  shape.line_elevations_rad = map.numbers("line_elevations_rad", 0, kAzimuth_rad);
   shape.faces = static_cast<std::size_t>(map.whole_number("faces", {1, 256}));
   shape.intensity_mean = map.number("intensity_mean", kAny);
   shape.intensity_scale = map.number("intensity_scale", kNotNegative);
@@ -86,6 +86,11 @@ SensorCalibration read_calibration(const std::filesystem::path& path) {
   }
   map.finish();
   return result;
+}
+
+std::optional<window::SensorCalibration> read_calibration_of(const std::filesystem::path& run_folder) {
+  const std::filesystem::path path = run_folder / "calibration.yaml";
+  return std::filesystem::exists(path) ? std::optional(read_calibration(path)) : std::nullopt;
 }
 
 }  // namespace dynamic_icp::runs

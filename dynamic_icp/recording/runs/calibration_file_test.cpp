@@ -13,7 +13,7 @@ namespace {
 
 window::SensorCalibration some_calibration() {
   window::SensorCalibration calibration;
-  calibration.shape = {{{-1.05, 2.1, -0.17, 0.34}}, 64, 8, 0.31234567890123, 4.5};
+  calibration.shape = {{{-1.05, 2.1, -0.17, 0.34}}, {-0.1, 0.0, 0.125}, 8, 0.31234567890123, 4.5};
   calibration.parts = {{"azimuth", 0.11, {0.1, -0.2}, {0.003, 0.004}}, {"velocity", 0.165, {1.0 / 3.0}, {0.05}}};
   calibration.information = {{2.5e6}, {-1e-9, 3.0}, {0.1, 0.2, 1e5}};
   calibration.gradient = {1e-3, -7.0, 0.0};
@@ -49,7 +49,7 @@ class CalibrationFile : public ::testing::Test {
 TEST_F(CalibrationFile, ReadsBackTheSameNumbers) {
   const window::SensorCalibration written = some_calibration();
   const window::SensorCalibration read = read_calibration(write(calibration_text(written)));
-  EXPECT_EQ(read.shape.lines, 64U);
+  EXPECT_EQ(read.shape.line_elevations_rad, written.shape.line_elevations_rad);
   EXPECT_EQ(read.shape.faces, 8U);
   EXPECT_EQ(read.shape.intensity_mean, written.shape.intensity_mean);
   EXPECT_EQ(read.shape.intensity_scale, 4.5);
@@ -77,7 +77,7 @@ TEST_F(CalibrationFile, RefusesWhatDoesNotFit) {
   EXPECT_NE(refused("sigma_mps: [0.05]", "sigma_mps: [0.05, 1]").find("sigma_mps"), std::string::npos);
   EXPECT_NE(refused("[0.1, 0.2, 100000]", "[0.1, 0.2]").find("row"), std::string::npos);
   EXPECT_NE(refused("[0.1, -0.2]", "[0.1, .nan]").find("error_mps"), std::string::npos);
-  EXPECT_NE(refused("lines: 64", "lines: 64\nline: 3").find("'line'"), std::string::npos);
+  EXPECT_NE(refused("faces: 8", "faces: 8\nline: 3").find("'line'"), std::string::npos);
 }
 
 }  // namespace

@@ -29,8 +29,8 @@ void check_count(const fs::path& file, const char* what, std::size_t count, std:
   }
 }
 
-constexpr const char* kPictures[] = {"convergence", "dynamics", "errors", "scan",
-                                     "speed",       "steps",    "timing", "trajectory"};
+constexpr const char* kPictures[] = {"convergence", "doppler_error", "dynamics", "errors",    "scan",
+                                     "speed",       "steps",         "timing",   "trajectory"};
 
 /// The map that lies in the folder of a run; empty when there is none, or when its run.json cannot be read.
 std::string map_in(const fs::path& run_json) {

@@ -8,6 +8,8 @@
 #include <optional>
 #include <string_view>
 
+#include "dynamic_icp/recording/runs/calibration_file.hpp"
+#include "dynamic_icp/tools/figures/field_plot.hpp"
 #include "dynamic_icp/tools/figures/run_series.hpp"
 #include "dynamic_icp/tools/figures/scan_plot.hpp"
 #include "dynamic_icp/tools/figures/series_plot.hpp"
@@ -157,6 +159,9 @@ std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& co
     if (!panels.empty()) {
       figures.push_back({name, series_plot(times, panels, theme)});
     }
+  }
+  if (const auto calibration = runs::read_calibration_of(run.folder)) {
+    figures.push_back({"doppler_error", field_plot(*calibration, theme)});
   }
   return figures;
 }

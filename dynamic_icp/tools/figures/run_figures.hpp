@@ -14,12 +14,12 @@
 namespace dynamic_icp::figures {
 
 struct Figure {
-  std::string name;  ///< "scan", "trajectory", "errors", "speed", "dynamics", "convergence" or "timing"
+  std::string name;  ///< "scan", "trajectory", "errors", "speed", "dynamics", "convergence", "timing", "doppler_error"
   drawing::Svg svg;
 };
 
 /// The figures of a run in the order of that list, without those that have nothing to show: no "scan" when the
-/// recording is gone, no "errors" without ground truth.
+/// recording is gone, no "errors" without ground truth, no "doppler_error" where none was learned.
 std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& context, const drawing::Theme& theme);
 
 /// A run among others over the same recording.

@@ -7,6 +7,8 @@
 #include <numbers>
 #include <vector>
 
+#include "dynamic_icp/recording/runs/calibration_file.hpp"
+#include "dynamic_icp/tools/figures/field_plot.hpp"
 #include "dynamic_icp/tools/figures/run_series.hpp"
 #include "dynamic_icp/tools/report/run_facts.hpp"
 #include "dynamic_icp/tools/report/scan_budget.hpp"
@@ -147,6 +149,20 @@ Json plots_data(const RunFiles& run, const std::optional<figures::RunTruth>& tru
   return plots;
 }
 
+Json pictures(const RunFiles& run) {
+  Json list = Json::array();
+  if (const auto calibration = runs::read_calibration_of(run.folder)) {
+    const drawing::Svg svg = figures::field_plot(*calibration, drawing::theme(drawing::Ground::kLight));
+    list.push_back(
+        {{"title", "What was learned of the sensor"},
+         {"caption",
+          "The error of the Doppler by direction at 30 m and medium intensity, mean of the faces. What looks like a "
+          "velocity of the sensor is known by the planes only."},
+         {"svg", svg.element()}});
+  }
+  return list;
+}
+
 Facts origin(const RunFiles& run) {
   runs::Settings rest = run.run;
   std::erase_if(rest, [](const auto& entry) { return entry.first == "command"; });
@@ -168,6 +184,7 @@ Json run_data(const RunFiles& run, const std::optional<figures::RunTruth>& truth
           {"frames", frames_data(run, kept)},
           {"truth", truth_data(truth, kept)},
           {"plots", plots_data(run, truth, kept)},
+          {"pictures", pictures(run)},
           {"scans", nullptr},
           {"map", nullptr}};
 }

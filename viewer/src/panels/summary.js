@@ -16,6 +16,10 @@ const summaryTable = (summary) => element('table', { class: 'summary' }, element
     element('th', { scope: 'row' }, element('span', { text: meaning || key }), meaning ? element('code', { text: key }) : null),
     element('td', { text: value })))));
 
+const picture = ({ title, caption, svg }) => section(title, element('figure', {},
+  element('img', { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`, alt: title }),
+  element('figcaption', { class: 'muted', text: caption })));
+
 export function createSummarySheet(report, store) {
   const sheet = element('div', { class: 'text-sheet' });
   store.watch(['run'], (state) => {
@@ -24,6 +28,7 @@ export function createSummarySheet(report, store) {
       report.kind === 'run' ? null : element('h2', { class: 'run-name', text: run.name }),
       run.warnings.length ? section('Warnings', list(run.warnings, 'warnings')) : null,
       section('Summary', summaryTable(run.summary)),
+      ...run.pictures.map(picture),
       section('Run', pairTable([['recording', run.name], ...run.facts])),
       report.notes.length ? section('Notes', list(report.notes, 'notes')) : null,
       run.command ? command(run.command) : null,
