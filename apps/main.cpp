@@ -3,12 +3,15 @@
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <string>
 #include <system_error>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/nearest_key.hpp"
 #include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 
@@ -53,6 +56,22 @@ void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
   throw UsageError(fmt::format("unknown command '{}'; known are:{}", argv[1], known));
 }
 
+/// An unknown option is said before a missing one: mistyped, it is both.
+void refuse_unknown_option(const CLI::App& command) {
+  std::vector<std::string> known;
+  for (const CLI::Option* option : command.get_options()) {
+    for (const std::string& name : option->get_lnames()) {
+      known.push_back("--" + name);
+    }
+  }
+  for (const std::string& word : command.remaining()) {
+    if (word.starts_with("--")) {
+      throw UsageError(fmt::format("'{}' has no option '{}'; did you mean '{}'?", command.get_name(), word,
+                                   dynamic_icp::nearest_key(word, known)));
+    }
+  }
+}
+
 int report(const std::string& message, int status) {
   apps::tell("dynamic-icp: {}\n", message);
   return status;
@@ -81,6 +100,11 @@ int run(int argc, char** argv) {
     app.parse(argc, argv);
   } catch (const CLI::Success& help_or_version) {
     return with_output_written(app.exit(help_or_version));
+  } catch (const CLI::ParseError&) {
+    for (const CLI::App* command : app.get_subcommands()) {
+      refuse_unknown_option(*command);
+    }
+    throw;
   }
   return with_output_written(selected());
 }

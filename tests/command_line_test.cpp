@@ -56,6 +56,8 @@ TEST_F(CommandLine, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("fly", "fly");
   expect_usage_error("run " + in, "--output");
   expect_usage_error("run " + in + out + " --wrong", "--wrong");
+  expect_usage_error("run " + in + " --ouput " + (folder_ / "out").string(),
+                     "no option '--ouput'; did you mean '--output'");
   expect_usage_error("run " + in + out + " --set voxel_sise_m=1", "did you mean 'preprocess.voxel.voxel_size_m'");
   expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m=-1", "0 to 100 m");
   expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m", "expected key=value");

@@ -27,17 +27,25 @@ compile=("${CXX:-c++}" -std=c++20 -fsyntax-only -I"$folder/core/include" -isyste
 "${compile[@]}" -DEIGEN_MAX_STATIC_ALIGN_BYTES=16 "$folder/all.cpp"
 
 echo "== The same trajectory whatever the flags of the consumer"
-build_consumer consumer_core "$folder/core" "$folder/native" -DCMAKE_CXX_FLAGS="-march=native -O3"
+[[ $(uname -m) == x86_64 ]] && flags="-msse4.2" || flags="-march=native"
+build_consumer consumer_core "$folder/core" "$folder/native" -DCMAKE_CXX_FLAGS="$flags -O3"
+build_consumer consumer_core "$folder/core" "$folder/slow" -DCMAKE_BUILD_TYPE=Debug
 "$build/dynamic-icp" simulate street --frames 6 --instant --set lidar.columns=300 --set lidar.rows=32 --quiet --output "$folder/street"
 "$folder/plain/consumer_core" "$folder"/street/point_clouds/*.bin >"$folder/plain.txt"
 "$folder/native/consumer_core" "$folder"/street/point_clouds/*.bin >"$folder/native.txt"
+"$folder/slow/consumer_core" "$folder"/street/point_clouds/*.bin >"$folder/slow.txt"
 [[ $(grep -c converged "$folder/plain.txt") -ge 8 ]]
 diff "$folder/plain.txt" "$folder/native.txt"
+diff "$folder/plain.txt" "$folder/slow.txt"
 
 if [[ $(uname -m) == x86_64 ]]; then
   echo "== Another layout of Eigen's types is refused when it is compiled"
   ! "${compile[@]}" -mavx "$folder/all.cpp" 2>"$folder/refusal"
   grep -q 'EIGEN_MAX_STATIC_ALIGN_BYTES=16' "$folder/refusal"
+
+  echo "== Other vectors than those of the library are refused when it is linked"
+  ! build_consumer consumer_core "$folder/core" "$folder/avx" -DCMAKE_CXX_FLAGS="-mavx2 -mfma" >"$folder/refusal"
+  grep -q 'compile_for_the_vector_instructions_of_the_library::avx_fma' "$folder/refusal"
 fi
 
 echo "== As a subproject: the method alone, and nothing of the parent is changed"

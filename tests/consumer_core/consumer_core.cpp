@@ -4,6 +4,8 @@
 #include <cstdio>
 #include <fstream>
 
+#include <Eigen/LU>
+
 #include <dynamic_icp/dynamic_icp.hpp>
 
 namespace {
@@ -23,6 +25,9 @@ dynamic_icp::RawScan read_scan(const char* path, int index) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  // Matrices of its own, compiled for its own flags.
+  const Eigen::MatrixXd A = Eigen::MatrixXd::Identity(50, 50) + 0.01 * Eigen::MatrixXd::Ones(50, 50);
+  std::fprintf(stderr, "%g\n", A.inverse().sum());
   for (const char* preset : {"default", "paper"}) {
     const auto odometry =
         dynamic_icp::odometry::make_odometry(dynamic_icp::odometry::configuration("dynamic-icp", preset));

@@ -315,6 +315,7 @@ test('hostile texts are shown as texts', async () => {
     configuration: [[HOSTILE, HOSTILE]], summary: [{ key: HOSTILE, value: HOSTILE, meaning: HOSTILE, number: 1, better: 'lower' }],
   };
   const part = sampleRun({ texts });
+  part.run.pictures.push({ title: HOSTILE, caption: HOSTILE, svg: HOSTILE });
   part.run.frames.reason.fill(HOSTILE);
   part.run.frames.status.fill(HOSTILE);
   part.run.frames.lost_directions.fill([HOSTILE]);
@@ -330,7 +331,8 @@ test('hostile texts are shown as texts', async () => {
     assert.equal(await page.title(), HOSTILE.replace(/[ \n]+/g, ' ').trim());
     assert.ok((await page.textContent('h1')) === HOSTILE);
     assert.equal(await page.evaluate(() => window.broken), undefined);
-    assert.equal(await page.$('img'), null);
+    const sources = await page.$$eval('img', (images) => images.map((image) => image.src));
+    assert.deepEqual(sources.map((source) => source.startsWith('data:image/svg+xml')), [true, true], 'the two pictures of the part');
     assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 1280);
   });
 });
