@@ -52,6 +52,16 @@ TEST(WindowOdometryDrive, FollowsALivelyDrive) {
   }
 }
 
+// What is known of the past stays within what numbers hold.
+TEST(WindowOdometryDrive, GoesOnForLong) {
+  const Drive drive{street(), agile(20.0), {}};
+  const std::vector<Frame> frames = drive.run(WindowOdometryConfig{}, 100);
+  for (std::size_t k = 1; k < frames.size(); ++k) {
+    EXPECT_EQ(frames[k].status, FrameStatus::kConverged) << k;
+    EXPECT_LT(error_of(drive, frames[k], static_cast<int>(k) - 1, static_cast<int>(k)).move_m, 0.005) << k;
+  }
+}
+
 // The same sweeps with the times of their points, with declared times, as if taken in an instant, and not deskewed.
 TEST(WindowOdometryDrive, UndoesSweeps) {
   Drive drive{street_with_cars(), agile(10.0), sweeping()};

@@ -176,9 +176,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   find_twist();
   ++scans_;
   ++scans_ever_;
-  const double share = motion.planes.share;  // the map takes this sweep in
-  quadratic_->mix_map_error(share, sweep_rows(stamp_s() + begin_s_, stamp_s() + end_s_, layout()));
-  map_error_ *= 1.0 - share;
+  take_in_sweep(motion.planes.share);
   walk_field(motion.T_target_source.translation().norm());
   quadratic_->drop_coefficients(trajectory_.drop_before(stamp_s() + std::min(0.0, begin_s_)));
   return motion;

@@ -152,6 +152,7 @@ class WindowEstimator {
   [[nodiscard]] Problem start_terms(const WindowScan& scan, double omega_sigma_rad_s) const;
   [[nodiscard]] Problem scan_terms(const std::optional<PlaneTerms>& planes, std::size_t first_new) const;
   void tie_map_to_first_sweep(Problem& problem) const;
+  void take_in_sweep(double share);
   [[nodiscard]] Eigen::MatrixXd displacement_rows(double time_s, const Layout& layout) const;
   [[nodiscard]] Eigen::MatrixXd sweep_rows(double begin_s, double end_s, const Layout& layout) const;
 

@@ -134,7 +134,7 @@ void WindowEstimator::walk_field(double distance_m) {
       continue;
     }
     const double sigma = is_velocity ? std::hypot(kVelocityWalk_mps, share * group.tau) : kWalkShare * group.tau;
-    quadratic_->walk_field(static_cast<Eigen::Index>(group.begin), sigma * sigma * group.K);
+    quadratic_->walk(static_cast<Eigen::Index>(group.begin), sigma * sigma * group.K);
   }
 }
 

@@ -8,7 +8,7 @@
 namespace dynamic_icp::window {
 namespace {
 
-// The map begins with the first sweep: its error is that of the sweep, to 5 urad and 20 um.
+// The map errs as the sweeps in it, to so much.
 constexpr double kTieRotation = 5e-6;
 constexpr double kTiePosition_m = 2e-5;
 
@@ -25,6 +25,13 @@ constexpr double kNoError = 1e-9;
 
 // 1/rad^2 and 1/m^2: a map that errs by 0.1 rad and 1 m.
 const Vector6d kMapInformation{{100.0, 100.0, 100.0, 1.0, 1.0, 1.0}};
+
+Eigen::VectorXd tie_variances() {
+  Vector6d variances;
+  variances << Eigen::Vector3d::Constant(kTieRotation * kTieRotation),
+      Eigen::Vector3d::Constant(kTiePosition_m * kTiePosition_m);
+  return variances.replicate<Layout::kMapNodes, 1>();
+}
 
 }  // namespace
 
@@ -152,17 +159,22 @@ Eigen::MatrixXd WindowEstimator::sweep_rows(double begin_s, double end_s, const 
   return rows;
 }
 
+/// The map begins with the first sweep.
 void WindowEstimator::tie_map_to_first_sweep(Problem& problem) const {
   const Layout at = rest_layout();
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(Layout::kMapError, at.size());
   rows.middleCols(at.coefficient(0), 6 * at.coefficients) =
       -sweep_rows(first_.stamp_s + first_.begin_s, first_.stamp_s + first_.end_s, at);
   rows.block(0, at.map_error(), Layout::kMapError, Layout::kMapError).setIdentity();
-  Vector6d information;
-  information << Eigen::Vector3d::Constant(1.0 / (kTieRotation * kTieRotation)),
-      Eigen::Vector3d::Constant(1.0 / (kTiePosition_m * kTiePosition_m));
-  const Eigen::VectorXd w = information.replicate<Layout::kMapNodes, 1>();
-  problem.H.noalias() += rows.transpose() * w.asDiagonal() * rows;
+  problem.H.noalias() += rows.transpose() * tie_variances().cwiseInverse().asDiagonal() * rows;
+}
+
+/// The map takes in each sweep with its share. Were it the mean of the sweeps exactly, its error would be known the
+/// better the more has faded, until the numbers do not hold it.
+void WindowEstimator::take_in_sweep(double share) {
+  quadratic_->mix_map_error(share, sweep_rows(stamp_s() + begin_s_, stamp_s() + end_s_, layout()));
+  quadratic_->walk(layout().map_error(), tie_variances().asDiagonal());
+  map_error_ *= 1.0 - share;
 }
 
 }  // namespace dynamic_icp::window

@@ -184,7 +184,7 @@ void WindowQuadratic::mix_map_error(double share, const Eigen::MatrixXd& J) {
   g_.segment(d, Layout::kMapError) *= scale;
 }
 
-void WindowQuadratic::walk_field(Eigen::Index begin, const Eigen::MatrixXd& W) {
+void WindowQuadratic::walk(Eigen::Index begin, const Eigen::MatrixXd& W) {
   // (Q^-1 + E W E^T)^-1 = Q - Q E (W^-1 + E^T Q E)^-1 E^T Q
   const Eigen::Index n = W.rows();
   Eigen::MatrixXd A = W.llt().solve(Eigen::MatrixXd::Identity(n, n));

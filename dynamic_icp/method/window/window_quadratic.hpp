@@ -51,8 +51,8 @@ class WindowQuadratic {
   /// The map takes in a scan: map error' = (1 - share) map error + share J dc, with the error of the sweep J dc.
   void mix_map_error(double share, const Eigen::MatrixXd& J);
 
-  /// Some of theta, from `begin` on, walk at random with the covariance W: Q <- (Q^-1 + W)^-1, the estimate stays.
-  void walk_field(Eigen::Index begin, const Eigen::MatrixXd& W);
+  /// Some unknowns, from `begin` on, walk at random with the covariance W: Q <- (Q^-1 + W)^-1, the estimate stays.
+  void walk(Eigen::Index begin, const Eigen::MatrixXd& W);
 
  private:
   void mirror(Eigen::Index size);

@@ -226,7 +226,7 @@ TEST(WindowQuadratic, AWalkAddsToTheCovarianceAndKeepsTheEstimate) {
   WindowQuadratic quadratic = random_quadratic(9);
   const WindowQuadratic before = quadratic;
   const MatrixXd W = dense::random_information(random, 3);
-  quadratic.walk_field(1, W);
+  quadratic.walk(1, W);
   MatrixXd covariance = before.Q().inverse();
   covariance.block(1, 1, 3, 3) += W;
   EXPECT_LT((quadratic.Q() - covariance.inverse()).norm(), 1e-8 * before.Q().norm());
@@ -235,7 +235,7 @@ TEST(WindowQuadratic, AWalkAddsToTheCovarianceAndKeepsTheEstimate) {
 
 TEST(WindowQuadratic, AWalkOfWhatIsUnknownChangesNothing) {
   WindowQuadratic quadratic(kField, kCoefficients, true);
-  quadratic.walk_field(0, MatrixXd::Identity(2, 2));
+  quadratic.walk(0, MatrixXd::Identity(2, 2));
   EXPECT_EQ(quadratic.Q().norm(), 0.0);
   EXPECT_EQ(quadratic.g().norm(), 0.0);
 }
