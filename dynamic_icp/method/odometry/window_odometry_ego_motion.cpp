@@ -99,7 +99,6 @@ void WindowOdometry::separate_static_points() {
     ego_motion::take_out_lever_arms(memory_.whole, *lever_arm_omega_, workers_, -1.0);
   }
   static_points_ = whole.select(static_rows(memory_.thinned, memory_.is_moving));
-  estimator_.correct_pointing(static_points_);
 }
 
 /// The velocity as it is known now, and what moves against it.

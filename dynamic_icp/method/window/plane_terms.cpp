@@ -295,20 +295,6 @@ PlaneTerms::ScanPointing PlaneTerms::scan_pointing(const Layout& layout) const {
           in_common.U * covariance.rightCols<2>()};
 }
 
-std::vector<PlaneTerms::Residual> PlaneTerms::residuals() const {
-  std::vector<Residual> result;
-  result.reserve(rows_.size());
-  for (const Slice& slice : slices_) {
-    for (std::size_t k = slice.begin; k < slice.end; ++k) {
-      const Row& row = rows_[k];
-      if (row.w > 0.0) {
-        result.push_back({order_[k], row.e, row.w, row.J});
-      }
-    }
-  }
-  return result;
-}
-
 PlaneQuality PlaneTerms::quality() const {
   PlaneQuality result;
   result.held = held_;

@@ -61,15 +61,6 @@ class PlaneTerms {
   /// Adds the terms at the trajectory of the last `associate`; to the lower triangle of H.
   void add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
 
-  /// What is left of a point that has a weight at the last `associate`.
-  struct Residual {
-    std::uint32_t row = 0;                        ///< of the scan
-    double e = 0.0;                               ///< m
-    double w = 0.0;                               ///< 1/m^2
-    Eigen::Vector2d J = Eigen::Vector2d::Zero();  ///< m/rad, of e by azimuth and elevation of the point
-  };
-  [[nodiscard]] std::vector<Residual> residuals() const;
-
   /// By how much the whole scan points elsewhere, [azimuth; elevation] (rad), given the other unknowns as they are; its
   /// variances given them, and how it changes with each of them.
   struct ScanPointing {

@@ -14,7 +14,7 @@ struct WindowConfig {
   bool use_doppler = true;      ///< off: planes and motion alone (ablation "no-dr")
   bool use_planes = true;       ///< off: Doppler and motion alone
   bool learn_vibration = true;  ///< off: the motion is smooth (ablation "no-vibration")
-  bool learn_pointing = true;   ///< off: lines point where they should (ablation "no-pointing")
+  bool learn_pointing = true;   ///< off: scans point where they should (ablation "no-pointing")
   bool learn_field = true;      ///< off: the Doppler has no error but noise (ablation "no-bias")
   double knot_spacing_s = 0.0125;
   double start_jerk_mps3 = 30.0;  ///< standard deviation per knot interval before anything is learned

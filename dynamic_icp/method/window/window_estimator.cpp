@@ -163,9 +163,6 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
         compare_with_planes(*scan.static_points, false, *planes);
         motion.planes = planes->quality();
       });
-  if (config_.use_planes && config_.learn_pointing) {
-    pointing_.learn(*planes);
-  }
   join(scan_terms(planes, first_new), workers);
   if (!elimination_.is_solvable() || !rest_factor_.is_solvable()) {
     motion.diverged = true;

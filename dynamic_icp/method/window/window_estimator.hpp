@@ -19,7 +19,6 @@
 #include "dynamic_icp/method/window/doppler_terms.hpp"
 #include "dynamic_icp/method/window/field_elimination.hpp"
 #include "dynamic_icp/method/window/learned_variance.hpp"
-#include "dynamic_icp/method/window/line_pointing.hpp"
 #include "dynamic_icp/method/window/motion_prior.hpp"
 #include "dynamic_icp/method/window/plane_terms.hpp"
 #include "dynamic_icp/method/window/rest_factor.hpp"
@@ -76,9 +75,6 @@ class WindowEstimator {
 
   /// What was learned of the sensor; nothing before the first scan and where nothing is learned.
   [[nodiscard]] std::optional<SensorCalibration> calibration() const;
-
-  /// Takes what is known of the pointing of lines out of the static points of a scan.
-  void correct_pointing(Scan& static_points);
 
   /// The first scan in a map; nothing of the past is kept but the error field. Velocities in sensor axes at the stamp.
   /// Throws UsageError when the calibration is that of another sensor.
@@ -200,7 +196,6 @@ class WindowEstimator {
   motion::Twist twist_;
   Eigen::MatrixXd field_covariance_root_;
   MotionPrior motion_prior_;
-  LinePointing pointing_;
   LearnedVariance pointing_variance_;  ///< rad^2, of azimuth and elevation of a whole scan
   LearnedVariance stamp_variance_;     ///< s^2
   struct StampError {

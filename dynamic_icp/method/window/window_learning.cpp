@@ -42,12 +42,6 @@ LearnedVariance::Prior WindowEstimator::pointing_prior() {
   return {.sigma = kStartPointing_rad, .counts = 2.0, .min_sigma = 1e-7, .max_sigma = kMaxPointing_rad};
 }
 
-void WindowEstimator::correct_pointing(Scan& static_points) {
-  if (config_.learn_pointing) {
-    pointing_.correct(static_points);
-  }
-}
-
 /// A mirror face may sweep a whole scan; the sensors of a rig have none in common.
 Eigen::Vector2d WindowEstimator::pointing_variance(const Scan& points) const {
   return Eigen::Vector2d::Constant(config_.learn_pointing && !points.is_of_rig() ? pointing_variance_.value() : 0.0);
