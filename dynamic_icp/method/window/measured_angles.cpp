@@ -19,11 +19,6 @@ Eigen::Vector3d in_sensor(const Scan& scan, std::size_t row) {
 
 }  // namespace
 
-double measured_elevation(const Scan& scan, std::size_t row) {
-  const Eigen::Vector3d x = in_sensor(scan, row);
-  return std::atan2(x.z(), std::hypot(x.x(), x.y()));
-}
-
 Eigen::Matrix<double, 3, 2> by_angles(const Scan& scan, std::size_t row) {
   const Eigen::Vector3d x = in_sensor(scan, row);
   const double across = std::max(kNearAxis_m, std::hypot(x.x(), x.y()));

@@ -10,9 +10,6 @@
 
 namespace dynamic_icp::window {
 
-/// rad, above the plane of the x and y axes of the sensor that measured the point.
-double measured_elevation(const Scan& scan, std::size_t row);
-
 /// How a point moves with the azimuth and the elevation that its sensor measured: d(point)/d[azimuth; elevation],
 /// m/rad, axes of the scan.
 Eigen::Matrix<double, 3, 2> by_angles(const Scan& scan, std::size_t row);

@@ -37,7 +37,6 @@ TEST(MeasuredAngles, DerivativesAreThoseOfDifferences) {
           raw.mountings = {T};
         }
         const Scan scan = Scan::from_raw(raw);
-        EXPECT_NEAR(measured_elevation(scan, 0), elevation, 1e-12);
         const Eigen::Matrix<double, 3, 2> J = by_angles(scan, 0);
         constexpr double kStep = 1e-5;
         const Vector3d by_azimuth = (at(azimuth + kStep, elevation) - at(azimuth - kStep, elevation)) / (2.0 * kStep);
