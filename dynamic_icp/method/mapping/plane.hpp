@@ -62,6 +62,7 @@ struct Plane {
   Eigen::Matrix3d tangential = Eigen::Matrix3d::Zero();  ///< 1/m^2: pseudo-inverse of the scatter within the plane
   double variance = 0.0;                                 ///< m^2, of one point across the plane: noise and roughness
   double points = 0.0;                                   ///< the weight of the points it was fitted to
+  double bend = 0.0;                                     ///< m^2, of the surface across the plane, without noise
   double phase = 0.0;                                    ///< of the sweep, 0 to 1: the mean of the points
 
   /// Signed distance of a point, m.

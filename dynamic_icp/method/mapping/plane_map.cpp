@@ -120,13 +120,16 @@ void PlaneMap::add_point(const Eigen::Vector3d& point, double phase) {
   }
 }
 
+double PlaneMap::fade_since(std::uint32_t scan) const {
+  const std::uint32_t age = scans_ - scan;
+  return age == 1 ? fade_ : std::pow(fade_, static_cast<double>(age));
+}
+
 /// Fades what a cell knows from earlier scans.
 void PlaneMap::touch(std::uint32_t cell) {
   Cell& touched = cells_[cell];
   if (touched.last_scan != scans_) {
-    const std::uint32_t age = scans_ - touched.last_scan;
-    const double fade = age == 1 ? fade_ : std::pow(fade_, static_cast<double>(age));
-    moments_[cell].scale(is_old(touched) ? 0.0 : fade);
+    moments_[cell].scale(is_old(touched) ? 0.0 : fade_since(touched.last_scan));
     touched.last_scan = scans_;
     touched.is_stale = true;
   }
@@ -161,6 +164,7 @@ void PlaneMap::fit_level(double edge_m, const Workers& workers) {
     Patch& patch = patches_[cell.patch];
     if (plane) {
       patch.plane = *plane;
+      patch.plane.bend = bend_of(fitting_[i], *plane, edge_m);
     } else {
       patch.plane.points = 0.0;
     }
@@ -173,6 +177,39 @@ void PlaneMap::fit_level(double edge_m, const Workers& workers) {
       range_variances_.push_back(plane.variance / (facing * facing));
     }
   }
+}
+
+/// How far the surface itself leaves the plane: the variance of the heights of the parts of its parts, without what the
+/// scatter within them makes of it.
+double PlaneMap::bend_of(const Fitting& fitting, const Plane& plane, double edge_m) const {
+  double squares = 0.0;
+  double weights = 0.0;
+  int count = 0;
+  const Cell& cell = cells_[fitting.cell];
+  for (std::size_t i = 0; i < cell.parts.size(); ++i) {
+    if (cell.parts[i] == kNone) {
+      continue;
+    }
+    const Cell& part = cells_[cell.parts[i]];
+    for (std::size_t j = 0; j < part.parts.size(); ++j) {
+      if (part.parts[j] == kNone) {
+        continue;
+      }
+      const Moments& moments = moments_[part.parts[j]];
+      const std::uint64_t key = key_of_part(key_of_part(fitting.key, i), j);
+      const double height = plane.distance(spatial::cell_centre(key, 0.25 * edge_m) + moments.first / moments.weight);
+      const double weight = moments.weight * fade_since(cells_[part.parts[j]].last_scan);
+      squares += weight * height * height;
+      weights += weight;
+      ++count;
+    }
+  }
+  const int free = count - 3;  // a plane fits three of them
+  if (free < 1 || weights <= count) {
+    return 0.0;
+  }
+  const double within = std::max(0.0, weights * plane.variance - squares) / (weights - count);
+  return std::max(0.0, squares - free * within) / weights;
 }
 
 /// Too low an estimate leaves a part of the tilt, too high a one tilts planes the other way.

@@ -93,6 +93,7 @@ class PlaneMap {
   void fit_planes(const Workers& workers);
   void fit_level(double edge_m, const Workers& workers);
   void go_down();
+  [[nodiscard]] double bend_of(const Fitting& fitting, const Plane& plane, double edge_m) const;
   void learn_range_noise();
   void drop_cells(const Eigen::Vector3d& position);
   void drop_old_parts(std::uint32_t cell);
@@ -102,6 +103,7 @@ class PlaneMap {
   std::uint32_t new_cell();
   std::uint32_t new_patch();
   [[nodiscard]] bool is_old(const Cell& cell) const { return cell.last_scan < oldest_; }
+  [[nodiscard]] double fade_since(std::uint32_t scan) const;
 
   PlaneMapConfig config_;
   double per_finest_cell_ = 0.0;  ///< 1/m

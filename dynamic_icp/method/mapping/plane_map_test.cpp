@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <random>
 #include <utility>
@@ -66,6 +67,31 @@ TEST(PlaneMap, DividesACellThatHoldsAnEdge) {
   ASSERT_NE(wall, nullptr);
   EXPECT_NEAR(std::abs(floor->plane.normal.z()), 1.0, 1e-6);
   EXPECT_NEAR(std::abs(wall->plane.normal.x()), 1.0, 1e-6);
+}
+
+TEST(PlaneMap, TellsTheBendOfASurfaceFromItsNoise) {
+  // A floor that waves by `amplitude_m` over the edge of a coarse cell, which no plane follows.
+  const auto mean_bend = [](double amplitude_m) {
+    std::vector<Vector3d> points = floor_at(0.3, Vector3d::Zero(), 3, 20000);
+    for (Vector3d& point : points) {
+      point.z() += amplitude_m * std::cos(std::numbers::pi * point.x());
+    }
+    PlaneMap map({});
+    map.add(points, Vector3d::Zero(), kOneThread);
+    double sum = 0.0;
+    for (double y = -4.5; y < 5.0; y += 2.0) {
+      const Patch* patch = map.find(Vector3d(1.0, y, 0.3));
+      EXPECT_NE(patch, nullptr);
+      EXPECT_GT(patch->plane.points, 100.0) << "of a coarse cell";
+      sum += patch->plane.bend / 5.0;
+    }
+    return sum;
+  };
+  const double noise = 0.005 * 0.005;
+  EXPECT_LT(mean_bend(0.0), 0.02 * noise);
+  // Parts of half a metre average the wave over a quarter of its length.
+  const double seen = std::sin(std::numbers::pi / 4.0) / (std::numbers::pi / 4.0) * 0.01;
+  EXPECT_NEAR(mean_bend(0.01), 0.5 * seen * seen, 0.1 * seen * seen);
 }
 
 TEST(PlaneMap, LearnsHowFarRangesErrFromSurfacesThatFaceTheSensor) {

@@ -18,6 +18,7 @@ namespace {
 
 constexpr std::uint32_t kInformativePoints = 5;  // a patch tells of itself with so many points on it
 constexpr std::size_t kInformativePatches = 50;  // and all patches together when there are so many
+constexpr double kBendInCommon = 0.4;            // the points of a scan on a patch meet part of its bend
 constexpr double kMinHeld = 1e-6;
 constexpr double kNoPointing = 1e-14;    // rad^2
 constexpr double kNoInformation = 1e-6;  // 1/rad^2 and 1/m^2
@@ -100,20 +101,29 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
     row.e = plane.distance(in_map) - (1.0 - row.beyond) * row.m.dot(before) - row.beyond * row.m.dot(after);
     row.J = by_angles(scan_, i).transpose() * (slice.at.R.transpose() * n);
     row.own = std::max(plane.variance, min_variance);
-    row.in_common = plane.height_variance(in_map) + model_variance;
+    row.in_common = plane.height_variance(in_map) + model_variance + kBendInCommon * plane.bend;
   }
 }
 
+/// Points of a patch are weighted alike. Its height is known worse at its rim than in its middle, but where a surface
+/// bulges, the middle lies on one side of the plane and the rim on the other: to believe one more is to move the plane.
 void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error,
                            const PlaneNoise& noise, bool adapt) {
   R_map_reference_ = trajectory.reference().linear();
   pointing_variance_ = noise.pointing_variance;
   workers_.for_each(slices_.size(), 1, [&](std::size_t s) { place(trajectory, map_error, noise, slices_[s]); });
   members_.assign(map_.patch_limit(), 0);
-  squares_.clear();
+  precision_.assign(map_.patch_limit(), 0.0);
   for (const Row& row : rows_) {
     if (row.patch != nullptr) {
       ++members_[row.patch->id];
+      precision_[row.patch->id] += 1.0 / row.in_common;
+    }
+  }
+  squares_.clear();
+  for (Row& row : rows_) {
+    if (row.patch != nullptr) {
+      row.in_common = members_[row.patch->id] / precision_[row.patch->id];
       squares_.push_back(row.e * row.e / (row.own + row.in_common));
     }
   }

@@ -79,7 +79,7 @@ class PlaneTerms {
   using Matrix8d = Eigen::Matrix<double, 8, 8>;
   struct Row : PlaneRow {
     double own = 0.0;                                 ///< m^2, of the point
-    double in_common = 0.0;                           ///< m^2, of all points on its patch
+    double in_common = 0.0;                           ///< m^2, of all points on its patch: one value for all of them
     double all = 0.0;                                 ///< m^2, as one of these points
     Eigen::Vector3d lever = Eigen::Vector3d::Zero();  ///< m, from the origin of the reference, map axes
     const mapping::Patch* patch = nullptr;
@@ -117,6 +117,7 @@ class PlaneTerms {
   std::vector<Row> rows_;                ///< in that order
   std::vector<std::uint64_t> found_in_;  ///< finest cell of each row
   std::vector<std::uint32_t> members_;   ///< points per patch
+  std::vector<double> precision_;        ///< 1/m^2, of what is common to the points of a patch: their sum
   std::vector<double> squares_;          ///< e^2 over the variance of each row on a patch
   Eigen::Matrix3d R_map_reference_ = Eigen::Matrix3d::Identity();
   Matrix6d motions_ = Matrix6d::Identity();  ///< the principal ones, columns [phi; p], reference frame

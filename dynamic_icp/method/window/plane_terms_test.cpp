@@ -32,6 +32,7 @@ constexpr double kKnots_s = 0.0125;
 constexpr double kSlice_s = kKnots_s / 8.0;
 constexpr std::size_t kSlices = 64;
 constexpr double kStamp_s = 5.003;
+constexpr double kBendInCommon = 0.4;
 
 SplineTrajectory true_trajectory() {
   Vector6d reference;
@@ -89,9 +90,14 @@ struct Definition {
              const PlaneNoise& noise, bool adapt)
       : scan(points), trajectory(at), map_error(error) {
     std::map<const Patch*, double> members;
+    std::map<const Patch*, double> precision;
     for (std::size_t i = 0; i < scan.size(); ++i) {
       patches.push_back(map.find(in_map(i)));
-      ++members[patches.back()];
+      if (const Patch* patch = patches.back(); patch != nullptr) {
+        ++members[patch];
+        precision[patch] += 1.0 / (patch->plane.height_variance(in_map(i)) + std::pow(noise.model_sigma_m, 2) +
+                                   kBendInCommon * patch->plane.bend);
+      }
     }
     const VectorXd e = residuals();
     const auto size = static_cast<Index>(scan.size());
@@ -101,8 +107,7 @@ struct Definition {
     for (Index i = 0; i < size; ++i) {
       if (const Patch* patch = patches[static_cast<std::size_t>(i)]; patch != nullptr) {
         own[i] = std::max(patch->plane.variance, std::pow(noise.min_sigma_m, 2));
-        common[i] =
-            patch->plane.height_variance(in_map(static_cast<std::size_t>(i))) + std::pow(noise.model_sigma_m, 2);
+        common[i] = members[patch] / precision[patch];
         scaled.push_back(std::abs(e[i]) / std::sqrt(own[i] + common[i]));
       }
     }
