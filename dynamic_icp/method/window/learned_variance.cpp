@@ -19,6 +19,11 @@ constexpr double kLeastKnown = 0.02;
 
 }  // namespace
 
+KnownValue with_prior(const KnownValue& known, double before, double after) {
+  const double variance = 1.0 / (1.0 / known.variance - 1.0 / before + 1.0 / after);
+  return {known.value * variance / known.variance, variance};
+}
+
 LearnedVariance::LearnedVariance(const Prior& prior)
     : variance_(prior.sigma * prior.sigma),
       min_variance_(prior.min_sigma * prior.min_sigma),

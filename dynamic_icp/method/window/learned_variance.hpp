@@ -4,6 +4,15 @@
 
 namespace dynamic_icp::window {
 
+/// Mean and variance of what is known of an unknown.
+struct KnownValue {
+  double value = 0.0;
+  double variance = 0.0;
+};
+
+/// What is known of x ~ N(0, before) from data, had it been N(0, after) a priori.
+KnownValue with_prior(const KnownValue& known, double before, double after);
+
 /// The variance q of unknowns x ~ N(0, q), learned from their estimates, scan after scan. Old evidence fades.
 class LearnedVariance {
  public:

@@ -31,6 +31,18 @@ double learned(double sigma, double start_sigma) {
   return sum / (kScans - kSettled);
 }
 
+TEST(LearnedVariance, KnowsWhatAnotherPriorWouldHaveLeft) {
+  const auto posterior = [](double prior) {
+    const double gain = prior / (prior + kMeasured * kMeasured);
+    return KnownValue{gain * 0.7, gain * kMeasured * kMeasured};  // 0.7 was measured
+  };
+  for (const double after : {1e-4, 0.3, 1e4}) {
+    const KnownValue known = with_prior(posterior(0.3), 0.3, after);
+    EXPECT_NEAR(known.value, posterior(after).value, 1e-12) << after;
+    EXPECT_NEAR(known.variance, posterior(after).variance, 1e-12) << after;
+  }
+}
+
 TEST(LearnedVariance, FollowsWhatIsMeasured) {
   // The memory of eight scans makes it scatter, and overshooting adds some.
   for (const double start : {0.05, 50.0}) {

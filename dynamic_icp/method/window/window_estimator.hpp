@@ -198,12 +198,8 @@ class WindowEstimator {
   MotionPrior motion_prior_;
   LearnedVariance pointing_variance_;  ///< rad^2, of azimuth and elevation of a whole scan
   LearnedVariance stamp_variance_;     ///< s^2
-  struct StampError {
-    double error_s = 0.0;
-    double variance = 0.0;  ///< s^2
-  };
-  StampError last_stamp_;  ///< as it was known before the scan at hand
-  StampError this_stamp_;
+  KnownValue last_stamp_;              ///< s, as it was known before the scan at hand
+  KnownValue this_stamp_;
   LearnedVariance scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common
   double cell_variance_ = 1e-4;          ///< (m/s)^2
   double model_sigma_m_ = 0.003;

@@ -70,9 +70,12 @@ double WindowEstimator::learn_stamps() {
   rows(at.stamp(), 0) = 1.0;
   rows(at.stamp(), 1) = 1.0;
   const Eigen::VectorXd variances = rest_factor_.covariance_root(rows).colwise().squaredNorm();
-  this_stamp_ = {stamp_errors_[1], variances[1]};
-  return stamp_variance_.propose_change(stamp_errors_[1] - stamp_errors_[0], variances[0], -last_stamp_.error_s,
-                                        stamp_variance_.value() + last_stamp_.variance);
+  const double before = stamp_variance_.value();
+  const double growth = stamp_variance_.propose_change(stamp_errors_[1] - stamp_errors_[0], variances[0],
+                                                       -last_stamp_.value, before + last_stamp_.variance);
+  // The scan joins the past with the variance that it has now.
+  this_stamp_ = with_prior({stamp_errors_[1], variances[1]}, before, stamp_variance_.value());
+  return growth;
 }
 
 /// And what all Doppler values of a scan have in common.
