@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/boreas_doppler_tables.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
@@ -71,17 +72,55 @@ const RecordLayout& layout_of(const std::vector<fs::path>& files) {
   return fits == kRecordLayouts.end() ? *kRecordLayouts.front() : **fits;
 }
 
+/// Why bias tables do not go with scans of this layout; empty where they do.
+std::string_view contradiction_to_tables(const RecordLayout& layout) {
+  if (&layout == &formats::kBoreas40) {
+    return "they are of the sensor of Boreas-Aeva, and the scans are of Boreas-RT";
+  }
+  if (&layout == &formats::kBoreas24) {
+    return "they go by beam, and the scans do not say the beam of a point";
+  }
+  if (&layout == &formats::kBoreas32) {
+    return "they are of one sensor, and the scans may be of several";
+  }
+  return "";
+}
+
+/// Has the bias tables that lie beside the scans taken out of the Doppler, and says what becomes of the bias.
+void correct_doppler(const fs::path& folder, const RecordLayout& layout, RecordRecording& recording) {
+  std::vector<std::string>& assumptions = recording.scans.assumptions;
+  const bool is_older = &layout != &formats::kBoreas40;
+  const fs::path tables_folder = find_boreas_doppler_tables(folder);
+  const std::string_view contradiction = contradiction_to_tables(layout);
+  std::string bias;
+  if (tables_folder.empty()) {
+    bias = is_older ? "no tables of Doppler bias lie beside them (aeva_calib/), so their Doppler is not corrected" : "";
+  } else if (!contradiction.empty()) {
+    bias = fmt::format("the tables of Doppler bias in {} are not applied: {}", tables_folder.string(), contradiction);
+  } else {
+    bias = fmt::format("their Doppler is corrected by the tables of bias in {}", tables_folder.string());
+    recording.correct = [tables = read_boreas_doppler_tables(tables_folder)](RawScan& scan, const fs::path& file) {
+      subtract_boreas_doppler_bias(tables, file, scan);
+    };
+  }
+  if (is_older) {
+    bias = fmt::format("the scans are read as records of {} bytes (Boreas-Aeva); {}", layout.bytes, bias);
+  }
+  if (!bias.empty()) {
+    assumptions.push_back(std::move(bias));
+  }
+  if (const fs::path model = find_doppler_odom_model(folder); !model.empty()) {
+    assumptions.push_back(
+        fmt::format("{} is of a model of Doppler bias for doppler_odom, which is not read", model.string()));
+  }
+}
+
 RecordRecording aeva_recording(const fs::path& folder, const OpenOptions& options) {
   RecordRecording recording;
   recording.scans = stamped_files(child(folder, "aeva"), ".bin", options.period_s);
   const RecordLayout& layout = layout_of(recording.scans.files);
   recording.layout_of = [&layout](const fs::path&, Stamp) -> const RecordLayout& { return layout; };
-  if (&layout != &formats::kBoreas40) {
-    recording.scans.assumptions.push_back(fmt::format(
-        "the scans are read as records of {} bytes (Boreas-Aeva); the tables of Doppler bias of that data set are not "
-        "applied",
-        layout.bytes));
-  }
+  correct_doppler(folder, layout, recording);
   if (const fs::path poses = child(folder, "applanix/aeva_poses.csv"); !poses.empty()) {
     recording.truth = {read_boreas_poses(poses), poses};
   }

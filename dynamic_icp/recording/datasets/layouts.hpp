@@ -67,6 +67,8 @@ std::filesystem::path find_boreas_scans(const std::filesystem::path& input);
 ///   aeva/<stamp_us>.bin                 records of float32 (formats::kBoreas40; 24, 28 or 32 bytes: the content tells)
 ///   applanix/aeva_poses.csv             optional: poses of the sensor in ENU
 ///   calib/T_applanix_lidar.txt, T_aeva_lidar.txt   optional: give the sensor's pose in the Applanix frame
+///   aeva_calib/*.csv                    optional: the Doppler bias of scans of 28 bytes, which is taken out
+///                                       (boreas_doppler_tables.hpp); a sentence says whether it was
 /// and the "Aeva" set of the same authors:
 ///   frames/*.bin                        records of 20 bytes (formats::kXyzdTime), in the order of their numbers
 ///   timestamps.txt                      seconds, one line per scan

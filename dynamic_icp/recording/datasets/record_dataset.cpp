@@ -66,6 +66,9 @@ class RecordDataset final : public Dataset {
     if (!recording_.times.empty()) {
       raw.times = read_times(recording_.times / file.filename(), raw, file);
     }
+    if (recording_.correct) {
+      recording_.correct(raw, file);
+    }
     return raw;
   }
 

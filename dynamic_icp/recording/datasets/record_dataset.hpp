@@ -24,6 +24,7 @@ struct RecordRecording {
   Truth truth;
   std::optional<Eigen::Isometry3d> T_vehicle_sensor = {};
   DopplerKind doppler_kind = DopplerKind::kRelative;
+  std::function<void(RawScan& scan, const std::filesystem::path& file)> correct = {};  ///< of what was read, if set
 };
 
 /// The recording as a dataset. Its scans throw DataError for numbers that were never measured (record_guess.hpp).
