@@ -19,7 +19,8 @@ constexpr std::size_t kMaxFileFaces = 256;
 bool fits(const SensorCalibration& calibration, const DopplerErrorField& field) {
   bool result = calibration.parts.size() == field.groups().size() && calibration.information.size() == field.size() &&
                 calibration.gradient.size() == field.size() && calibration.stamp_sigma_s > 0.0 &&
-                calibration.stamp_sigma_s < 1.0 && calibration.scan_error_mps > 0.0 &&
+                calibration.stamp_sigma_s < 1.0 && calibration.period_sigma_s > 0.0 &&
+                calibration.period_sigma_s < 1.0 && calibration.scan_error_mps > 0.0 &&
                 calibration.scan_error_mps < 10.0;
   for (std::size_t k = 0; result && k < field.groups().size(); ++k) {
     const SensorCalibration::Part& part = calibration.parts[k];

@@ -7,9 +7,6 @@
 namespace dynamic_icp::window {
 namespace {
 
-// What is left of the evidence after one more scan.
-constexpr double kMemory = 0.87;
-
 // One scan changes a variance by no more than this.
 constexpr double kMaxChange = 8.0;
 
@@ -25,7 +22,8 @@ KnownValue with_prior(const KnownValue& known, double before, double after) {
 }
 
 LearnedVariance::LearnedVariance(const Prior& prior)
-    : variance_(prior.sigma * prior.sigma),
+    : memory_(prior.memory),
+      variance_(prior.sigma * prior.sigma),
       min_variance_(prior.min_sigma * prior.min_sigma),
       max_variance_(prior.max_sigma * prior.max_sigma),
       squares_(prior.counts * variance_),
@@ -36,8 +34,8 @@ LearnedVariance::LearnedVariance(const Prior& prior)
 double LearnedVariance::propose(double estimate, double posterior_variance) {
   // With the share k that the data know of x, the measurement alone was x / k with the variance q (1 - k) / k.
   const double known = std::clamp(1.0 - posterior_variance / variance_, 0.0, 1.0);
-  next_squares_ = kMemory * squares_ + estimate * estimate - variance_ * known * (1.0 - known);
-  next_counts_ = kMemory * counts_ + known * known;
+  next_squares_ = memory_ * squares_ + estimate * estimate - variance_ * known * (1.0 - known);
+  next_counts_ = memory_ * counts_ + known * known;
   return renew(next_squares_, next_counts_);
 }
 
@@ -51,8 +49,8 @@ double LearnedVariance::propose_change(double change, double posterior_variance,
     return 0.0;
   }
   const double measured = change - (1.0 - known) * expected;
-  next_squares_ = kMemory * squares_ + 0.5 * (measured * measured - prior_variance * known * (1.0 - known));
-  next_counts_ = kMemory * counts_ + known * known;
+  next_squares_ = memory_ * squares_ + 0.5 * (measured * measured - prior_variance * known * (1.0 - known));
+  next_counts_ = memory_ * counts_ + known * known;
   return renew(next_squares_, next_counts_);
 }
 
@@ -62,8 +60,8 @@ void LearnedVariance::keep() {
 }
 
 void LearnedVariance::update(double squares, double known) {
-  next_squares_ = kMemory * squares_ + squares;
-  next_counts_ = kMemory * counts_ + known;
+  next_squares_ = memory_ * squares_ + squares;
+  next_counts_ = memory_ * counts_ + known;
   renew(next_squares_, next_counts_);
 }
 

@@ -22,6 +22,7 @@ class LearnedVariance {
     double counts = 1.0;
     double min_sigma = 0.0;
     double max_sigma = 1.0;
+    double memory = 0.87;  ///< what is left of the evidence after one more scan
   };
 
   LearnedVariance() = default;
@@ -53,6 +54,7 @@ class LearnedVariance {
  private:
   double renew(double squares, double counts);
 
+  double memory_ = 0.87;
   double variance_ = 1.0;
   double min_variance_ = 0.0;
   double max_variance_ = 1.0;

@@ -34,6 +34,9 @@ bool may_show(const FieldShape& whole, const FieldShape& seen, std::size_t senso
          within(a.elevation_first, a.elevation_span, b.elevation_first, b.elevation_span);
 }
 
+// For so many scans a calibration counts that tells how regular they come.
+constexpr double kCalibratedPeriods = 2.0;
+
 }  // namespace
 
 void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
@@ -46,6 +49,7 @@ void WindowEstimator::set_calibration(const SensorCalibration& calibration) {
   quadratic_->set_field(learned.information, learned.gradient);
   field_ = std::move(learned.field);
   stamp_variance_ = LearnedVariance(stamp_prior(calibration.stamp_sigma_s));
+  period_variance_ = LearnedVariance(period_prior(calibration.period_sigma_s, kCalibratedPeriods));
   scan_error_variance_ = LearnedVariance(scan_error_prior(calibration.scan_error_mps));
   is_calibrated_ = true;
 }
@@ -91,6 +95,7 @@ std::optional<SensorCalibration> WindowEstimator::calibration() const {
     }
   }
   result.stamp_sigma_s = std::sqrt(stamp_variance_.value());
+  result.period_sigma_s = std::sqrt(period_variance_.value());
   result.scan_error_mps = std::sqrt(scan_error_variance_.value());
   return result;
 }

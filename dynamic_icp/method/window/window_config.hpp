@@ -49,6 +49,9 @@ struct FieldShape {
   [[nodiscard]] std::size_t lines() const { return line_elevations_rad.size(); }
 };
 
+/// Standard deviation of the time between two scans of which nothing is known: it tells nothing of their stamps.
+constexpr double kUnknownPeriod_s = 5e-3;
+
 /// What the estimator learned of a sensor in one recording and may begin with in another one.
 struct SensorCalibration {
   FieldShape shape;
@@ -63,7 +66,8 @@ struct SensorCalibration {
       information;               ///< (s/m)^2, of all errors, without their scales: lower triangle, by rows
   std::vector<double> gradient;  ///< s/m, at the estimates, without their scales
   double stamp_sigma_s = 0.0;
-  double scan_error_mps = 0.0;  ///< standard deviation of what all Doppler values of a scan have in common
+  double period_sigma_s = kUnknownPeriod_s;  ///< standard deviation of the time between two scans from whole periods
+  double scan_error_mps = 0.0;               ///< standard deviation of what all Doppler values of a scan have in common
 };
 
 }  // namespace dynamic_icp::window

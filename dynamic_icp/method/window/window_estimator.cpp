@@ -50,6 +50,9 @@ constexpr int kNoiseRounds = 3;
 // Faces of a mirror: one scan may show one of them only.
 constexpr std::size_t kMaxFaces = 8;
 
+// The first scans say how regular they come, not what was thought before.
+constexpr double kUnknownPeriods = 0.02;
+
 constexpr double kScanError_mps = 0.003;
 
 }  // namespace
@@ -60,6 +63,7 @@ WindowEstimator::WindowEstimator(const WindowConfig& config)
       motion_prior_(config),
       pointing_variance_(pointing_prior()),
       stamp_variance_(stamp_prior(config.start_stamp_sigma_s)),
+      period_variance_(period_prior(kUnknownPeriod_s, kUnknownPeriods)),
       scan_error_variance_(scan_error_prior(kScanError_mps)),
       model_sigma_m_(config.model_sigma_m) {}
 
@@ -75,9 +79,11 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
   };
   lay_trajectory();
   take(scan);
+  period_.add(scan.stamp_s);
   first_ = {scan.stamp_s, scan.begin_s, scan.end_s};
   stamp_errors_.setZero();
   this_stamp_ = {};
+  interval_.reset();
   scan_error_ = {};
   map_error_.setZero();
   scans_ = 1;
@@ -151,6 +157,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
       break;
     }
   }
+  learn_period();
   stamp_variance_.keep();
   scan_error_variance_.keep();
   pointing_variance_.keep();
@@ -208,6 +215,10 @@ void WindowEstimator::advance(const WindowScan& scan) {
   quadratic_->move_reference(trajectory_.move_reference(scan.stamp_s), B);
   map_error_.reshaped(6, Layout::kMapNodes) = B.partialPivLu().solve(map_error_.reshaped(6, Layout::kMapNodes)).eval();
   scan_error_ = {};
+  interval_ = period_.add(scan.stamp_s);
+  if (interval_) {
+    interval_->value -= scan.stamp_s - stamp_s_;
+  }
   take(scan);
   linearise_here();
 }

@@ -22,6 +22,7 @@
 #include "dynamic_icp/method/window/motion_prior.hpp"
 #include "dynamic_icp/method/window/plane_terms.hpp"
 #include "dynamic_icp/method/window/rest_factor.hpp"
+#include "dynamic_icp/method/window/scan_period.hpp"
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
 #include "dynamic_icp/method/window/window_config.hpp"
 #include "dynamic_icp/method/window/window_quadratic.hpp"
@@ -118,6 +119,7 @@ class WindowEstimator {
   };
 
   static LearnedVariance::Prior stamp_prior(double sigma_s);
+  static LearnedVariance::Prior period_prior(double sigma_s, double counts);
   static LearnedVariance::Prior scan_error_prior(double sigma_mps);
   static LearnedVariance::Prior pointing_prior();
   void take(const WindowScan& scan);
@@ -147,6 +149,7 @@ class WindowEstimator {
   [[nodiscard]] Problem terms_of_rest(const PlaneTerms* planes, std::size_t first_new, double stamp_variance) const;
   [[nodiscard]] Problem start_terms(const WindowScan& scan, double omega_sigma_rad_s) const;
   [[nodiscard]] Problem scan_terms(const std::optional<PlaneTerms>& planes, std::size_t first_new) const;
+  void add_period(const Layout& at, Problem& problem) const;
   void tie_map_to_first_sweep(Problem& problem) const;
   void take_in_sweep(double share);
   [[nodiscard]] Eigen::MatrixXd displacement_rows(double time_s, const Layout& layout) const;
@@ -157,6 +160,7 @@ class WindowEstimator {
   void learn_motion(double from_s, double to_s);
   double learn_stamps();
   double learn_scan_errors();
+  void learn_period();
   void learn_pointing(const PlaneTerms& planes);
   void learn_roughness(const PlaneQuality& planes);
   void learn_cell_variance(const Workers& workers);
@@ -200,6 +204,10 @@ class WindowEstimator {
   LearnedVariance stamp_variance_;     ///< s^2
   KnownValue last_stamp_;              ///< s, as it was known before the scan at hand
   KnownValue this_stamp_;
+  ScanPeriod period_;
+  std::optional<KnownValue>
+      interval_;                     ///< s, how the error of stamps has changed, had scans whole periods between them
+  LearnedVariance period_variance_;  ///< s^2, of such a time from a whole number of periods
   LearnedVariance scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common
   double cell_variance_ = 1e-4;          ///< (m/s)^2
   double model_sigma_m_ = 0.003;

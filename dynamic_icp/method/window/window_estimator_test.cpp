@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <numbers>
 #include <optional>
 #include <random>
@@ -13,6 +14,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/random_source.hpp"
 
 #include "testing/dense_algebra.hpp"
 #include "testing/swept_room.hpp"
@@ -42,19 +44,20 @@ Vector6d twist(double t) {
 /// A sensor that turns once around itself in each scan.
 struct Drive {
   double doppler_noise_mps = 0.03;
-  std::function<double(double)> error_mps = [](double) { return 0.0; };  ///< of the Doppler, by azimuth
-  std::function<double(int)> late_s = [](int) { return 0.0; };           ///< how late a stamp says the scan is
+  std::function<double(double)> error_mps = [](double) { return 0.0; };      ///< of the Doppler, by azimuth
+  std::function<double(int)> begin_s = [](int k) { return kPeriod_s * k; };  ///< when a scan begins
+  std::function<double(int)> late_s = [](int) { return 0.0; };               ///< how late a stamp says the scan is
   std::size_t points = 9000;
   bool has_doppler = true;
-  bool has_planes = true;
-  std::vector<Vector3d> lever_arms = {};  ///< m, of the sensors of a rig; none: one at the origin
+  int planes_until = std::numeric_limits<int>::max();  ///< scans with planes
+  std::vector<Vector3d> lever_arms = {};               ///< m, of the sensors of a rig; none: one at the origin
 
   [[nodiscard]] Scan scan(int k) const {
     Room room;
     room.half << 40.1, 7.1, 3.1;
     std::mt19937 random(static_cast<unsigned>(100 + k));
     std::normal_distribution<double> normal;
-    const double stamp_s = kPeriod_s * k;
+    const double stamp_s = begin_s(k);
     RawScan raw;
     for (const Vector3d& point : room.points(static_cast<unsigned>(1 + k), points)) {
       const Vector3d at_stamp = path(stamp_s).inverse() * point;
@@ -109,14 +112,14 @@ struct DriveRun {
   }
 };
 
-Step step_of(const WindowMotion& motion, const WindowEstimator& estimator, int k) {
+Step step_of(const Drive& drive, const WindowMotion& motion, const WindowEstimator& estimator, int k) {
   Step step;
   step.motion = motion;
-  step.error = log_se3(motion.T_target_source * path(kPeriod_s * (k - 1)).inverse() * path(kPeriod_s * k));
-  step.stamp_error_s = estimator.stamp_s() - kPeriod_s * k;
+  step.error = log_se3(motion.T_target_source * path(drive.begin_s(k - 1)).inverse() * path(drive.begin_s(k)));
+  step.stamp_error_s = estimator.stamp_s() - drive.begin_s(k);
   const TrajectoryPoint at = estimator.trajectory().at(estimator.stamp_s());
   step.twist_error << at.omega, at.velocity;
-  step.twist_error -= twist(kPeriod_s * k);
+  step.twist_error -= twist(drive.begin_s(k));
   return step;
 }
 
@@ -137,19 +140,19 @@ DriveRun drive(const Drive& drive, int scans, const WindowConfig& config = {}, i
     const std::vector<double> measured = scan.doppler();
     const std::vector<std::uint8_t> is_moving(scan.size(), 0);
     WindowScan now;
-    now.stamp_s = kPeriod_s * k + drive.late_s(k);
+    now.stamp_s = drive.begin_s(k) + drive.late_s(k);
     now.end_s = kPeriod_s;
     now.whole = &scan;
     now.measured = drive.has_doppler ? &measured : nullptr;
     now.is_moving = &is_moving;
-    now.static_points = drive.has_planes ? &scan : &nothing;
+    now.static_points = k < drive.planes_until ? &scan : &nothing;
     if (k == 0) {
       first_points = *now.static_points;
       run.estimator.begin(now, Eigen::Isometry3d::Identity(), twist(0.0).tail<3>(),
                           {Vector3d::Zero(), WindowConfig{}.start_omega_rad_s}, workers);
     } else {
       run.steps.push_back(
-          step_of(run.estimator.update(now, first_points, map, std::nullopt, workers), run.estimator, k));
+          step_of(drive, run.estimator.update(now, first_points, map, std::nullopt, workers), run.estimator, k));
     }
     now.stamp_s = run.estimator.stamp_s();
     run.estimator.add_to_map(now, map, workers);
@@ -228,9 +231,29 @@ TEST(WindowEstimator, FindsAStampThatIsOff) {
   EXPECT_LT(run.worst_move(2), 0.0015);
 }
 
+TEST(WindowEstimator, LearnsWhetherStampsOrScansAreRegular) {
+  // Stamps are even or not, and either they are right or the scans come evenly. Planes tell which; once they are absent
+  // nothing else tells when a scan was taken. A millisecond is a centimetre.
+  constexpr int kBlind = 24;
+  const RandomSource random(3);
+  const auto jitter_s = [&](int k) { return k == 0 ? 0.0 : 1e-3 * random.normal(static_cast<std::uint64_t>(k)); };
+  Drive late;
+  late.late_s = jitter_s;
+  Drive irregular;
+  irregular.begin_s = [&](int k) { return kPeriod_s * k + jitter_s(k); };
+  for (Drive* const kind : {&late, &irregular}) {
+    kind->planes_until = kBlind;
+    const DriveRun run = drive(*kind, kBlind + 8);
+    expect_finite(run);
+    for (std::size_t k = kBlind; k < run.steps.size(); ++k) {
+      EXPECT_NEAR(run.steps[k].stamp_error_s, run.steps[k - 1].stamp_error_s, 4e-4) << k;
+    }
+  }
+}
+
 TEST(WindowEstimator, DrivesByTheDopplerWherePlanesAreAbsent) {
   Drive blind;
-  blind.has_planes = false;
+  blind.planes_until = 0;
   const DriveRun run = drive(blind, 6);
   expect_finite(run);
   EXPECT_LT(run.steps.back().twist_error.tail<3>().norm(), 0.05);
@@ -247,7 +270,7 @@ TEST(WindowEstimator, ARigSeesItsTurnInTheDoppler) {
   expect_finite(with_planes);
   EXPECT_LT(with_planes.worst_move(2), 0.0015);
   EXPECT_LT(with_planes.worst_turn(2), 4e-4);
-  rig.has_planes = false;
+  rig.planes_until = 0;
   const DriveRun blind = drive(rig, 8);
   expect_finite(blind);
   EXPECT_LT(blind.worst_turn(3), 3e-3);
@@ -307,7 +330,7 @@ TEST(WindowEstimator, ACalibrationTellsErrorsFromMotion) {
   drifting.error_mps = [](double azimuth) { return 0.15 * std::sin(azimuth); };
   const std::optional<SensorCalibration> learned = drive(drifting, 14).estimator.calibration();
   ASSERT_TRUE(learned);
-  drifting.has_planes = false;
+  drifting.planes_until = 0;
   const DriveRun unknown = drive(drifting, 5);
   const DriveRun known = drive(drifting, 5, {}, 1, learned);
   expect_finite(known);

@@ -34,6 +34,11 @@ LearnedVariance::Prior WindowEstimator::stamp_prior(double sigma_s) {
   return {.sigma = sigma_s, .counts = 2.0, .min_sigma = 1e-5, .max_sigma = 3e-3};
 }
 
+/// How regular scans come does not change, so the memory is long.
+LearnedVariance::Prior WindowEstimator::period_prior(double sigma_s, double counts) {
+  return {.sigma = sigma_s, .counts = counts, .min_sigma = 1e-5, .max_sigma = 0.05, .memory = 0.98};
+}
+
 LearnedVariance::Prior WindowEstimator::scan_error_prior(double sigma_mps) {
   return {.sigma = sigma_mps, .counts = 2.0, .min_sigma = 5e-4, .max_sigma = 0.5};
 }
@@ -76,6 +81,20 @@ double WindowEstimator::learn_stamps() {
   // The scan joins the past with the variance that it has now.
   this_stamp_ = with_prior({stamp_errors_[1], variances[1]}, before, stamp_variance_.value());
   return growth;
+}
+
+/// How regular the period of the scans is.
+void WindowEstimator::learn_period() {
+  if (!interval_) {
+    return;
+  }
+  const Layout at = rest_layout();
+  Eigen::MatrixXd row = Eigen::MatrixXd::Zero(rest_factor_.size(), 1);
+  row(at.last_stamp(), 0) = -1.0;
+  row(at.stamp(), 0) = 1.0;
+  const double variance = rest_factor_.covariance_root(row).squaredNorm();
+  period_variance_.propose(stamp_errors_[1] - stamp_errors_[0] - interval_->value, variance);
+  period_variance_.keep();
 }
 
 /// And what all Doppler values of a scan have in common.

@@ -88,7 +88,22 @@ WindowEstimator::Problem WindowEstimator::terms_of_rest(const PlaneTerms* planes
   motion_prior_.add(trajectory_, first_new, at, problem.H, problem.g);
   problem.H(at.stamp(), at.stamp()) += 1.0 / stamp_variance;
   problem.g[at.stamp()] += stamp_errors_[1] / stamp_variance;
+  add_period(at, problem);
   return problem;
+}
+
+/// The time since the last scan is a whole number of periods, as far as those are regular.
+void WindowEstimator::add_period(const Layout& at, Problem& problem) const {
+  if (!interval_) {
+    return;
+  }
+  const double information = 1.0 / (period_variance_.value() + interval_->variance);
+  const double e = stamp_errors_[1] - stamp_errors_[0] - interval_->value;
+  problem.H(at.stamp(), at.stamp()) += information;
+  problem.H(at.last_stamp(), at.last_stamp()) += information;
+  problem.H(at.stamp(), at.last_stamp()) -= information;
+  problem.g[at.stamp()] += information * e;
+  problem.g[at.last_stamp()] -= information * e;
 }
 
 /// The terms of the first scan: where and when it is, and what is known of its motion.

@@ -38,7 +38,8 @@ std::string calibration_text(const SensorCalibration& calibration) {
   const FieldShape& shape = calibration.shape;
   text += fmt::format("line_elevations_rad: {}\nfaces: {}\nintensity_mean: {}\nintensity_scale: {}\n",
                       list_of(shape.line_elevations_rad), shape.faces, shape.intensity_mean, shape.intensity_scale);
-  text += fmt::format("stamp_sigma_s: {}\nscan_error_mps: {}\n", calibration.stamp_sigma_s, calibration.scan_error_mps);
+  text += fmt::format("stamp_sigma_s: {}\nperiod_sigma_s: {}\nscan_error_mps: {}\n", calibration.stamp_sigma_s,
+                      calibration.period_sigma_s, calibration.scan_error_mps);
   text += "sensors:  # directions in rad\n";
   for (const FieldShape::View& view : shape.views) {
     text += fmt::format("  - {{azimuth_first: {}, azimuth_span: {}, elevation_first: {}, elevation_span: {}}}\n",
@@ -66,6 +67,7 @@ SensorCalibration read_calibration(const std::filesystem::path& path) {
   shape.intensity_mean = map.number("intensity_mean", kAny);
   shape.intensity_scale = map.number("intensity_scale", kNotNegative);
   result.stamp_sigma_s = map.number("stamp_sigma_s", kSigma_s);
+  result.period_sigma_s = map.number("period_sigma_s", kSigma_s, window::kUnknownPeriod_s);  // not in older files
   result.scan_error_mps = map.number("scan_error_mps", kScale_mps);
   for (const formats::YamlMap& sensor : map.list("sensors")) {
     shape.views.push_back({sensor.number("azimuth_first", kAzimuth_rad), sensor.number("azimuth_span", kSpan_rad),

@@ -18,6 +18,7 @@ window::SensorCalibration some_calibration() {
   calibration.information = {{2.5e6}, {-1e-9, 3.0}, {0.1, 0.2, 1e5}};
   calibration.gradient = {1e-3, -7.0, 0.0};
   calibration.stamp_sigma_s = 5.1e-4;
+  calibration.period_sigma_s = 2.5e-5;
   calibration.scan_error_mps = 0.02;
   return calibration;
 }
@@ -68,6 +69,7 @@ TEST_F(CalibrationFile, ReadsBackTheSameNumbers) {
   EXPECT_EQ(read.information, written.information);
   EXPECT_EQ(read.gradient, written.gradient);
   EXPECT_EQ(read.stamp_sigma_s, 5.1e-4);
+  EXPECT_EQ(read.period_sigma_s, 2.5e-5);
   EXPECT_EQ(read.scan_error_mps, 0.02);
 }
 
