@@ -226,6 +226,12 @@ std::vector<double> YamlMap::numbers(std::string_view key, std::size_t count, Li
   return contents_->row(entry, entry.value, fmt::format("'{}'", contents_->path_of(key)), count, limits);
 }
 
+std::vector<double> YamlMap::numbers_or_none(std::string_view key, Limits limits) const {
+  const Entry& entry = at(key, list_words(0, limits));
+  const bool is_none = entry.value.IsSequence() && entry.value.size() == 0;
+  return is_none ? std::vector<double>() : numbers(key, 0, limits);
+}
+
 std::vector<std::string> YamlMap::texts(std::string_view key) const {
   const std::string expected = "a list of texts";
   const Entry& entry = at(key, expected);

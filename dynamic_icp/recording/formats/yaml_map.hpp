@@ -51,6 +51,8 @@ class YamlMap {
 
   /// A list of exactly `count` numbers; with `count` 0 a list of any length but zero.
   [[nodiscard]] std::vector<double> numbers(std::string_view key, std::size_t count, Limits limits) const;
+  /// A list of any length, also of none.
+  [[nodiscard]] std::vector<double> numbers_or_none(std::string_view key, Limits limits) const;
   /// A list of at least one list of `columns` numbers each; with `columns` 0 each is as long as the first.
   [[nodiscard]] std::vector<std::vector<double>> rows(std::string_view key, std::size_t columns, Limits limits) const;
 

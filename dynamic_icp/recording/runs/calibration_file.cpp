@@ -62,7 +62,7 @@ SensorCalibration read_calibration(const std::filesystem::path& path) {
   SensorCalibration result;
   static_cast<void>(map.whole_number("version", {1, 1}));
   FieldShape& shape = result.shape;
-  shape.line_elevations_rad = map.numbers("line_elevations_rad", 0, kAzimuth_rad);
+  shape.line_elevations_rad = map.numbers_or_none("line_elevations_rad", kAzimuth_rad);
   shape.faces = static_cast<std::size_t>(map.whole_number("faces", {1, 256}));
   shape.intensity_mean = map.number("intensity_mean", kAny);
   shape.intensity_scale = map.number("intensity_scale", kNotNegative);

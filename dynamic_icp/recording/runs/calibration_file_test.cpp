@@ -73,6 +73,15 @@ TEST_F(CalibrationFile, ReadsBackTheSameNumbers) {
   EXPECT_EQ(read.scan_error_mps, 0.02);
 }
 
+// The lines of a rig are not told apart.
+TEST_F(CalibrationFile, ReadsBackOneWithoutLines) {
+  window::SensorCalibration written = some_calibration();
+  written.shape.line_elevations_rad.clear();
+  EXPECT_EQ(read_calibration(write(calibration_text(written))).shape.lines(), 0U);
+  EXPECT_NE(refused("[-0.1, 0, 0.125]", "[-0.1, x]").find("line 4"), std::string::npos);
+  EXPECT_NE(refused("line_elevations_rad: [-0.1, 0, 0.125]\n", "").find("line_elevations_rad"), std::string::npos);
+}
+
 TEST_F(CalibrationFile, RefusesWhatDoesNotFit) {
   EXPECT_NE(refused("version: 1", "version: 2").find("calibration.yaml: line 3"), std::string::npos);
   EXPECT_NE(refused("scale_mps: 0.11", "scale_mps: -0.11").find("scale_mps"), std::string::npos);
