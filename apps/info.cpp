@@ -13,11 +13,13 @@
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
 
+#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
+#include "apps/calibration_info.hpp"
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
 
@@ -298,7 +300,21 @@ void print_json(const InfoOptions& options, const datasets::Dataset& dataset, co
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+/// A calibration has been read as it is: nothing of how recordings are read has an effect on it.
+void refuse_input_options(const InfoOptions& options) {
+  const auto stated = datasets::texts(options.settings);
+  if (!stated.empty()) {
+    throw UsageError(fmt::format("{} is what a run learned of its sensor; '{}' is for recordings", options.input,
+                                 stated.front().first));
+  }
+}
+
 int info(const InfoOptions& options) {
+  if (options.settings.open.format == "auto" && names_calibration(options.input)) {
+    refuse_input_options(options);
+    fmt::print("{}", options.json ? calibration_json(options.input) : calibration_info(options.input));
+    return 0;
+  }
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const TimesSeen times = look_at_times(*dataset);
   const PointsSeen seen = look_at_points(*dataset);
@@ -332,8 +348,13 @@ int info(const InfoOptions& options) {
 void add_info_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<InfoOptions>();
   CLI::App* command = app.add_subcommand(
-      "info", "What the program sees in a recording: layout, scans, times, ranges, and what is wrong with its numbers");
-  command->add_option("INPUT", options->input, "Folder of the recording")->required();
+      "info",
+      "What the program sees in a recording: layout, scans, times, ranges, and what is wrong with its numbers. Of a "
+      "run: what it learned of the error of its sensor's Doppler, as numbers and as a picture");
+  command
+      ->add_option("INPUT", options->input,
+                   "Folder of the recording; or folder of a run with --preset default, or its calibration.yaml")
+      ->required();
   add_input_options(*command, options->settings);
   command->add_flag("--json", options->json, "Print it as JSON, with the numbers that the answers rest on");
   command->callback([options, &selected] { selected = [options] { return info(*options); }; });

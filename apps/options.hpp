@@ -14,4 +14,7 @@ CLI::Option* add_option(CLI::App& command, const char* name, Value& value, const
   return command.add_option(name, value, help)->type_name(type);
 }
 
+/// Whether an argument that may also be something else names a YAML file.
+inline bool is_yaml_name(const std::string& name) { return name.ends_with(".yaml") || name.ends_with(".yml"); }
+
 }  // namespace dynamic_icp::apps

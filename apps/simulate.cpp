@@ -142,18 +142,16 @@ SimulationConfig make_config(const SceneKind& kind, const SimulateOptions& optio
   return config;
 }
 
-bool is_file(const std::string& name) { return name.ends_with(".yaml") || name.ends_with(".yml"); }
-
 /// The scene that comes with the program or the one of a file.
 SceneKind find_scene(const std::string& name) {
-  return is_file(name) ? scenes::load_scene_file(name) : scenes::find_scene(name);
+  return is_yaml_name(name) ? scenes::load_scene_file(name) : scenes::find_scene(name);
 }
 
 /// The files that the simulation reads.
 std::vector<std::filesystem::path> inputs(const SimulateOptions& options) {
   std::vector<std::filesystem::path> files;
   for (const std::string& name : {options.scene, options.sensor}) {
-    if (is_file(name)) {
+    if (is_yaml_name(name)) {
       files.emplace_back(name);
     }
   }

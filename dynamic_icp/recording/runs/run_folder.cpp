@@ -60,6 +60,11 @@ double RunFiles::seconds(std::size_t frame) const {
   return seconds_between(trajectory.front().stamp, trajectory[frame].stamp);
 }
 
+bool is_run_folder(const fs::path& folder) {
+  std::error_code fault;  // what cannot be entered is none
+  return fs::exists(folder / "run.json", fault) && fs::exists(folder / "trajectory.tum", fault);
+}
+
 RunFiles read_run(const fs::path& folder) {
   if (!fs::is_directory(folder)) {
     throw DataError(fmt::format("{}: no such folder; expected the folder of a run", folder.string()));

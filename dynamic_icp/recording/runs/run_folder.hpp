@@ -31,6 +31,9 @@ struct RunFiles {
   [[nodiscard]] double seconds(std::size_t frame) const;
 };
 
+/// Whether a folder holds a run, of which not all need be there.
+bool is_run_folder(const std::filesystem::path& folder);
+
 /// Reads the folder of a finished run. Throws DataError naming the file, the line and what was expected when a file is
 /// missing, a line is no complete JSON object, a key is missing or of the wrong kind, or the files disagree about how
 /// many scans there are.

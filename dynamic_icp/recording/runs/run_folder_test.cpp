@@ -54,6 +54,16 @@ TEST(RunFolder, ReadsAllThatARunWrote) {
   EXPECT_EQ(text_of(run.run, "configuration.preprocess.voxel_size_m"), "");
 }
 
+TEST(RunFolder, IsToldByTheFilesOfEveryRun) {
+  const TestFolder folder;
+  EXPECT_FALSE(is_run_folder(folder.path() / "run"));
+  SampleRun().write_run(folder);
+  EXPECT_TRUE(is_run_folder(folder.path() / "run"));
+  EXPECT_FALSE(is_run_folder(folder.path()));
+  std::filesystem::remove(folder.path() / "run" / "run.json");
+  EXPECT_FALSE(is_run_folder(folder.path() / "run"));
+}
+
 TEST(RunFolder, VelocityThatCouldNotBeEstimatedIsUnknown) {
   const TestFolder folder;
   SampleRun().write_run(folder);

@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <numbers>
 #include <string>
 
 #include <fmt/format.h>
@@ -13,11 +11,11 @@
 #include "dynamic_icp/method/window/error_by_direction.hpp"
 #include "dynamic_icp/tools/drawing/axes.hpp"
 #include "dynamic_icp/tools/drawing/raster.hpp"
+#include "dynamic_icp/tools/figures/field_summary.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
 
-constexpr double kDegrees = 180.0 / std::numbers::pi;
 constexpr std::size_t kAzimuths = 96;
 constexpr std::size_t kElevations = 24;
 
@@ -79,11 +77,9 @@ void draw_field_scale(drawing::Svg& svg, const drawing::Theme& theme, const draw
 
 void draw_field(drawing::Svg& svg, const drawing::Theme& theme, const drawing::PixelBox& area, const ShownField& shown,
                 const window::FieldShape::View& view) {
-  const drawing::Axes axes(
-      area,
-      {"azimuth to the right (deg)",
-       {-kDegrees * (view.azimuth_first + view.azimuth_span), -kDegrees * view.azimuth_first}},
-      {"elevation (deg)", {kDegrees * view.elevation_first, kDegrees * (view.elevation_first + view.elevation_span)}});
+  const ShownView shows = shown_view(view);
+  const drawing::Axes axes(area, {"azimuth to the right (deg)", {shows.left_deg, shows.right_deg}},
+                           {"elevation (deg)", {shows.bottom_deg, shows.top_deg}});
   axes.draw(svg, theme);
   svg.image(area, raster_of(shown, ground_of(theme)));
   svg.text({area.left, area.top - 14.0}, shown.title, {.colour = theme.ink, .size = 15.0, .bold = true});
@@ -91,12 +87,13 @@ void draw_field(drawing::Svg& svg, const drawing::Theme& theme, const drawing::P
 }
 
 std::array<ShownField, 2> panels_of(const window::ErrorByDirection& learned, const std::string& sensor) {
-  const double limit = std::max(1e-3, learned.error_mps.cwiseAbs().maxCoeff());
+  const double limit = std::max(kLeastError_mps, learned.error_mps.cwiseAbs().maxCoeff());
   return {ShownField{"Error of the Doppler" + sensor, learned.error_mps, -limit, limit,
                      [](double share, drawing::Ground ground) {
                        return drawing::diverging_colour(2.0 * share - 1.0, ground);
                      }},
-          ShownField{"Its standard deviation", learned.sigma_mps, 0.0, std::max(1e-3, learned.sigma_mps.maxCoeff()),
+          ShownField{"Its standard deviation", learned.sigma_mps, 0.0,
+                     std::max(kLeastError_mps, learned.sigma_mps.maxCoeff()),
                      [](double share, drawing::Ground) { return drawing::sequential_colour(share); }}};
 }
 
