@@ -123,6 +123,8 @@ std::string calibration_info(const fs::path& input) {
   text += fmt::format("sensors      {}, with {} lines and {} mirror face{} told apart\n", learned.sensors.size(),
                       calibration.shape.lines(), calibration.shape.faces, calibration.shape.faces == 1 ? "" : "s");
   text += fmt::format("stamps       off by {:.3f} ms (standard deviation)\n", 1e3 * calibration.stamp_sigma_s);
+  text += fmt::format("period       scans off by {:.3f} ms from even ones (standard deviation)\n",
+                      1e3 * calibration.period_sigma_s);
   text += fmt::format("scans        {:.4f} m/s in common to all points of a scan (standard deviation)\n",
                       calibration.scan_error_mps);
   for (std::size_t k = 0; k < learned.sensors.size(); ++k) {
@@ -142,6 +144,7 @@ std::string calibration_json(const fs::path& input) {
                {"lines", learned.calibration.shape.lines()},
                {"faces", learned.calibration.shape.faces},
                {"stamp_sigma_s", learned.calibration.stamp_sigma_s},
+               {"period_sigma_s", learned.calibration.period_sigma_s},
                {"scan_error_mps", learned.calibration.scan_error_mps},
                {"sensors", Json::array()}};
   for (const figures::FieldSummary& sensor : learned.sensors) {
