@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <utility>
 
 #include <Eigen/Cholesky>
@@ -73,17 +74,36 @@ std::pair<std::size_t, double> between_nodes(double share, std::size_t count) {
 }
 
 /// Of each line; one that shows nothing lies where the one before does.
+/// Of each line, where its cells are; of lines without any, where their numbers put them among the others.
 std::vector<double> mean_elevations(const std::vector<DopplerCell>& cells, std::size_t lines) {
-  std::vector<double> sums(lines, 0.0);
+  std::vector<double> elevations(lines, 0.0);
   std::vector<double> counts(lines, 0.0);
   for (const DopplerCell& cell : cells) {
-    sums[cell.line] += elevation_of(cell);
+    elevations[cell.line] += elevation_of(cell);
     counts[cell.line] += 1.0;
   }
+  std::vector<std::size_t> seen;
   for (std::size_t line = 0; line < lines; ++line) {
-    sums[line] = counts[line] > 0.0 ? sums[line] / counts[line] : line > 0 ? sums[line - 1] : 0.0;
+    if (counts[line] > 0.0) {
+      elevations[line] /= counts[line];
+      seen.push_back(line);
+    }
   }
-  return sums;
+  if (seen.size() < 2) {
+    return elevations;
+  }
+  for (std::size_t line = 0; line < lines; ++line) {
+    if (counts[line] > 0.0) {
+      continue;
+    }
+    const auto next = std::ranges::upper_bound(seen, line);
+    const bool is_between = next != seen.begin() && next != seen.end();
+    const std::size_t a = is_between ? *std::prev(next) : seen.front();
+    const std::size_t b = is_between ? *next : seen.back();
+    const double share = (static_cast<double>(line) - static_cast<double>(a)) / static_cast<double>(b - a);
+    elevations[line] = elevations[a] + share * (elevations[b] - elevations[a]);
+  }
+  return elevations;
 }
 
 }  // namespace

@@ -87,6 +87,22 @@ TEST(DopplerErrorField, GroupsFollowEachOther) {
   }
 }
 
+TEST(DopplerErrorField, LinesWithoutPointsLieWhereTheirNumbersPutThem) {
+  std::vector<DopplerCell> cells;
+  for (const std::uint16_t line : std::vector<std::uint16_t>{2, 3, 6}) {
+    DopplerCell cell;
+    const double elevation = 0.02 * line - 0.1;
+    cell.u << std::cos(elevation), 0.0, std::sin(elevation);
+    cell.line = line;
+    cells.push_back(cell);
+  }
+  const std::vector<double> elevations = DopplerErrorField::shape_of(cells, 1).line_elevations_rad;
+  ASSERT_EQ(elevations.size(), 7U);
+  for (std::size_t line = 0; line < elevations.size(); ++line) {
+    EXPECT_NEAR(elevations[line], 0.02 * static_cast<double>(line) - 0.1, 1e-12) << line;
+  }
+}
+
 TEST(DopplerErrorField, ColumnsReproduceTheError) {
   for (const std::size_t sensors : {1U, 4U}) {
     const std::vector<DopplerCell> cells = some_cells(sensors);
