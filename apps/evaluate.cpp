@@ -16,6 +16,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation_report.hpp"
+#include "dynamic_icp/recording/evaluation/object_tracking.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/runs/frame_rows.hpp"
 
@@ -34,6 +35,7 @@ struct Options {
   std::optional<double> gap_seconds;
   std::optional<double> gap_meters;
   evaluation::AssociationConfig association;
+  bool objects = false;
   bool json = false;
 };
 
@@ -91,7 +93,30 @@ evaluation::Evaluation evaluate_files(const Options& options, const evaluation::
   }
 }
 
+void write_out(const std::string& text) {
+  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
+    throw DataError(fmt::format("standard output: cannot write: {}", std::strerror(errno)));
+  }
+}
+
+/// Objects are in a file of this name, which may be named by its folder.
+std::filesystem::path objects_file(const std::string& input) {
+  const std::filesystem::path path = input;
+  return std::filesystem::is_directory(path) ? path / "objects.jsonl" : path;
+}
+
+int evaluate_objects(const Options& options) {
+  const evaluation::ObjectTracking tracking =
+      evaluation::compare_tracks(evaluation::read_true_bodies(objects_file(options.reference)),
+                                 evaluation::read_reported_bodies(objects_file(options.estimate)));
+  write_out(options.json ? evaluation::tracking_json(tracking) : evaluation::tracking_table(tracking));
+  return 0;
+}
+
 int run_evaluate(const Options& options) {
+  if (options.objects) {
+    return evaluate_objects(options);
+  }
   const evaluation::EvaluationConfig config = config_of(options);  // wrong use is reported before a file is read
   const formats::TumFile estimate = formats::read_tum(options.estimate);
   const formats::TumFile reference = formats::read_tum(options.reference);
@@ -100,9 +125,7 @@ int run_evaluate(const Options& options) {
                                                reference.repeated_lines};
   const std::string text =
       options.json ? evaluation::evaluation_json(evaluation, source) : evaluation::evaluation_table(evaluation, source);
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw DataError(fmt::format("standard output: cannot write: {}", std::strerror(errno)));
-  }
+  write_out(text);
   return 0;
 }
 
@@ -130,14 +153,24 @@ void add_error_options(CLI::App& command, Options& options) {
 
 void add_evaluate_command(CLI::App& app, std::function<int()>& selected) {
   auto options = std::make_shared<Options>();
-  CLI::App* command = app.add_subcommand("evaluate", "Compare an estimated trajectory with a reference");
+  CLI::App* command =
+      app.add_subcommand("evaluate", "Compare an estimated trajectory, or its moving objects, with a reference");
   command
       ->add_option("ESTIMATE", options->estimate,
                    "TUM file: timestamp tx ty tz qx qy qz qw (s, m, unit quaternion); of the trajectory.tum of a "
-                   "run the covariances of frames.jsonl beside it are compared too")
+                   "run the covariances of frames.jsonl beside it are compared too; with --objects a run")
       ->required();
-  command->add_option("REFERENCE", options->reference, "TUM file of the true poses of the same sensor")->required();
+  command
+      ->add_option("REFERENCE", options->reference,
+                   "TUM file of the true poses of the same sensor; with --objects a simulated recording")
+      ->required();
   add_error_options(*command, *options);
+  CLI::Option* objects = command->add_flag("--objects", options->objects,
+                                           "compare the moving objects instead (objects.jsonl of both): HOTA, MOTA, "
+                                           "IDF1, errors of velocity, box and heading");
+  for (const char* of_poses : {"--align", "--gap-frames", "--gap-seconds", "--gap-meters", "--max-gap"}) {
+    objects->excludes(of_poses);
+  }
   command->add_flag("--json", options->json, "print one JSON object with all numbers instead of the table");
   command->callback([options, &selected] { selected = [options] { return run_evaluate(*options); }; });
 }

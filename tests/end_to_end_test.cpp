@@ -269,6 +269,31 @@ TEST_F(EndToEnd, InfoTellsTheSignOfTheDoppler) {
   EXPECT_LE(std::stoi(outcome.text.substr(outcome.text.find(counted) + counted.size())), 12) << "each scan once";
 }
 
+TEST_F(EndToEnd, ObjectsAreComparedAsTracks) {
+  const fs::path out = folder_ / "out";
+  run_and_summarise(street().string());
+  const std::string command = "evaluate --objects " + out.string() + " " + street().string();
+  const json tracking = json::parse(run_program(command + " --json").text);
+  EXPECT_EQ(tracking["scans"], 7) << "of 12 without the first five";
+  EXPECT_GT(tracking["true_objects"], 0);
+  EXPECT_GT(tracking["hota"], 0.3);
+  EXPECT_LE(tracking["hota"], 1.0);
+  EXPECT_LT(tracking["heading_mae_deg"], 10.0);
+  EXPECT_NE(run_program(command).text.find("HOTA"), std::string::npos);
+
+  const Outcome contradiction = run_program(command + " --gap-frames 2");
+  EXPECT_EQ(contradiction.status, 2);
+  const Outcome no_truth = run_program("evaluate --objects " + out.string() + " " + folder_.string());
+  EXPECT_EQ(no_truth.status, 1);
+  EXPECT_NE(no_truth.text.find((folder_ / "objects.jsonl").string()), std::string::npos) << no_truth.text;
+  run_and_summarise(street().string() + " --preset paper");
+  const Outcome no_boxes = run_program(command);
+  EXPECT_EQ(no_boxes.status, 1);
+  EXPECT_NE(no_boxes.text.find("objects without boxes; expected those of a run with preset 'default'"),
+            std::string::npos)
+      << no_boxes.text;
+}
+
 TEST_F(EndToEnd, RecordedRadarScans) {
   const fs::path recording = source_folder() / ".." / "shared" / "data" / "radar-campus";
   if (!fs::exists(recording)) {
