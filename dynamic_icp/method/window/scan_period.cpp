@@ -11,8 +11,8 @@ namespace dynamic_icp::window {
 namespace {
 
 // A period is seen in so many stamps, and looked for in so many.
-constexpr std::size_t kFewestStamps = 10;
-constexpr std::size_t kMostStamps = 50;
+constexpr std::size_t kMinStamps = 10;
+constexpr std::size_t kMaxStamps = 50;
 
 // Of a period: what is farther from a whole number of them follows none.
 constexpr double kFarFromWhole = 0.3;
@@ -31,8 +31,8 @@ std::optional<KnownValue> ScanPeriod::add(double stamp_s) {
     return std::nullopt;
   }
   const std::optional<KnownValue> result =
-      stamps_s_.size() < kFewestStamps ? std::nullopt : expected(stamp_s - stamps_s_.back());
-  if (stamps_s_.size() == kMostStamps) {
+      stamps_s_.size() < kMinStamps ? std::nullopt : expected(stamp_s - stamps_s_.back());
+  if (stamps_s_.size() == kMaxStamps) {
     stamps_s_.erase(stamps_s_.begin());
   }
   stamps_s_.push_back(stamp_s);

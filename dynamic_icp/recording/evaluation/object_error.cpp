@@ -47,22 +47,8 @@ std::optional<std::size_t> nearest_in_reach(const TrueObject& object, const std:
   return nearest;
 }
 
-std::optional<double> mean(const std::vector<double>& values) {
-  const auto statistics = summarize(values);
-  return statistics ? std::optional(statistics->mean) : std::nullopt;
-}
-
 std::optional<double> ratio(std::size_t part, std::size_t whole) {
   return whole > 0 ? std::optional(static_cast<double>(part) / static_cast<double>(whole)) : std::nullopt;
-}
-
-/// The truth leaves no number open.
-Eigen::Vector3d known_vector(const formats::JsonRow& row, const char* key) {
-  const Eigen::Vector3d vector = row.numbers<3>(key);
-  if (!vector.allFinite()) {
-    row.fail(key, "a list of 3 numbers");
-  }
-  return vector;
 }
 
 }  // namespace
@@ -95,8 +81,8 @@ ObjectError compare_objects(const std::vector<TrueObjects>& truth, const std::ve
     ++result.scans;
     result.false_objects += static_cast<std::size_t>(std::count(in_reach.begin(), in_reach.end(), false));
   }
-  result.along_mae_mps = mean(errors.along);
-  result.lateral_mae_mps = mean(errors.lateral);
+  result.along_mae_mps = mean_of(errors.along);
+  result.lateral_mae_mps = mean_of(errors.lateral);
   if (const auto relative = summarize(errors.relative)) {
     result.median_relative_error = relative->median;
   }
@@ -112,8 +98,8 @@ std::vector<TrueObjects> read_true_objects(const std::filesystem::path& path) {
     scan.index = row.integer("index");
     for (const formats::JsonRow::Json& value : row.list("objects")) {
       const formats::JsonRow object = row.part("objects", value);
-      scan.objects.push_back({known_vector(object, "velocity_sensor"), known_vector(object, "center_sensor"),
-                              known_vector(object, "size"), static_cast<std::size_t>(object.integer("points"))});
+      scan.objects.push_back({object.finite_vector("velocity_sensor"), object.finite_vector("center_sensor"),
+                              object.finite_vector("size"), static_cast<std::size_t>(object.integer("points"))});
     }
   });
   return scans;

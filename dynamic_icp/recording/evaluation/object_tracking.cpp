@@ -30,11 +30,11 @@ bool is_near(const Body& reported, const Body& truth, double max_distance_m) {
   return distance_m < max_distance_m + 0.5 * truth.box.size.maxCoeff();
 }
 
-Eigen::MatrixXd overlaps(const std::vector<const Body*>& truth, const std::vector<const Body*>& reported) {
+Eigen::MatrixXd overlaps(const std::vector<const Body*>& truth, const std::vector<Body>& reported) {
   return Eigen::MatrixXd::NullaryExpr(static_cast<Eigen::Index>(truth.size()),
                                       static_cast<Eigen::Index>(reported.size()), [&](Eigen::Index i, Eigen::Index j) {
                                         return intersection_over_union(truth[static_cast<std::size_t>(i)]->box,
-                                                                       reported[static_cast<std::size_t>(j)]->box);
+                                                                       reported[static_cast<std::size_t>(j)].box);
                                       });
 }
 
@@ -52,23 +52,22 @@ ComparedScan compared(const ScanBodies& truth, const ScanBodies& reported, const
   for (const Body& body : truth.bodies) {
     (counts(body, matching) ? result.truth : others).push_back(&body);
   }
-  for (const Body& body : reported.bodies) {
+  result.overlap = overlaps(result.truth, reported.bodies);
+  result.partner = best_assignment(result.overlap);
+  std::vector<Eigen::Index> kept;
+  for (std::size_t j = 0; j < reported.bodies.size(); ++j) {
+    const Body& body = reported.bodies[j];
+    const auto pair = std::ranges::find(result.partner, std::optional(j));
+    if (pair != result.partner.end()) {
+      *pair = kept.size();
+    } else if (std::ranges::any_of(others,
+                                   [&](const Body* other) { return is_near(body, *other, matching.max_distance_m); })) {
+      continue;
+    }
+    kept.push_back(static_cast<Eigen::Index>(j));
     result.reported.push_back(&body);
   }
-  result.overlap = overlaps(result.truth, result.reported);
-  result.partner = best_assignment(result.overlap);
-  std::vector<const Body*> kept;
-  for (std::size_t j = 0; j < result.reported.size(); ++j) {
-    const Body& body = *result.reported[j];
-    const bool is_partner = std::ranges::find(result.partner, std::optional(j)) != result.partner.end();
-    if (is_partner || std::ranges::none_of(
-                          others, [&](const Body* other) { return is_near(body, *other, matching.max_distance_m); })) {
-      kept.push_back(&body);
-    }
-  }
-  result.reported = std::move(kept);
-  result.overlap = overlaps(result.truth, result.reported);
-  result.partner = best_assignment(result.overlap);
+  result.overlap = result.overlap(Eigen::all, kept).eval();
   return result;
 }
 
@@ -97,33 +96,28 @@ struct PairErrors {
   }
 };
 
-/// When a true body counted first, and when it was found.
-struct Sighting {
-  double first_s = 0.0;
-  std::optional<double> found_s;
+/// When a true body counted first, and when it had its first pair.
+struct FirstMatch {
+  double counted_s = 0.0;
+  std::optional<double> matched_s;
 };
-
-std::optional<double> mean_value(const std::vector<double>& values) {
-  const auto statistics = summarize(values);
-  return statistics ? std::optional(statistics->mean) : std::nullopt;
-}
 
 void set_means(const PairErrors& errors, ObjectTracking& result) {
   result.pairs = errors.overlap.size();
-  result.overlap = mean_value(errors.overlap);
-  result.along_mps = mean_value(errors.along);
-  result.across_mps = mean_value(errors.across);
-  result.heading_deg = mean_value(errors.heading);
-  result.center_m = mean_value(errors.center);
-  result.size_m = mean_value(errors.size);
-  result.nees_velocity = mean_value(errors.nees);
+  result.overlap = mean_of(errors.overlap);
+  result.along_mps = mean_of(errors.along);
+  result.across_mps = mean_of(errors.across);
+  result.heading_deg = mean_of(errors.heading);
+  result.center_m = mean_of(errors.center);
+  result.size_m = mean_of(errors.size);
+  result.nees_velocity = mean_of(errors.nees);
 }
 
-void set_latency(const std::map<std::int64_t, Sighting>& sightings, ObjectTracking& result) {
+void set_latency(const std::map<std::int64_t, FirstMatch>& first_matches, ObjectTracking& result) {
   std::vector<double> latencies;
-  for (const auto& [id, sighting] : sightings) {
-    if (sighting.found_s) {
-      latencies.push_back(*sighting.found_s - sighting.first_s);
+  for (const auto& [id, match] : first_matches) {
+    if (match.matched_s) {
+      latencies.push_back(*match.matched_s - match.counted_s);
     }
   }
   if (const auto statistics = summarize(latencies)) {
@@ -155,7 +149,7 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
   ObjectTracking result;
   std::vector<ScoredScan> scans;
   PairErrors errors;
-  std::map<std::int64_t, Sighting> sightings;
+  std::map<std::int64_t, FirstMatch> first_matches;
   for (std::size_t k = matching.warm_up_scans; k < reported.size(); ++k) {
     const auto found = truth_of.find(reported[k].index);
     if (found == truth_of.end()) {
@@ -164,12 +158,12 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
     const double time_s = found->second->time_s;
     const ComparedScan scan = compared(*found->second, reported[k], matching);
     for (std::size_t i = 0; i < scan.truth.size(); ++i) {
-      Sighting& sighting = sightings.try_emplace(scan.truth[i]->id, Sighting{time_s, {}}).first->second;
+      FirstMatch& match = first_matches.try_emplace(scan.truth[i]->id, FirstMatch{time_s, {}}).first->second;
       if (scan.partner[i]) {
         const double common = scan.overlap(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(*scan.partner[i]));
         errors.add(*scan.truth[i], *scan.reported[*scan.partner[i]], common);
-        if (common >= kMinOverlap && !sighting.found_s) {
-          sighting.found_s = time_s;
+        if (common >= kMinOverlap && !match.matched_s) {
+          match.matched_s = time_s;
         }
       }
     }
@@ -178,19 +172,11 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
   }
   result.score = score_tracking(scans, kMinOverlap);
   set_means(errors, result);
-  set_latency(sightings, result);
+  set_latency(first_matches, result);
   return result;
 }
 
 namespace {
-
-Eigen::Vector3d finite_vector(const formats::JsonRow& row, const char* key) {
-  const Eigen::Vector3d vector = row.numbers<3>(key);
-  if (!vector.allFinite()) {
-    row.fail(key, "a list of 3 numbers");
-  }
-  return vector;
-}
 
 Box box_of(const formats::JsonRow& row, const char* center, const char* orientation) {
   const Eigen::Vector4d xyzw = row.numbers<4>(orientation);
@@ -198,8 +184,8 @@ Box box_of(const formats::JsonRow& row, const char* center, const char* orientat
     row.fail(orientation, "a unit quaternion");
   }
   Box box;
-  box.T_sensor_box = Eigen::Translation3d(finite_vector(row, center)) * Eigen::Quaterniond(xyzw.normalized());
-  box.size = finite_vector(row, "size");
+  box.T_sensor_box = Eigen::Translation3d(row.finite_vector(center)) * Eigen::Quaterniond(xyzw.normalized());
+  box.size = row.finite_vector("size");
   return box;
 }
 
@@ -236,7 +222,7 @@ Eigen::Matrix3d matrix_of(const formats::JsonRow& row, const char* key) {
 std::vector<ScanBodies> read_true_bodies(const std::filesystem::path& path) {
   return read_bodies(path, [](const formats::JsonRow& row) {
     return Body{row.integer("id"), box_of(row, "center_sensor", "orientation_sensor_xyzw"),
-                finite_vector(row, "velocity_sensor"), std::nullopt, static_cast<std::size_t>(row.integer("points"))};
+                row.finite_vector("velocity_sensor"), std::nullopt, static_cast<std::size_t>(row.integer("points"))};
   });
 }
 
@@ -246,8 +232,8 @@ std::vector<ScanBodies> read_reported_bodies(const std::filesystem::path& path) 
       throw DataError(
           fmt::format("{}: objects without boxes; expected those of a run with preset 'default'", path.string()));
     }
-    Body body{row.integer("id"), box_of(row.object("box"), "center", "orientation_xyzw"),
-              finite_vector(row, "velocity"), std::nullopt, static_cast<std::size_t>(row.integer("points"))};
+    Body body{row.integer("id"), box_of(row.object("box"), "center", "orientation_xyzw"), row.finite_vector("velocity"),
+              std::nullopt, static_cast<std::size_t>(row.integer("points"))};
     if (row.has("velocity_covariance") && !row.get("velocity_covariance").is_null()) {
       body.velocity_covariance = matrix_of(row, "velocity_covariance");
     }

@@ -43,4 +43,9 @@ double percentile(std::span<const double> ascending, double p) {
   return ascending[below] + (position - static_cast<double>(below)) * (ascending[above] - ascending[below]);
 }
 
+std::optional<double> mean_of(std::span<const double> errors) {
+  const std::optional<Statistics> statistics = summarize(errors);
+  return statistics ? std::optional(statistics->mean) : std::nullopt;
+}
+
 }  // namespace dynamic_icp::evaluation

@@ -22,6 +22,9 @@ struct Statistics {
 /// is ever NaN or infinite.
 std::optional<Statistics> summarize(std::span<const double> errors);
 
+/// The mean alone.
+std::optional<double> mean_of(std::span<const double> errors);
+
 /// The percentile p in [0, 100] of ascending values (at least one), by linear interpolation between the two values
 /// around the position p / 100 * (n - 1), counted from 0. NumPy's default is the same.
 double percentile(std::span<const double> ascending, double p);

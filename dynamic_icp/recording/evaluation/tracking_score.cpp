@@ -15,7 +15,7 @@ constexpr int kThresholds = 19;  // 0.05, 0.1, ... 0.95
 constexpr double kReached = 1e-9;
 
 // What continues a pair goes before any similarity.
-constexpr double kContinues = 1000.0;
+constexpr double kContinued = 1000.0;
 
 /// Ids as numbers from 0 on.
 class Numbers {
@@ -166,8 +166,8 @@ void add_clear_mot(const Sequence& sequence, double threshold, TrackingScore& re
   for (const NumberedScan& scan : sequence.scans) {
     const auto pairs = pairs_of(scan, scores_of(scan, [&](Eigen::Index i, Eigen::Index j, double s) {
                                   const auto had = before.find(i);
-                                  const bool goes_on = had != before.end() && had->second == j;
-                                  return s < threshold - kReached ? 0.0 : s + (goes_on ? kContinues : 0.0);
+                                  const bool is_continued = had != before.end() && had->second == j;
+                                  return s < threshold - kReached ? 0.0 : s + (is_continued ? kContinued : 0.0);
                                 }));
     before.clear();
     for (const Pair& pair : pairs) {

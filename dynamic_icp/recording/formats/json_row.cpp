@@ -79,6 +79,14 @@ JsonRow JsonRow::part(const char* key, const Json& value) const {
   return {value, fmt::format("{}, \"{}\"", place_, key)};
 }
 
+Eigen::Vector3d JsonRow::finite_vector(const char* key) const {
+  Eigen::Vector3d vector = numbers<3>(key);
+  if (!vector.allFinite()) {
+    fail(key, "a list of 3 numbers");
+  }
+  return vector;
+}
+
 void JsonRow::fail(const char* key, std::string_view expected) const {
   throw DataError(fmt::format("{}: the value of \"{}\" is not {}", place_, key, expected));
 }

@@ -36,6 +36,8 @@ class JsonRow {
   [[nodiscard]] double number(const char* key) const { return number(get(key), key); }
   [[nodiscard]] double number(const Json& value, const char* key) const;
   [[nodiscard]] Eigen::Vector3d vector(const char* key) const;
+  /// Three numbers, none of them null.
+  [[nodiscard]] Eigen::Vector3d finite_vector(const char* key) const;
 
   template <int kSize>
   [[nodiscard]] Eigen::Matrix<double, kSize, 1> numbers(const char* key) const {

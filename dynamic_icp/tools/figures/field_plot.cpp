@@ -87,13 +87,13 @@ void draw_field(drawing::Svg& svg, const drawing::Theme& theme, const drawing::P
 }
 
 std::array<ShownField, 2> panels_of(const window::ErrorByDirection& learned, const std::string& sensor) {
-  const double limit = std::max(kLeastError_mps, learned.error_mps.cwiseAbs().maxCoeff());
+  const double limit = std::max(kMinError_mps, learned.error_mps.cwiseAbs().maxCoeff());
   return {ShownField{"Error of the Doppler" + sensor, learned.error_mps, -limit, limit,
                      [](double share, drawing::Ground ground) {
                        return drawing::diverging_colour(2.0 * share - 1.0, ground);
                      }},
           ShownField{"Its standard deviation", learned.sigma_mps, 0.0,
-                     std::max(kLeastError_mps, learned.sigma_mps.maxCoeff()),
+                     std::max(kMinError_mps, learned.sigma_mps.maxCoeff()),
                      [](double share, drawing::Ground) { return drawing::sequential_colour(share); }}};
 }
 

@@ -12,7 +12,7 @@
 namespace dynamic_icp::figures {
 
 /// Pictures of an error do not blow up what is smaller, m/s.
-inline constexpr double kLeastError_mps = 1e-3;
+inline constexpr double kMinError_mps = 1e-3;
 
 /// The directions that a sensor measures in, as it looks out: azimuth to the right.
 struct ShownView {

@@ -21,8 +21,8 @@ constexpr std::size_t kLabelWidth = 8;  // of an elevation
 
 /// What a character of the picture stands for.
 struct GlyphScale {
-  double known_below_mps = 0.0;       ///< standard deviations above are unknown
-  double most_mps = kLeastError_mps;  ///< of what is known
+  double known_below_mps = 0.0;     ///< standard deviations above are unknown
+  double most_mps = kMinError_mps;  ///< of what is known
 
   /// Where the shade `level` begins; it ends where the next one begins.
   [[nodiscard]] double begin_mps(std::size_t level) const {
@@ -42,7 +42,7 @@ struct GlyphScale {
 };
 
 GlyphScale scale_of(const FieldSummary& learned) {
-  GlyphScale scale{std::max(kLeastError_mps, learned.sizes.rms_mps)};
+  GlyphScale scale{std::max(kMinError_mps, learned.sizes.rms_mps)};
   const window::ErrorByDirection& cells = learned.cells;
   for (Eigen::Index row = 0; row < cells.error_mps.rows(); ++row) {
     for (Eigen::Index column = 0; column < cells.error_mps.cols(); ++column) {
