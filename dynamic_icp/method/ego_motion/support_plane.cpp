@@ -117,20 +117,21 @@ std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d
   return fitted(best, few);
 }
 
-std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::CellOrder& order) {
+std::optional<SupportPlane> find_support_plane(const Scan& scan, const spatial::CellOrder& order) {
   std::vector<Eigen::Vector3d> representatives;
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (order.rank[i] == 0 && scan.points()[i].squaredNorm() < kReach_m * kReach_m) {
       representatives.push_back(scan.points()[i]);
     }
   }
-  const std::optional<SupportPlane> plane = find_support_plane(representatives);
-  if (!plane) {
-    return {};
-  }
+  return find_support_plane(representatives);
+}
+
+std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::CellOrder& order,
+                                           const SupportPlane& plane) {
   std::vector<std::uint32_t> on(order.cells(), 0);
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    on[order.cell[i]] += std::abs(plane->height(scan.points()[i])) < kTolerance_m ? 1 : 0;
+    on[order.cell[i]] += std::abs(plane.height(scan.points()[i])) < kTolerance_m ? 1 : 0;
   }
   std::vector<std::uint8_t> result(order.cells());
   for (std::size_t cell = 0; cell < result.size(); ++cell) {

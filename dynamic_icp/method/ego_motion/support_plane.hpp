@@ -27,7 +27,11 @@ struct SupportPlane {
 /// no direction of gravity is needed: a wall that bounds the scene stands as well as the ground.
 std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d>& points);
 
-/// Of the cells of a scan (`order` sorted its points): 1 where most points are on that plane. Empty without one.
-std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::CellOrder& order);
+/// The same of a scan, by one point of each cell near by (`order` sorted its points).
+std::optional<SupportPlane> find_support_plane(const Scan& scan, const spatial::CellOrder& order);
+
+/// Of the cells of a scan: 1 where most points are on the plane.
+std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::CellOrder& order,
+                                           const SupportPlane& plane);
 
 }  // namespace dynamic_icp::ego_motion

@@ -149,8 +149,9 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
         take_out_lever_arms();
         ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
                                     memory_.rows);
-        memory_.rows.on_support =
-            config_.find_support ? ego_motion::cells_on_support(whole, memory_.sort) : std::vector<std::uint8_t>{};
+        support_ = config_.find_support ? ego_motion::find_support_plane(whole, memory_.sort) : std::nullopt;
+        memory_.rows.on_support = support_ ? ego_motion::cells_on_support(whole, memory_.sort, *support_)
+                                           : std::vector<std::uint8_t>{};
       });
   frame.points_used = memory_.thinned.size();
 }
@@ -317,8 +318,11 @@ void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) 
   const motion::SweepMotion sweep = sweep_of(now);
   frame.twist = estimator_.twist();
   if (config_.track_objects) {
+    memory_.may_be_object = memory_.is_moving;
+    tracker_.clear_carrier(memory_.whole, workers_, memory_.may_be_object);
     memory_.whole = motion::deskew(std::move(memory_.whole), sweep, workers_);
-    objects = tracker_.update(memory_.whole, memory_.radial, memory_.is_moving, frame.T_world_sensor, workers_);
+    objects = tracker_.update(memory_.whole, memory_.radial, memory_.may_be_object, frame.T_world_sensor, support_,
+                              workers_);
   }
   describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, std::move(objects), workers_);
 }

@@ -9,6 +9,7 @@
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
 #include "dynamic_icp/method/ego_motion/ego_velocity.hpp"
+#include "dynamic_icp/method/ego_motion/support_plane.hpp"
 #include "dynamic_icp/method/mapping/plane_map.hpp"
 #include "dynamic_icp/method/motion/sweep_motion.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
@@ -52,6 +53,7 @@ class WindowOdometry final : public Odometry {
     std::vector<double> predicted;
     std::vector<double> radial;
     std::vector<std::uint8_t> is_moving;
+    std::vector<std::uint8_t> may_be_object;  ///< of these, those that the tracker is to look at
     ego_motion::DopplerRows rows;
     preprocess::VoxelMemory voxels;
     spatial::CellOrder sort;
@@ -81,6 +83,7 @@ class WindowOdometry final : public Odometry {
   Workers workers_;
   DopplerKind expected_;
   ScanMemory memory_;
+  std::optional<ego_motion::SupportPlane> support_;  ///< what carries the scene, in the scan at hand
   Scan static_points_;
   ego_motion::EgoVelocity ego_;
   ego_motion::AngularVelocity rig_rotation_;        ///< of a rig, by its Doppler alone

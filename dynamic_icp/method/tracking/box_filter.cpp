@@ -7,45 +7,57 @@
 #include <cstddef>
 #include <numbers>
 
-#include "dynamic_icp/method/tracking/cluster_velocity.hpp"
+#include "dynamic_icp/method/tracking/size_prior.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTrim = 0.02;   // share of points beyond the sides of a box
-constexpr double kGrowth = 0.3;  // of a box, towards a larger one seen: noise must not make it grow
-constexpr double kKnownDirection_rad = 0.35;
-// A box made when the direction was known worse than this is made anew as soon as it is known so much better.
-constexpr double kGoodDirection_rad = 0.03;
-constexpr double kBetterDirection = 0.7;
-constexpr double kYawSearch_rad = 0.35;
-constexpr double kShortestSide_m = 1.0;  // sides shorter than this have no direction
+constexpr double kTrim = 0.01;            // of the points at either end
+constexpr double kReference_m = 0.01;     // the reference is a point of the body by definition
+constexpr double kLooseShare = 0.3;       // of what was seen of a body, as standard deviation of its middle
+constexpr double kUnknownFace_m = 10.0;   // standard deviation
+constexpr double kKnownFace_m = 0.5;      // a face known better than this was seen
+constexpr double kFalseEnd_m = 0.1;       // what is seen so far beyond a face ...
+constexpr double kFalseEndSigmas = 3.0;   // ... and its noise shows that the body did not end there
+constexpr double kGrowth = 0.3;           // of a bound, towards what is seen beyond it: noise must not move it
+constexpr double kYawSearch_rad = 0.35;   // about the heading
 constexpr double kFirstYawSigma_rad = 0.1;
-constexpr double kYawFloor_mps = 0.1;
-constexpr double kLogUnlikely = -3.0;  // that a thing does not move along its sides
-constexpr double kLogUsual = -2.5;     // of the three corrections of a box that is in order
+constexpr double kSideslip_rad = 0.03;    // between heading and motion of the middle of a body ...
+constexpr double kSideslip_mps = 0.1;     // ... and whatever the speed ...
+constexpr double kPivotShare = 0.15;      // ... and of the length that the point without sideslip is behind the middle
+constexpr double kBackwards_mps = 0.5;    // what moves backwards faster than this was taken the wrong way round
+constexpr double kLogHeading = -2.0;      // a scan without heading: more than the corrections of one cost
 constexpr double kWidthSigma_m = 0.5;
-constexpr double kUsableDirection_rad = 0.15;  // boxes with a direction known worse do not keep their sizes
-constexpr double kEndOn = 0.25;                // part of an axis across the line of sight, below which it is end-on
+constexpr double kEndOn = 0.25;           // part of an axis across the line of sight, below which it is end-on
 constexpr double kDimSpeed_mps = 0.5;
+constexpr double kDimReach_m = 1.5;  // beyond an end
 constexpr double kEndDepth_m = 0.3;  // points so near to the end of a span make the end
 constexpr double kLookBeyond_m = 0.4;
-constexpr double kOccluderClearance_m = 1.0;
+constexpr double kClearance_m = 1.0;
 constexpr double kWorstLog = -10.0;
-constexpr double kOwnSpeed_mps = 1.0;  // slower things have no direction of motion
+constexpr double kGroundSigma_m = 0.05;
 
-MotionFilter prior(const Vector3d& position, const TrackConfig& config) {
-  MotionFilter::Vector7d state = MotionFilter::Vector7d::Zero();
+BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double yaw_sigma_rad,
+                 const Matrix3d& level, const TrackConfig& config) {
+  BodyFilter::Vector state = BodyFilter::Vector::Zero();
   state.head<3>() = position;
-  MotionFilter::Vector7d sigmas;
-  sigmas << 1.0, 1.0, 1.0, config.prior_speed_mps, config.prior_speed_mps, config.prior_climb_mps,
-      config.prior_yaw_rate_rps;
-  return {state, sigmas.cwiseAbs2().asDiagonal()};
+  state[BodyFilter::kYaw] = yaw_rad.value_or(0.0);
+  BodyFilter::Vector variances;
+  variances.head<3>().setConstant(kReference_m * kReference_m);
+  variances[BodyFilter::kYaw] = yaw_sigma_rad * yaw_sigma_rad;
+  variances[BodyFilter::kYawRate] = yaw_sigma_rad > 0.0 ? config.prior_yaw_rate_rps * config.prior_yaw_rate_rps : 0.0;
+  variances.tail<kFaces.size()>().setConstant(kUnknownFace_m * kUnknownFace_m);
+  BodyFilter::Matrix covariance = variances.asDiagonal();
+  const Vector3d speeds(config.prior_speed_mps, config.prior_speed_mps, config.prior_climb_mps);
+  covariance.block<3, 3>(BodyFilter::kVelocity, BodyFilter::kVelocity) =
+      level * speeds.cwiseAbs2().asDiagonal() * level.transpose();
+  return {state, covariance, level};
 }
 
-Vector3d mean_of(const std::vector<Vector3d>& points) {
+Vector3d mean_of(std::span<const Vector3d> points) {
   Vector3d sum = Vector3d::Zero();
   for (const Vector3d& point : points) {
     sum += point;
@@ -53,55 +65,64 @@ Vector3d mean_of(const std::vector<Vector3d>& points) {
   return sum / static_cast<double>(points.size());
 }
 
+double face_sigma(const Vector3d& where, const Detection& detection, const TrackConfig& config) {
+  return config.face_sigma_m + config.face_sigma_growth * (where - detection.sensor).norm();
+}
+
+/// The heading of the line of sight, level axes.
+double sight_yaw(const Vector3d& point, const Detection& detection) {
+  const Vector3d sight = detection.ground.level.transpose() * (point - detection.sensor);
+  return std::atan2(sight.y(), sight.x());
+}
+
 }  // namespace
 
-BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const TrackConfig& config)
-    : motion_(prior(mean_of(detection.points), config)), moves_along_sides_(yaw_rad.has_value()) {
-  correct_doppler(detection, config);
-  if (yaw_rad) {
-    const double speed = motion_.velocity().head<2>().norm();
-    const double sigma = kFirstYawSigma_rad * speed + kYawFloor_mps;
-    log_likelihood_ += motion_.correct_velocity(upright_axes(*yaw_rad).col(1), 0.0, sigma * sigma);
-    const bool backwards = upright_axes(*yaw_rad).col(0).dot(motion_.velocity()) < 0.0;
-    yaw_ = *yaw_rad + (backwards ? std::numbers::pi : 0.0);
-  } else {
-    yaw_ = std::atan2(motion_.velocity().y(), motion_.velocity().x());
-    log_likelihood_ += kLogUnlikely;
+/// What a detection shows along one axis of the box.
+struct BoxFilter::AxisView {
+  Interval seen;                     ///< from the reference
+  Vector3d low = Vector3d::Zero();   ///< m, world: middle of the points at the low end
+  Vector3d high = Vector3d::Zero();  ///< and at the high end
+  bool low_end = false;              ///< whether the body truly ends there
+  bool high_end = false;
+};
+
+/// The extent of the box along one axis.
+struct BoxFilter::Extent {
+  double size = 0.0;
+  double middle = 0.0;  ///< from the reference
+  // The middle is `weight_high` of the distance of the high face minus `weight_low` of that of the low one, and more
+  // that is not in the state.
+  double weight_high = 0.0;
+  double weight_low = 0.0;
+  double variance = 0.0;  ///< of that
+};
+
+BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, double log_likelihood,
+                     const TrackConfig& config)
+    : body_(prior(mean_of(detection.points), yaw_rad, yaw_rad ? kFirstYawSigma_rad : 0.0, detection.ground.level,
+                  config)),
+      has_heading_(yaw_rad.has_value()),
+      log_likelihood_(log_likelihood) {
+  if (!has_heading_) {
+    body_ = prior(body_.position(), sight_yaw(body_.position(), detection), 0.0, detection.ground.level, config);
   }
-  make_box(at_mean_time(detection, motion_.velocity()), config);
+  correct(detection, config);
 }
 
-void BoxFilter::predict(double dt_s, const TrackConfig& config) {
-  yaw_ += motion_.yaw_rate() * dt_s;
-  motion_.predict(dt_s, config.motion);
-}
+void BoxFilter::predict(double dt_s, const TrackConfig& config) { body_.predict(dt_s, config.motion); }
 
 void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
+  body_.set_level(detection.ground.level);
   correct_doppler(detection, config);
-  const Detection now = at_mean_time(detection, motion_.velocity());
-  follow_direction();
-  if (moves_along_sides_) {
-    correct_yaw(now, config);
-    follow_direction();
-  }
-  if (box_sigma_rad_ > kGoodDirection_rad && direction_sigma() < kBetterDirection * box_sigma_rad_) {
-    make_box(now, config);
-    log_likelihood_ += kLogUsual;
+  std::vector<Vector3d> points = points_at_mean_time(detection, body_.velocity());
+  if (has_heading_) {
+    correct_heading(points, detection, config);
+    points = points_at_mean_time(detection, body_.velocity());
   } else {
-    correct_box(now, config);
+    log_likelihood_ += kLogHeading;
   }
-}
-
-OrientedBox BoxFilter::box() const { return {motion_.position(), upright_axes(yaw_), size_}; }
-
-double BoxFilter::direction_sigma() const {
-  const Eigen::Vector2d v = motion_.velocity().head<2>();
-  const double speed = v.norm();
-  if (speed < kOwnSpeed_mps) {
-    return std::numbers::pi;
-  }
-  const Eigen::Vector2d across(-v.y() / speed, v.x() / speed);
-  return std::sqrt(across.dot(motion_.covariance().block<2, 2>(3, 3) * across)) / speed;
+  correct_faces(points, detection, config);
+  evaluate_size(config);
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
@@ -110,37 +131,101 @@ void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& c
   spread_mps_ = measured.spread_mps;
   signal_mps_ = measured.signal_mps;
   // Roll and pitch of the body look like a vertical velocity, the more the farther it is.
-  const double sway = config.sway_rps * (motion_.position() - detection.sensor).norm();
-  Eigen::Matrix3d floor = config.doppler_floor_mps * config.doppler_floor_mps * Eigen::Matrix3d::Identity();
-  floor(2, 2) += sway * sway;
-  log_likelihood_ += motion_.correct_doppler(measured, detection.sensor, floor);
+  const Vector3d up = detection.ground.up();
+  const double sway = config.sway_rps * (body_.position() - detection.sensor).norm();
+  const Matrix3d floor = config.doppler_floor_mps * config.doppler_floor_mps * Matrix3d::Identity() +
+                         sway * sway * up * up.transpose();
+  log_likelihood_ += body_.correct_doppler(measured, detection.sensor, floor);
 }
 
-/// Vehicles move where their sides point.
-void BoxFilter::correct_yaw(const Detection& detection, const TrackConfig& config) {
-  const std::optional<double> fitted = fit_yaw(detection.points, yaw_, kYawSearch_rad);
-  if (!fitted || motion_.velocity().head<2>().norm() < kOwnSpeed_mps) {
-    return;
+/// Vehicles point where their sides do, and move there.
+void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detection& detection,
+                                const TrackConfig& config) {
+  if (const std::optional<double> fitted = fit_yaw(points, body_.level(), body_.yaw(), kYawSearch_rad)) {
+    const Matrix3d axes = body_.level() * upright_axes(*fitted);
+    const double side = std::max(span_along(points, body_.position(), axes.col(0), kTrim).length(),
+                                 span_along(points, body_.position(), axes.col(1), kTrim).length());
+    if (side >= kShortestSide_m) {
+      const double sigma = std::hypot(config.yaw_sigma_rad, face_sigma(body_.position(), detection, config) / side);
+      log_likelihood_ += body_.correct_yaw(*fitted, sigma * sigma);
+    }
   }
-  const Eigen::Matrix3d axes = upright_axes(*fitted);
-  const double side = std::max(span_along(detection.points, motion_.position(), axes.col(0), kTrim).length(),
-                               span_along(detection.points, motion_.position(), axes.col(1), kTrim).length());
-  if (side < std::max(kShortestSide_m, config.vehicle_width_m)) {
-    return;
+  const double length = reach(Face::kFront) + reach(Face::kRear);
+  const double sigma_mps = kSideslip_mps + kSideslip_rad * body_.velocity().norm() +
+                           kPivotShare * std::max(0.0, length) * std::abs(body_.yaw_rate());
+  log_likelihood_ += body_.correct_sideslip(sigma_mps * sigma_mps);
+  if (body_.axes().col(0).dot(body_.velocity()) < -kBackwards_mps) {
+    body_.turn_around();
+    for (const int axis : {0, 1}) {
+      std::swap(least_[static_cast<std::size_t>(2 * axis)], least_[static_cast<std::size_t>(2 * axis + 1)]);
+      std::swap(faces_[static_cast<std::size_t>(2 * axis)], faces_[static_cast<std::size_t>(2 * axis + 1)]);
+    }
   }
-  const double range = (motion_.position() - detection.sensor).norm();
-  const double sigma =
-      std::hypot(config.yaw_sigma_rad, (config.face_sigma_m + config.face_sigma_growth * range) / side);
-  const double speed = motion_.velocity().head<2>().norm();
-  const double sigma_mps = sigma * speed + 0.1;
-  log_likelihood_ += motion_.correct_velocity(axes.col(1), 0.0, sigma_mps * sigma_mps);
 }
 
-void BoxFilter::follow_direction() {
-  if (direction_sigma() < kKnownDirection_rad) {
-    const Vector3d v = motion_.velocity();
-    yaw_ = std::atan2(v.y(), v.x());
+void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection& detection,
+                              const TrackConfig& config) {
+  for (const int axis : {0, 1, 2}) {
+    const AxisView view = look_along(axis, points, detection);
+    if (axis < 2) {
+      correct_middle(axis, view, detection, config);
+    }
+    for (const double side : {1.0, -1.0}) {
+      const Face face = kFaces[static_cast<std::size_t>(2 * axis + (side > 0.0 ? 0 : 1))];
+      const auto i = static_cast<std::size_t>(face);
+      const Vector3d& end = side > 0.0 ? view.high : view.low;
+      const double seen = side > 0.0 ? view.seen.high : -view.seen.low;
+      // The end of the span, beside the middle of the points there.
+      const Vector3d outward = side * body_.axes().col(axis);
+      const Vector3d at_end = end + (seen - outward.dot(end - body_.position())) * outward;
+      const double sigma = face_sigma(at_end, detection, config);
+      least_[i] += (seen > least_[i] ? kGrowth : 0.0) * (seen - least_[i]);
+      if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
+        least_[i] = std::max(least_[i], seen);
+      }
+      if (is_known(face) && seen > body_.distance(face) + kFalseEnd_m + kFalseEndSigmas * sigma) {
+        body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);  // it was no end
+        least_[i] = seen;
+      }
+      if (side > 0.0 ? view.high_end : view.low_end) {
+        faces_[i] = FaceView::kSeen;
+        log_likelihood_ += body_.correct_face(face, at_end, sigma * sigma);
+      } else {
+        faces_[i] = faces_[i] == FaceView::kUnknown ? FaceView::kUnknown : FaceView::kHidden;
+        if (is_known(face) && seen > body_.distance(face) + sigma) {
+          log_likelihood_ += body_.correct_face(face, at_end, sigma * sigma);  // it is farther out than thought
+        }
+      }
+    }
   }
+  if (detection.ground.offset_m) {
+    const Vector3d up = detection.ground.up();
+    const Vector3d on_ground = body_.position() + (*detection.ground.offset_m - up.dot(body_.position())) * up;
+    const double sigma = kGroundSigma_m + face_sigma(on_ground, detection, config);
+    faces_[static_cast<std::size_t>(Face::kBottom)] = FaceView::kSeen;
+    log_likelihood_ += body_.correct_face(Face::kBottom, on_ground, sigma * sigma);
+  }
+}
+
+/// Where neither end was ever seen, the points are anywhere in the body: they hold its reference loosely.
+void BoxFilter::correct_middle(int axis, const AxisView& view, const Detection& detection, const TrackConfig& config) {
+  const Face high = kFaces[static_cast<std::size_t>(2 * axis)];
+  const Face low = kFaces[static_cast<std::size_t>(2 * axis + 1)];
+  const double known = least_[static_cast<std::size_t>(high)] + least_[static_cast<std::size_t>(low)];
+  if (is_known(high) || is_known(low) || !(known > 0.0)) {
+    return;
+  }
+  const double expected = 0.5 * (least_[static_cast<std::size_t>(high)] - least_[static_cast<std::size_t>(low)]);
+  const double sigma = face_sigma(body_.position(), detection, config) + kLooseShare * known;
+  log_likelihood_ += body_.correct_position(axis, body_.position() + (view.seen.middle() - expected) *
+                                                                         body_.axes().col(axis), sigma * sigma);
+}
+
+/// Vehicles have a greatest width, and are not wider than long.
+void BoxFilter::evaluate_size(const TrackConfig& config) {
+  const double width = reach(Face::kLeft) + reach(Face::kRight);
+  const double too_wide = std::max(0.0, width - config.largest_width_m);
+  log_likelihood_ += std::max(kWorstLog, -0.5 * std::pow(too_wide / kWidthSigma_m, 2));
 }
 
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next.
@@ -153,115 +238,143 @@ bool BoxFilter::is_true_end(const Vector3d& end, const Vector3d& outward, const 
     return outward.dot(sight) < 0.0;  // the near end of what is seen end-on; the body hides the far one
   }
   // Points of the body that hardly move along the line of sight are missing among the moving ones.
-  if (std::abs(sight.dot(motion_.doppler_velocity(detection.sensor))) < kDimSpeed_mps) {
-    return false;
-  }
+  const Vector3d W = body_.doppler_velocity(detection.sensor);
+  const double here = sight.dot(W);
+  const double next = (to_end + kDimReach_m * outward).normalized().dot(W);
+  const bool is_dim = std::min(std::abs(here), std::abs(next)) < kDimSpeed_mps || here * next < 0.0;
   if (detection.view == nullptr) {
-    return true;
+    return !is_dim;
   }
   const double cell = range * RangeImage::cell_width();
+  const bool is_upward = outward.dot(detection.ground.up()) > 0.5;
   for (const double step : {cell, std::max(kLookBeyond_m, 2.0 * cell)}) {
     const Vector3d beyond = detection.T_sensor_world * (end + step * sideways.normalized());
-    if (detection.view->hides(beyond, kOccluderClearance_m)) {
+    if (is_upward && detection.view->is_above_all(beyond)) {
+      return false;
+    }
+    if (detection.view->hides(beyond, is_dim ? -kClearance_m : kClearance_m)) {
       return false;
     }
   }
   return true;
 }
 
-AxisView BoxFilter::look_along(int axis, const Detection& detection) const {
-  const Vector3d direction = upright_axes(yaw_).col(axis);
-  AxisView view{span_along(detection.points, motion_.position(), direction, kTrim)};
-  if (axis == 2) {
-    return view;
-  }
-  Vector3d low = Vector3d::Zero();
-  Vector3d high = Vector3d::Zero();
+BoxFilter::AxisView BoxFilter::look_along(int axis, std::span<const Vector3d> points,
+                                          const Detection& detection) const {
+  const Vector3d direction = body_.axes().col(axis);
+  AxisView view;
+  view.seen = span_along(points, body_.position(), direction, kTrim);
   double low_count = 0.0;
   double high_count = 0.0;
-  for (const Vector3d& point : detection.points) {
-    const double q = (point - motion_.position()).dot(direction);
+  for (const Vector3d& point : points) {
+    const double q = (point - body_.position()).dot(direction);
     if (q <= view.seen.low + kEndDepth_m) {
-      low += point;
+      view.low += point;
       low_count += 1.0;
     }
     if (q >= view.seen.high - kEndDepth_m) {
-      high += point;
+      view.high += point;
       high_count += 1.0;
     }
   }
-  view.low_end = is_true_end(low / low_count, -direction, detection);
-  view.high_end = is_true_end(high / high_count, direction, detection);
+  view.low /= low_count;
+  view.high /= high_count;
+  view.high_end = is_true_end(view.high, direction, detection);
+  view.low_end = axis < 2 && is_true_end(view.low, -direction, detection);  // what is below bodies is hidden by them
   return view;
 }
 
-/// The box from this detection and, where ends are hidden, what is known of its size.
-void BoxFilter::make_box(const Detection& detection, const TrackConfig& config) {
-  const Eigen::Matrix3d axes = upright_axes(yaw_);
-  const Vector3d known = box_sigma_rad_ < kUsableDirection_rad ? size_ : Vector3d::Zero();
-  Vector3d centre = motion_.position();
-  Vector3d shift = Vector3d::Zero();
-  for (const int axis : {1, 0, 2}) {
-    const AxisView view = look_along(axis, detection);
-    double least = known[axis];
-    if (axis == 0 && size_.y() >= config.vehicle_width_m) {
-      least = std::max(least, config.vehicle_length_m);
+bool BoxFilter::is_known(Face face) const { return body_.variance(face) < kKnownFace_m * kKnownFace_m; }
+
+double BoxFilter::reach(Face face) const {
+  return is_known(face) ? body_.distance(face) : least_[static_cast<std::size_t>(face)];
+}
+
+OrientedBox BoxFilter::seen_box() const {
+  OrientedBox box{body_.position(), body_.axes(), Vector3d::Zero()};
+  for (const int axis : {0, 1, 2}) {
+    const double high = reach(kFaces[static_cast<std::size_t>(2 * axis)]);
+    const double low = reach(kFaces[static_cast<std::size_t>(2 * axis + 1)]);
+    box.size[axis] = std::max(0.0, high + low);
+    box.centre += 0.5 * (high - low) * box.axes.col(axis);
+  }
+  return box;
+}
+
+/// Along, to the left and up, with what is not seen filled in by what is likely.
+std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
+  const auto is_whole = [&](int axis) {
+    return is_known(kFaces[static_cast<std::size_t>(2 * axis)]) &&
+           is_known(kFaces[static_cast<std::size_t>(2 * axis + 1)]);
+  };
+  const auto seen = [&](int axis) {
+    return std::max(0.0, reach(kFaces[static_cast<std::size_t>(2 * axis)]) +
+                             reach(kFaces[static_cast<std::size_t>(2 * axis + 1)]));
+  };
+  const double height = seen(2);
+  const bool is_person =
+      !has_heading_ || is_person_like(std::max(seen(0), seen(1)), body_.velocity().norm());
+  // The width first: it varies least.
+  Belief width{seen(1), 0.0};
+  if (!is_person && !is_whole(1)) {
+    width = at_least(is_whole(0) ? typical_width(seen(0)) : typical_width_by_height(height), seen(1));
+  }
+  Belief length{seen(0), 0.0};
+  if (!is_person && !is_whole(0)) {
+    length = at_least(typical_length(width.mean, height), seen(0));
+  }
+  std::array<Extent, 3> extents;
+  for (const int axis : {0, 1, 2}) {
+    const Face high = kFaces[static_cast<std::size_t>(2 * axis)];
+    const Face low = kFaces[static_cast<std::size_t>(2 * axis + 1)];
+    const Belief size = axis == 0 ? length : axis == 1 ? width : Belief{height, 0.0};
+    Extent& extent = extents[static_cast<std::size_t>(axis)];
+    extent.size = size.mean;
+    if (is_known(high) && is_known(low)) {
+      extent.weight_high = extent.weight_low = 0.5;
+      extent.middle = 0.5 * (body_.distance(high) - body_.distance(low));
+    } else if (is_known(high)) {
+      extent.weight_high = 1.0;
+      extent.middle = body_.distance(high) - 0.5 * size.mean;
+      extent.variance = 0.25 * size.variance;
+    } else if (is_known(low)) {
+      extent.weight_low = 1.0;
+      extent.middle = 0.5 * size.mean - body_.distance(low);
+      extent.variance = 0.25 * size.variance;
+    } else {
+      const double hidden = std::max(0.0, size.mean - seen(axis));
+      extent.middle = 0.5 * (reach(high) - reach(low));
+      extent.variance = hidden * hidden / 12.0 + 0.25 * size.variance;
     }
-    const double seen = view.seen.length();
-    size_[axis] = view.low_end && view.high_end ? seen : std::max(seen, least);
-    centre += view.seen.middle() * axes.col(axis);
-    const double towards_hidden = (view.low_end ? 1.0 : 0.0) - (view.high_end ? 1.0 : 0.0);
-    shift += 0.5 * towards_hidden * (size_[axis] - seen) * axes.col(axis);
   }
-  const double range = (centre - detection.sensor).norm();
-  const double sigma = config.face_sigma_m + config.face_sigma_growth * range;
-  motion_.restart_position(centre, sigma * sigma);
-  motion_.move_reference(shift);
-  box_sigma_rad_ = direction_sigma();
-  evaluate_width(config);
+  return extents;
 }
 
-/// Vehicles have a greatest width, and are not wider than long.
-void BoxFilter::evaluate_width(const TrackConfig& config) {
-  const double too_wide = std::max({0.0, size_.y() - config.largest_width_m, size_.y() - size_.x()});
-  log_likelihood_ += std::max(kWorstLog, -0.5 * std::pow(too_wide / kWidthSigma_m, 2));
-}
-
-/// Sizes and position from what is seen along the axes.
-void BoxFilter::correct_box(const Detection& detection, const TrackConfig& config) {
-  const double range = (motion_.position() - detection.sensor).norm();
-  const double sigma = config.face_sigma_m + config.face_sigma_growth * range;
-  for (int axis = 0; axis < 3; ++axis) {
-    correct_axis(axis, detection, sigma);
+BoxEstimate BoxFilter::estimate() const {
+  const std::array<Extent, 3> along = extents();
+  const Matrix3d axes = body_.axes();
+  const Vector3d middle(along[0].middle, along[1].middle, along[2].middle);
+  BoxEstimate estimate;
+  estimate.box = {body_.position() + axes * middle, axes, {along[0].size, along[1].size, along[2].size}};
+  estimate.faces = faces_;
+  estimate.velocity = body_.velocity_at(middle);
+  estimate.velocity_covariance = body_.velocity_covariance_at(middle);
+  Eigen::Matrix<double, 3, BodyFilter::kStates> H = Eigen::Matrix<double, 3, BodyFilter::kStates>::Zero();
+  H.leftCols<3>().setIdentity();
+  H.col(BodyFilter::kYaw) = axes.col(2).cross(axes * middle);
+  Matrix3d hidden = Matrix3d::Zero();
+  for (const int axis : {0, 1, 2}) {
+    const Extent& extent = along[static_cast<std::size_t>(axis)];
+    H.col(BodyFilter::kFirstFace + 2 * axis) = extent.weight_high * axes.col(axis);
+    H.col(BodyFilter::kFirstFace + 2 * axis + 1) = -extent.weight_low * axes.col(axis);
+    hidden(axis, axis) = extent.variance;
   }
-  evaluate_width(config);
-}
-
-void BoxFilter::correct_axis(int axis, const Detection& detection, double sigma) {
-  const Vector3d direction = upright_axes(yaw_).col(axis);
-  const AxisView view = look_along(axis, detection);
-  const double here = direction.dot(motion_.position());
-  const double missing = view.seen.length() - size_[axis];
-  if (view.low_end && view.high_end) {
-    log_likelihood_ += motion_.correct_position(direction, here + view.seen.middle(), sigma * sigma);
-    log_likelihood_ += std::max(kWorstLog, -0.5 * std::pow(missing / (3.0 * sigma), 2));
-    size_[axis] += kGrowth * missing;
-    return;
+  estimate.centre_covariance = H * body_.covariance() * H.transpose() + axes * hidden * axes.transpose();
+  if (!has_heading_) {
+    const Vector3d v = body_.level().transpose() * body_.velocity();
+    estimate.box.axes = body_.level() * upright_axes(std::atan2(v.y(), v.x()));
   }
-  if (!view.low_end && !view.high_end) {
-    // The box holds what is seen: its centre is anywhere in an interval as long as what is not seen.
-    const double hidden = std::max(0.0, -missing);
-    log_likelihood_ +=
-        motion_.correct_position(direction, here + view.seen.middle(), sigma * sigma + hidden * hidden / 12.0);
-    size_[axis] += kGrowth * std::max(0.0, missing);
-    return;
-  }
-  const double side = view.high_end ? 1.0 : -1.0;
-  const double end = view.high_end ? view.seen.high : view.seen.low;
-  log_likelihood_ += motion_.correct_position(direction, here + end - 0.5 * side * size_[axis], sigma * sigma);
-  const double growth = kGrowth * std::max(0.0, missing);
-  size_[axis] += growth;
-  motion_.move_reference(-0.5 * side * growth * direction);
+  return estimate;
 }
 
 }  // namespace dynamic_icp::tracking

@@ -2,34 +2,43 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
 
+#include "dynamic_icp/method/tracking/body_filter.hpp"
 #include "dynamic_icp/method/tracking/detection.hpp"
-#include "dynamic_icp/method/tracking/motion_filter.hpp"
-#include "dynamic_icp/method/tracking/oriented_box.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
 namespace dynamic_icp::tracking {
 
-/// What is seen of a body along one axis of its box.
-struct AxisView {
-  Interval seen;         ///< relative to the centre of the box
-  bool low_end = false;  ///< whether the body truly ends where it seems to
-  bool high_end = false;
+/// A body as one hypothesis has it, world.
+struct BoxEstimate {
+  OrientedBox box;
+  Eigen::Matrix3d centre_covariance = Eigen::Matrix3d::Zero();    ///< m^2
+  Eigen::Vector3d velocity = Eigen::Vector3d::Zero();             ///< m/s, of the centre
+  Eigen::Matrix3d velocity_covariance = Eigen::Matrix3d::Zero();  ///< (m/s)^2
+  std::array<FaceView, kFaces.size()> faces{};                    ///< by Face
 };
 
-/// One hypothesis about a moving body: a filter for the motion of the centre of its box, and the box.
+/// Sides shorter than this have no direction, m.
+constexpr double kShortestSide_m = 1.0;
+
+/// One hypothesis about a moving body: an upright box that moves where it points, or one that moves without turning,
+/// anywhere.
 ///
-/// The box is anchored at the ends that are seen. Ends that are hidden, by the body itself, by something before it or
-/// by the edge of the field of view, only say how large it is at least. When the box grows the true ends stay where
-/// they are and the centre moves, without a trace in the velocity: parts that come into view are no motion.
+/// Faces that are seen are measured. Those that something hides, the body itself, a nearer thing or the edge of the
+/// field of view, only lie no nearer than the farthest point seen; how far beyond says the size of other road users of
+/// that width, height or length (size_prior).
 class BoxFilter {
  public:
   /// From a first detection with at least one point, at its mean time. `yaw`: the direction in which, or against which,
-  /// the body is taken to move, as vehicles move along their sides. Without it nothing is assumed.
-  BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const TrackConfig& config);
+  /// the body is taken to move, as vehicles move along their sides; level axes. Without it the body has no heading.
+  /// `log_likelihood`: of what was seen before.
+  BoxFilter(const Detection& detection, std::optional<double> yaw_rad, double log_likelihood,
+            const TrackConfig& config);
 
   /// Moves the state on by `dt_s` seconds, which may be negative.
   void predict(double dt_s, const TrackConfig& config);
@@ -37,14 +46,15 @@ class BoxFilter {
   /// Takes in another detection; the state must be that of its mean time.
   void correct(const Detection& detection, const TrackConfig& config);
 
-  [[nodiscard]] const MotionFilter& motion() const { return motion_; }
-  [[nodiscard]] OrientedBox box() const;  ///< world
+  [[nodiscard]] const BodyFilter& body() const { return body_; }
+  [[nodiscard]] bool has_heading() const { return has_heading_; }
+  [[nodiscard]] BoxEstimate estimate() const;
+
+  /// The part of the box that was seen.
+  [[nodiscard]] OrientedBox seen_box() const;
 
   /// How well the hypothesis has explained what was seen; comparable between hypotheses about the same detections.
   [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
-
-  /// Deviation of the direction of the velocity, rad; pi for what stands.
-  [[nodiscard]] double direction_sigma() const;
 
   /// Spread of the last detection's radial velocities about those of a rigid body, m/s.
   [[nodiscard]] double spread_mps() const { return spread_mps_; }
@@ -53,25 +63,29 @@ class BoxFilter {
   [[nodiscard]] double signal_mps() const { return signal_mps_; }
 
  private:
+  struct AxisView;
+  struct Extent;
+
   void correct_doppler(const Detection& detection, const TrackConfig& config);
-  void correct_yaw(const Detection& detection, const TrackConfig& config);
-  void follow_direction();
-  void make_box(const Detection& detection, const TrackConfig& config);
-  void correct_box(const Detection& detection, const TrackConfig& config);
-  void evaluate_width(const TrackConfig& config);
-  void correct_axis(int axis, const Detection& detection, double sigma);
-  [[nodiscard]] AxisView look_along(int axis, const Detection& detection) const;
+  void correct_heading(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
+  void correct_faces(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
+  void correct_middle(int axis, const AxisView& view, const Detection& detection, const TrackConfig& config);
+  void evaluate_size(const TrackConfig& config);
+  [[nodiscard]] AxisView look_along(int axis, std::span<const Eigen::Vector3d> points,
+                                    const Detection& detection) const;
   [[nodiscard]] bool is_true_end(const Eigen::Vector3d& end, const Eigen::Vector3d& outward,
                                  const Detection& detection) const;
+  [[nodiscard]] bool is_known(Face face) const;
+  [[nodiscard]] double reach(Face face) const;
+  [[nodiscard]] std::array<Extent, 3> extents() const;
 
-  MotionFilter motion_;
-  bool moves_along_sides_;
-  double yaw_ = 0.0;
-  Eigen::Vector3d size_ = Eigen::Vector3d::Zero();
+  BodyFilter body_;
+  bool has_heading_;
+  std::array<double, kFaces.size()> least_{};    ///< m from the reference: points were seen so far out
+  std::array<FaceView, kFaces.size()> faces_{};  ///< by Face
   double log_likelihood_ = 0.0;
   double spread_mps_ = 0.0;
   double signal_mps_ = 0.0;
-  double box_sigma_rad_ = 0.0;  ///< of the direction when the box was last made anew
 };
 
 }  // namespace dynamic_icp::tracking

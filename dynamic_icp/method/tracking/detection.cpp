@@ -13,7 +13,7 @@ constexpr std::size_t kMaxPoints = 500;
 }  // namespace
 
 Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
-                         const SensorMotion& sensor, const RangeImage* view) {
+                         const SensorMotion& sensor, const Ground& ground, const RangeImage* view) {
   Detection detection;
   const std::size_t stride = std::max<std::size_t>(1, (rows.size() + kMaxPoints - 1) / kMaxPoints);
   for (std::size_t i = 0; i < rows.size(); i += stride) {
@@ -28,15 +28,17 @@ Detection make_detection(const Scan& scan, std::span<const double> radial, std::
   detection.mean_time_s /= static_cast<double>(detection.points.size());
   detection.sensor = sensor.position(detection.mean_time_s);
   detection.T_sensor_world = sensor.T_world_sensor.inverse();
+  detection.ground = ground;
   detection.view = view;
   return detection;
 }
 
-Detection at_mean_time(Detection detection, const Eigen::Vector3d& velocity) {
-  for (std::size_t i = 0; i < detection.points.size(); ++i) {
-    detection.points[i] += (detection.mean_time_s - detection.times[i]) * velocity;
+std::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity) {
+  std::vector<Eigen::Vector3d> points = detection.points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    points[i] += (detection.mean_time_s - detection.times[i]) * velocity;
   }
-  return detection;
+  return points;
 }
 
 }  // namespace dynamic_icp::tracking

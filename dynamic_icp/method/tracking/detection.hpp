@@ -10,6 +10,7 @@
 #include <Eigen/Geometry>
 
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/tracking/ground.hpp"
 #include "dynamic_icp/method/tracking/range_image.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
 
@@ -24,15 +25,16 @@ struct Detection {
   double mean_time_s = 0.0;
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();                  ///< where the sensor was at the mean time
   Eigen::Isometry3d T_sensor_world = Eigen::Isometry3d::Identity();  ///< at the stamp
+  Ground ground;                                                     ///< world
   const RangeImage* view = nullptr;                                  ///< of the whole scan; none: nothing is hidden
 };
 
 /// The rows of the scan (at least one) as a detection; of many an evenly spread part, for more would not make it
 /// better.
 Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
-                         const SensorMotion& sensor, const RangeImage* view);
+                         const SensorMotion& sensor, const Ground& ground, const RangeImage* view);
 
 /// The points where they would be seen at the mean time if all moved with `velocity` (m/s, world).
-Detection at_mean_time(Detection detection, const Eigen::Vector3d& velocity);
+std::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity);
 
 }  // namespace dynamic_icp::tracking

@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 constexpr double kGateSigmas = 2.0;
 constexpr double kMaxGate_m = 2.0;
 constexpr double kMaxGate_mps = 3.0;
+constexpr double kUnseenRatio = 0.9;  // of points where the body is likely but was not seen yet
 
 constexpr double kGroundClearance_m = 0.3;  // points lower in a box may be the road ...
 constexpr double kGroundShare = 0.25;       // ... but at most so much of its height is left out
@@ -29,7 +30,7 @@ struct Hit {
 OrientedBox above_ground(OrientedBox box) {
   const double clearance = std::min(kGroundClearance_m, kGroundShare * box.size.z());
   box.size.z() -= clearance;
-  box.centre.z() += 0.5 * clearance;
+  box.centre += 0.5 * clearance * box.axes.col(2);
   return box;
 }
 
@@ -49,17 +50,31 @@ struct Block {
 }  // namespace
 
 Expectation::Expectation(const Track& predicted, const SensorMotion& sensor, const TrackerConfig& config)
-    : box(predicted.box()), velocity(predicted.motion().velocity()) {
+    : box(predicted.best().seen_box()) {
+  const BoxEstimate estimate = predicted.estimate();
+  whole = estimate.box;
+  velocity = estimate.velocity;
   const Vector3d eye = sensor.T_world_sensor.translation();
-  W = predicted.motion().doppler_velocity(eye);
-  W_covariance = predicted.motion().doppler_covariance(eye);
-  const double position = std::sqrt(predicted.motion().covariance().topLeftCorner<2, 2>().trace());
+  W = predicted.body().doppler_velocity(eye);
+  W_covariance = predicted.body().doppler_covariance(eye);
+  const double position = std::sqrt(predicted.body().covariance().topLeftCorner<2, 2>().trace());
   gate_m = std::min(kMaxGate_m, config.gate_m + kGateSigmas * position);
   gate_mps = config.gate_mps;
 }
 
 double Expectation::outside(const Vector3d& point_world, double time_s) const {
   return distance_outside(box, point_world - time_s * velocity);
+}
+
+double Expectation::distance_ratio(const Vector3d& point_world, double time_s) const {
+  const Vector3d point = point_world - time_s * velocity;
+  const double ratio = distance_outside(box, point) / gate_m;
+  return ratio > kUnseenRatio && distance_outside(whole, point) <= 0.0 ? kUnseenRatio : ratio;
+}
+
+double Expectation::width_with(const Vector3d& point_world, double time_s) const {
+  const double beside = std::abs(box.axes.col(1).dot(point_world - time_s * velocity - box.centre));
+  return std::max(box.size.y(), beside + 0.5 * box.size.y());
 }
 
 double Expectation::gate_ratio(const Vector3d& direction_world, double radial_mps) const {
@@ -72,7 +87,7 @@ bool Expectation::may_appear_static(const Vector3d& sensor_world, double slow_mp
   const Vector3d to_object = box.centre - sensor_world;
   const double range = std::max(1.0, to_object.norm());
   const double difference = 0.5 * box.size.norm() / range * W.norm();  // of radial velocities within the body
-  return velocity.norm() > slow_mps && std::abs(to_object.dot(W)) / range < slow_mps + difference;
+  return std::abs(to_object.dot(W)) / range < slow_mps + difference;
 }
 
 void visit_static_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,

@@ -23,7 +23,8 @@ namespace dynamic_icp::tracking {
 
 /// What a track expects of its points in one scan; everything in world axes.
 struct Expectation {
-  OrientedBox box;               ///< at the stamp
+  OrientedBox box;               ///< what was seen of it, at the stamp
+  OrientedBox whole;             ///< with what is likely beyond
   Eigen::Vector3d velocity;      ///< m/s, of the centre
   Eigen::Vector3d W;             ///< m/s: its points have the radial velocities u . W
   Eigen::Matrix3d W_covariance;  ///< (m/s)^2
@@ -35,6 +36,12 @@ struct Expectation {
 
   /// Distance from the box of a point measured `time_s` after the stamp.
   [[nodiscard]] double outside(const Eigen::Vector3d& point_world, double time_s) const;
+
+  /// The same as a share of what is allowed. Within what is likely of the body it is allowed whatever the distance.
+  [[nodiscard]] double distance_ratio(const Eigen::Vector3d& point_world, double time_s) const;
+
+  /// The width of what was seen of the body together with the point.
+  [[nodiscard]] double width_with(const Eigen::Vector3d& point_world, double time_s) const;
 
   /// Deviation of a radial velocity from the expected one as a share of what is allowed.
   [[nodiscard]] double gate_ratio(const Eigen::Vector3d& direction_world, double radial_mps) const;

@@ -263,9 +263,12 @@ std::vector<CellGroup> vehicle_groups(const MovingCells& moving, std::span<const
                                       double largest_width_m, int min_points, const GroupingConfig& config) {
   GroupingConfig tighter = config;
   std::vector<CellGroup> groups = groups_among(moving, cells, config);
-  for (int i = 0; i < kMaxTightenings; ++i) {
-    tighter.link_distance_m *= kTighter;
-    tighter.link_growth *= kTighter;
+  tighter.bridge_m = 0.0;  // a gap in one body, or two bodies beside each other?
+  for (int i = 0; i <= kMaxTightenings; ++i) {
+    if (i > 0) {
+      tighter.link_distance_m *= kTighter;
+      tighter.link_growth *= kTighter;
+    }
     std::vector<CellGroup> parted;
     for (CellGroup& group : groups) {
       if (too_wide(moving, group, largest_width_m)) {

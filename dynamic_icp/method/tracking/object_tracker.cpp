@@ -16,6 +16,7 @@ using Eigen::Vector3d;
 
 constexpr std::int32_t kNobody = -1;
 constexpr double kMax = 2.0;       // new objects are not wider than so many vehicles
+constexpr double kWidthSlack_m = 0.3;
 constexpr double kSplinter = 0.1;  // a track with this share of the points of another may be a part of it
 constexpr double kSplinterVelocity_mps = 2.0;
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
@@ -46,11 +47,22 @@ struct ObjectTracker::Entry {
   std::int64_t id;
   Track track;      ///< at the mean time of its last detection
   Track predicted;  ///< at the stamp of the present scan, with what that scan shows
+  BoxEstimate now = {};  ///< of the latter
   bool confirmed = false;
+  bool has_moved = false;      ///< beyond doubt
+  double moved_s = 0.0;        ///< when it moved last
   int age = 0;
   int seen = 0;
   int missed = 0;
   std::vector<std::uint32_t> members = {};
+
+  /// Takes `track` as it is, and as it will be at `stamp_s`.
+  void set_track(Track corrected, double stamp_s, const TrackConfig& config) {
+    track = corrected;
+    predicted = std::move(corrected);
+    predicted.predict(stamp_s, config);
+    now = predicted.estimate();
+  }
 };
 
 ObjectTracker::ObjectTracker(const TrackerConfig& config) : config_(config) { check_fields(fields(config_)); }
@@ -60,7 +72,9 @@ ObjectTracker& ObjectTracker::operator=(ObjectTracker&&) noexcept = default;
 
 std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<const double> radial,
                                                  std::span<const std::uint8_t> is_moving,
-                                                 const Eigen::Isometry3d& T_world_sensor, const Workers& workers) {
+                                                 const Eigen::Isometry3d& T_world_sensor,
+                                                 const std::optional<ego_motion::SupportPlane>& support,
+                                                 const Workers& workers) {
   if (radial.size() != scan.size() || is_moving.size() != scan.size()) {
     throw std::invalid_argument("radial velocities and moving flags must have one value per point of the scan");
   }
@@ -77,6 +91,13 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
                   : SensorMotion{T_world_sensor};
   last_stamp_ = scan.stamp();
   T_world_last_ = T_world_sensor;
+
+  ground_.offset_m = support ? ground_.offset_m : std::nullopt;
+  if (support) {
+    const Vector3d normal = T_world_sensor.linear() * support->normal;
+    ground_ = updated_ground(ground_, normal, support->offset_m + normal.dot(T_world_sensor.translation()),
+                             T_world_sensor.translation());
+  }
 
   std::optional<RangeImage> view;
   MovingCells moving;
@@ -100,8 +121,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   place_cells(input);
   std::vector<Expectation> expected;
   for (Entry& entry : entries_) {
-    entry.predicted = entry.track;
-    entry.predicted.predict(input.stamp_s, config_.track);
+    entry.set_track(entry.track, input.stamp_s, config_.track);
     expected.emplace_back(entry.predicted, sensor, config_);
   }
   std::vector<std::int32_t> owner(input.moving.cells.size(), kNobody);
@@ -109,7 +129,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   associate(input, expected, owner);
   collect_members(input, expected, owner, workers);
   initiate_tracks(input, owner, workers);
-  delete_tracks();
+  delete_tracks(input.stamp_s, sensor.T_world_sensor.translation());
   std::vector<TrackedObject> objects;
   for (const Entry& entry : entries_) {
     objects.push_back(report(entry, sensor));
@@ -130,20 +150,33 @@ void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radi
   flag_rows(scan, radial, sensor, expected, workers, is_moving);
 }
 
+void ObjectTracker::clear_carrier(const Scan& scan, const Workers& workers, std::vector<std::uint8_t>& is_moving) const {
+  const double squared_m2 = config_.min_range_m * config_.min_range_m;
+  workers.for_each(scan.size(), kPointBlock, [&](std::size_t row) {
+    const Vector3d origin =
+        scan.is_of_rig() ? Vector3d(scan.mountings()[scan.channels().sensor[row]].translation()) : Vector3d::Zero();
+    if ((scan.points()[row] - origin).squaredNorm() < squared_m2) {
+      is_moving[row] = 0;
+    }
+  });
+}
+
 /// Gives each cell to the track whose box and velocity fit it best.
 void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectation> expectations,
                            std::vector<std::int32_t>& owner) const {
   std::vector<double> best(owner.size(), 1.0);
   for (std::size_t k = 0; k < expectations.size(); ++k) {
     const Expectation& expected = expectations[k];
-    const double reach = 0.5 * expected.box.size.norm() + expected.gate_m;
+    const double reach = std::max(0.5 * expected.box.size.norm() + expected.gate_m,
+                                  (expected.whole.centre - expected.box.centre).norm() +
+                                      0.5 * expected.whole.size.norm());
     for (std::size_t i = 0; i < owner.size(); ++i) {
       const MovingCell& cell = input.moving.cells[i];
       const Vector3d& point = input.cell_points[i];
       if ((point - cell.time_s * expected.velocity - expected.box.centre).squaredNorm() > reach * reach) {
         continue;
       }
-      const double score = std::max(expected.outside(point, cell.time_s) / expected.gate_m,
+      const double score = std::max(expected.distance_ratio(point, cell.time_s),
                                     expected.gate_ratio(input.cell_directions[i], cell.radial_mps));
       if (score < best[i]) {
         best[i] = score;
@@ -175,7 +208,8 @@ void ObjectTracker::associate(const TrackingInput& input, std::span<const Expect
     for (const std::int32_t k : owners_of_group[input.groups[i]]) {
       const Expectation& expected = expectations[static_cast<std::size_t>(k)];
       const double outside = expected.outside(input.cell_points[i], cell.time_s);
-      if (outside < nearest && expected.gate_ratio(input.cell_directions[i], cell.radial_mps) < 2.0) {
+      if (outside < nearest && expected.gate_ratio(input.cell_directions[i], cell.radial_mps) < 2.0 &&
+          expected.width_with(input.cell_points[i], cell.time_s) < config_.track.largest_width_m + kWidthSlack_m) {
         nearest = outside;
         owner[i] = k;
       }
@@ -189,7 +223,8 @@ void ObjectTracker::gather_static(const TrackingInput& input, std::span<const Ex
   std::vector<std::size_t> slow;
   std::vector<Expectation> expected;
   for (std::size_t k = 0; k < entries_.size(); ++k) {
-    if (expectations[k].may_appear_static(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
+    if (entries_[k].has_moved &&
+        expectations[k].may_appear_static(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
       slow.push_back(k);
       expected.push_back(expectations[k]);
     }
@@ -237,28 +272,35 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
       return;
     }
     Track corrected = entry.track;
-    corrected.correct(make_detection(input.scan, input.radial, entry.members, input.sensor, &input.view), input.stamp_s,
+    corrected.correct(make_detection(input.scan, input.radial, entry.members, input.sensor, ground_, &input.view), input.stamp_s,
                       config_.track);
     if (corrected.best().spread_mps() > config_.max_spread_mps) {
       ++entry.missed;
       entry.members.clear();
       return;
     }
-    entry.track = corrected;
-    entry.predicted = std::move(corrected);
-    entry.predicted.predict(input.stamp_s, config_.track);
+    entry.set_track(std::move(corrected), input.stamp_s, config_.track);
     entry.missed = 0;
     ++entry.seen;
     const bool seen_often =
         entry.seen >= config_.confirm_scans || entry.members.size() >= static_cast<std::size_t>(config_.confirm_points);
     entry.confirmed = entry.confirmed || (seen_often && is_credible(entry));
+    note_motion(entry, input.stamp_s);
   });
 }
 
 /// Whether the velocity is worth reporting: known well enough, or as well as it will be.
 bool ObjectTracker::is_credible(const Entry& entry) const {
-  const double variance = entry.track.velocity_covariance().topLeftCorner<2, 2>().trace();
+  const double variance = entry.now.velocity_covariance.topLeftCorner<2, 2>().trace();
   return variance < config_.confirm_sigma_mps * config_.confirm_sigma_mps || entry.seen >= config_.confirm_anyway_scans;
+}
+
+void ObjectTracker::note_motion(Entry& entry, double stamp_s) const {
+  const double speed = entry.now.velocity.norm();
+  entry.has_moved = entry.has_moved || (entry.confirmed && speed > config_.slow_mps);
+  if (speed >= config_.min_speed_mps) {
+    entry.moved_s = stamp_s;
+  }
 }
 
 /// Groups nobody owns become tracks.
@@ -276,17 +318,17 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
       vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
   std::vector<std::optional<Track>> tracks(groups.size());
   workers.for_each(groups.size(), 1, [&](std::size_t i) {
-    tracks[i].emplace(make_detection(input.scan, input.radial, groups[i].rows, input.sensor, &input.view),
+    tracks[i].emplace(make_detection(input.scan, input.radial, groups[i].rows, input.sensor, ground_, &input.view),
                       input.stamp_s, config_.track);
   });
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const Track& track = *tracks[i];
     // Errors around zero have more spread than signal.
     const double spread = track.best().spread_mps();
-    const bool plausible = track.box().size.y() <= kMax * config_.track.largest_width_m;
+    const bool plausible = track.best().seen_box().size.y() <= kMax * config_.track.largest_width_m;
     if (plausible && spread <= config_.max_spread_mps && track.best().signal_mps() >= kMinSignal * spread) {
       newborn.push_back({0, track, track});
-      newborn.back().predicted.predict(input.stamp_s, config_.track);
+      newborn.back().set_track(track, input.stamp_s, config_.track);
       newborn.back().members = std::move(groups[i].rows);
       expectations.emplace_back(newborn.back().predicted, input.sensor, config_);
     }
@@ -307,75 +349,109 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
     entry.seen = 1;
     const bool seen_often = points >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
     entry.confirmed = seen_often && is_credible(entry);
+    note_motion(entry, input.stamp_s);
     entries_.push_back(std::move(entry));
   }
 }
 
-/// Whether two tracks are one body: one has its centre in the box of the other, or it is a splinter beside it that
-/// moves as it does.
-bool ObjectTracker::are_same_object(const Entry& a, const Entry& b) const {
+/// Whether two tracks are one body: one has its centre in what was seen of the other, or it is a splinter beside it or
+/// where more of it is likely, that moves as it does.
+bool ObjectTracker::are_same_object(const Entry& a, const Entry& b, const Vector3d& sensor_world) const {
   const bool a_is_smaller = a.members.size() < b.members.size();
   const Entry& small = a_is_smaller ? a : b;
   const Entry& large = a_is_smaller ? b : a;
-  const Vector3d apart = small.predicted.motion().velocity() - large.predicted.motion().velocity();
+  const OrientedBox of_small = small.predicted.best().seen_box();
+  const OrientedBox of_large = large.predicted.best().seen_box();
+  const double range_m = (of_large.centre - sensor_world).norm();
+  if (distance_outside(of_large, of_small.centre) <= 0.0 || distance_outside(of_small, of_large.centre) <= 0.0) {
+    return true;
+  }
   // What coasts has no points: it is hidden, not a part.
-  const bool splinter =
-      !small.members.empty() &&
-      static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size()) &&
-      apart.norm() < kSplinterVelocity_mps;
-  const double reach = splinter ? config_.growth_m : 0.0;
-  return distance_outside(large.predicted.box(), small.predicted.motion().position()) <= reach ||
-         distance_outside(small.predicted.box(), large.predicted.motion().position()) <= 0.0;
+  if (small.members.empty() || (small.now.velocity - large.now.velocity).norm() > kSplinterVelocity_mps) {
+    return false;
+  }
+  if (distance_outside(large.now.box, of_small.centre) <= 0.0) {
+    return true;
+  }
+  const bool is_splinter =
+      static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size());
+  if (is_splinter) {
+    return distance_outside(of_large, of_small.centre) <= config_.growth_m;
+  }
+  // Sides of one body, seen apart.
+  const double gap_m = config_.grouping.link_distance_m + config_.grouping.link_growth * range_m;
+  return large.predicted.best().has_heading() && distance_between(of_large, of_small) <= gap_m &&
+         size_with(of_large, of_small).y() <= config_.track.largest_width_m;
 }
 
-/// Ends tracks that stand and those not seen for long, tentative ones at once, and makes one of those that share a
-/// place.
-void ObjectTracker::delete_tracks() {
+/// Whether nothing is to be expected of a track any more.
+bool ObjectTracker::is_over(const Entry& entry, double stamp_s) const {
+  if (!entry.confirmed) {
+    return entry.missed > 0 || entry.now.velocity.norm() < config_.min_speed_mps;
+  }
+  if (!entry.has_moved && entry.now.velocity.norm() < config_.min_speed_mps) {
+    return true;
+  }
+  const double variance = entry.now.centre_covariance.topLeftCorner<2, 2>().trace();
+  const bool is_vague = variance > config_.coast_sigma_m * config_.coast_sigma_m;
+  return (entry.missed > 0 && (is_vague || stamp_s - entry.track.time_s() > config_.coast_s)) ||
+         stamp_s - entry.moved_s > config_.stand_s;
+}
+
+/// Ends tracks of which nothing is to be expected any more, and makes one of those that share a place.
+void ObjectTracker::delete_tracks(double stamp_s, const Vector3d& sensor_world) {
   std::vector<Entry> living;
   for (Entry& entry : entries_) {
-    const bool lost = entry.missed > (entry.confirmed ? config_.coast_scans : 0);
-    if (lost || entry.track.motion().velocity().norm() < config_.min_speed_mps) {
+    if (is_over(entry, stamp_s)) {
       continue;
     }
     const auto same =
-        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_same_object(older, entry); });
+        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_same_object(older, entry, sensor_world); });
     if (same == living.end()) {
       living.push_back(std::move(entry));
     } else if (entry.members.size() > same->members.size()) {
       // The name of the older one continues with the state of what is seen more of.
-      same->track = entry.track;
-      same->predicted = entry.predicted;
-      same->members = std::move(entry.members);
-      same->confirmed = same->confirmed || entry.confirmed;
-      same->missed = entry.missed;
+      entry.id = same->id;
+      entry.age = same->age;
+      entry.seen = same->seen;
+      entry.confirmed = same->confirmed || entry.confirmed;
+      entry.has_moved = same->has_moved || entry.has_moved;
+      *same = std::move(entry);
     }
   }
   entries_ = std::move(living);
 }
 
 TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sensor) const {
-  const Track& track = entry.predicted;
-  const MotionFilter& motion = track.motion();
   const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
   const Eigen::Matrix3d R = T_sensor_world.linear();
+  const BodyFilter& body = entry.predicted.body();
   TrackedObject object;
   object.id = entry.id;
   object.status = !entry.confirmed   ? TrackStatus::kTentative
                   : entry.missed > 0 ? TrackStatus::kCoasting
                                      : TrackStatus::kConfirmed;
-  object.velocity_sensor = R * motion.velocity();
-  object.covariance = R * track.velocity_covariance() * R.transpose();
-  object.yaw_rate_rps = motion.yaw_rate();
-  object.yaw_rate_variance = motion.covariance()(6, 6);
-  object.box = track.box();
+  object.velocity_sensor = R * entry.now.velocity;
+  object.covariance = R * entry.now.velocity_covariance * R.transpose();
+  object.yaw_rate_rps = body.yaw_rate();
+  object.yaw_rate_variance = body.covariance()(BodyFilter::kYawRate, BodyFilter::kYawRate);
+  object.box = entry.now.box;
   object.box.centre = T_sensor_world * object.box.centre;
   object.box.axes = R * object.box.axes;
+  object.centre_covariance = R * entry.now.centre_covariance * R.transpose();
+  object.faces = entry.now.faces;
   object.centroid = object.box.centre;
   object.extent = aligned_extent(object.box);
   // Not of unit length: straight above the sensor it is zero, and nothing counts as observed.
-  const Vector3d across = R.col(2).cross(object.centroid);
+  const Vector3d across = (R * ground_.up()).cross(object.centroid);
   const double sigma_mps = config_.tangential_sigma_mps;
   object.tangential_observed = across.dot(object.covariance * across) < sigma_mps * sigma_mps * across.squaredNorm();
+  Track later = entry.predicted;
+  later.predict(later.time_s() + object.prediction.after_s, config_.track);
+  const BoxEstimate then = later.estimate();
+  object.prediction.centre = T_sensor_world * then.box.centre;
+  object.prediction.centre_covariance = R * then.centre_covariance * R.transpose();
+  object.prediction.velocity_sensor = R * then.velocity;
   object.age_scans = entry.age;
   object.scans_seen = entry.seen;
   object.members = entry.members;

@@ -12,7 +12,9 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/ego_motion/support_plane.hpp"
 #include "dynamic_icp/method/tracking/expectation.hpp"
+#include "dynamic_icp/method/tracking/ground.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
 #include "dynamic_icp/method/tracking/tracked_object.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
@@ -25,7 +27,11 @@ namespace dynamic_icp::tracking {
 /// is left is grouped, and groups with enough points become new tracks. Objects that cross the line of sight have no
 /// radial velocity and are no "moving" points: slow tracks look for their points among the others too.
 ///
-/// The world's z axis is taken as up, to within some degrees. Results do not depend on the number of threads.
+/// Objects that stop remain objects for a while, and those that are hidden as long as their prediction is of use. What
+/// never moved is none.
+///
+/// Up is the normal of the ground, and the world's z axis until one was seen. Results do not depend on the number of
+/// threads.
 class ObjectTracker {
  public:
   /// Throws UsageError when the configuration is out of range.
@@ -39,16 +45,20 @@ class ObjectTracker {
   void flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
                      const Workers& workers, std::vector<std::uint8_t>& is_moving) const;
 
+  /// Clears `is_moving` of the rows that are too near to their sensor to be objects, in a scan that is not deskewed.
+  void clear_carrier(const Scan& scan, const Workers& workers, std::vector<std::uint8_t>& is_moving) const;
+
   /// All tracks at the stamp of the scan, in the order of their birth, tentative ones too: report those that are
   /// confirmed.
   ///
   /// The points of the scan are where they were measured, in the sensor frame at its stamp (deskewed); lines of sight
   /// are as measured. `radial`: for each row the velocity of the point itself along its line of sight over ground
-  /// (m/s). `is_moving`: for each row nonzero where that is too much for noise. Throws std::invalid_argument when
-  /// these differ in length or are not finite, and when the stamp is not later than that of the previous scan.
+  /// (m/s). `is_moving`: for each row nonzero where that is too much for noise. `support`: the plane that carries the
+  /// scene, where it shows one. Throws std::invalid_argument when these differ in length or are not finite, and when
+  /// the stamp is not later than that of the previous scan.
   std::vector<TrackedObject> update(const Scan& scan, std::span<const double> radial,
                                     std::span<const std::uint8_t> is_moving, const Eigen::Isometry3d& T_world_sensor,
-                                    const Workers& workers);
+                                    const std::optional<ego_motion::SupportPlane>& support, const Workers& workers);
 
  private:
   struct Entry;
@@ -63,12 +73,15 @@ class ObjectTracker {
   void gather_static(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers);
   void initiate_tracks(const TrackingInput& input, const std::vector<std::int32_t>& owner, const Workers& workers);
   [[nodiscard]] bool is_credible(const Entry& entry) const;
-  [[nodiscard]] bool are_same_object(const Entry& a, const Entry& b) const;
-  void delete_tracks();
+  void note_motion(Entry& entry, double stamp_s) const;
+  [[nodiscard]] bool is_over(const Entry& entry, double stamp_s) const;
+  [[nodiscard]] bool are_same_object(const Entry& a, const Entry& b, const Eigen::Vector3d& sensor_world) const;
+  void delete_tracks(double stamp_s, const Eigen::Vector3d& sensor_world);
   [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor) const;
 
   TrackerConfig config_;
   std::vector<Entry> entries_;
+  Ground ground_;
   std::int64_t next_id_ = 1;
   std::optional<Stamp> first_stamp_;
   std::optional<Stamp> last_stamp_;

@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <vector>
@@ -66,6 +67,41 @@ double distance_outside(const OrientedBox& box, const Eigen::Vector3d& point) {
   return (q.cwiseAbs() - 0.5 * box.size).cwiseMax(0.0).norm();
 }
 
+namespace {
+
+std::array<Eigen::Vector3d, 8> corners(const OrientedBox& box) {
+  std::array<Eigen::Vector3d, 8> result;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const Eigen::Vector3d signs((i & 1) != 0 ? 0.5 : -0.5, (i & 2) != 0 ? 0.5 : -0.5, (i & 4) != 0 ? 0.5 : -0.5);
+    result[i] = box.centre + box.axes * signs.cwiseProduct(box.size);
+  }
+  return result;
+}
+
+}  // namespace
+
+double distance_between(const OrientedBox& a, const OrientedBox& b) {
+  double least = std::min(distance_outside(a, b.centre), distance_outside(b, a.centre));
+  for (const Eigen::Vector3d& corner : corners(a)) {
+    least = std::min(least, distance_outside(b, corner));
+  }
+  for (const Eigen::Vector3d& corner : corners(b)) {
+    least = std::min(least, distance_outside(a, corner));
+  }
+  return least;
+}
+
+Eigen::Vector3d size_with(const OrientedBox& a, const OrientedBox& b) {
+  Eigen::Vector3d high = 0.5 * a.size;
+  Eigen::Vector3d low = -high;
+  for (const Eigen::Vector3d& corner : corners(b)) {
+    const Eigen::Vector3d q = a.axes.transpose() * (corner - a.centre);
+    high = high.cwiseMax(q);
+    low = low.cwiseMin(q);
+  }
+  return high - low;
+}
+
 Eigen::Vector3d aligned_extent(const OrientedBox& box) { return box.axes.cwiseAbs() * box.size; }
 
 Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,
@@ -83,7 +119,8 @@ Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector
   return {low, ranked(values, values.size() - 1 - rank)};
 }
 
-std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, double near_yaw_rad, double range_rad) {
+std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& level,
+                              double near_yaw_rad, double range_rad) {
   if (points.size() < kMinPointsOfAYaw) {
     return std::nullopt;
   }
@@ -91,7 +128,8 @@ std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, double ne
   Eigen::Array2Xd plane(2, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < plane.cols(); ++i) {
     // Relative to one of them: coordinates in the world may be large.
-    plane.col(i) = (points[static_cast<std::size_t>(i) * stride] - points.front()).head<2>();
+    plane.col(i) =
+        level.leftCols<2>().transpose() * (points[static_cast<std::size_t>(i) * stride] - points.front());
   }
   const double coarse = best_yaw(plane, near_yaw_rad, range_rad, kCoarseStep_rad);
   return best_yaw(plane, coarse, kCoarseStep_rad, kFineStep_rad);

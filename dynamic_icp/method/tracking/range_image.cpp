@@ -86,6 +86,7 @@ RangeImage::RangeImage(const Scan& scan, const Workers& workers)
     float& nearest = nearest_squared_[places[row]];
     nearest = std::min(nearest, squared[row]);
     column_seen_[columns_[row]] = 1;
+    highest_row_ = std::max(highest_row_, static_cast<int>(places[row] % kRows));
   }
 }
 
@@ -100,6 +101,8 @@ RangeImage::ColumnRange RangeImage::columns_around(const Eigen::Vector3d& centre
   const int half = static_cast<int>(std::ceil(std::asin(radius_m / distance) * (0.25 * kColumns))) + 1;
   return {(cell_of(centre).column - half + kColumns) % kColumns, std::min(kColumns, 2 * half + 1)};
 }
+
+bool RangeImage::is_above_all(const Eigen::Vector3d& point) const { return cell_of(point).row > highest_row_; }
 
 bool RangeImage::hides(const Eigen::Vector3d& point, double clearance_m) const {
   const Cell cell = cell_of(point);

@@ -16,15 +16,19 @@ namespace dynamic_icp::tracking {
 /// Tells the true end of a body from the place where something nearer begins to hide it.
 ///
 /// Made for bodies on the ground around the sensor: what is seen more than 46 degrees above or below its horizontal
-/// plane shares the outermost cells, and the edge of the field of view is known sideways only.
+/// plane shares the outermost cells, and the edge of the field of view is known sideways and as the highest that was seen anywhere.
 class RangeImage {
  public:
   /// From the points of a scan, in the sensor frame.
   RangeImage(const Scan& scan, const Workers& workers);
 
   /// Whether what is at `point` (m, sensor frame) is hidden, or would be: something at least `clearance_m` nearer is
-  /// seen in its direction, or nothing is seen above and below it either, as beyond the edge of the field of view.
+  /// seen in its direction, or nothing is seen above and below it either, as beyond the edge of the field of view. A
+  /// negative clearance: also by what is so much farther away.
   [[nodiscard]] bool hides(const Eigen::Vector3d& point, double clearance_m) const;
+
+  /// Whether nothing in the whole scan is seen as high as `point` (m, sensor frame): it may be above the field of view.
+  [[nodiscard]] bool is_above_all(const Eigen::Vector3d& point) const;
 
   /// The column of each row of the scan; columns go round with the azimuth.
   [[nodiscard]] const std::vector<std::uint16_t>& columns() const { return columns_; }
@@ -44,6 +48,7 @@ class RangeImage {
  private:
   std::vector<float> nearest_squared_;  ///< m^2, column by column; infinite where nothing is seen
   std::vector<char> column_seen_;
+  int highest_row_ = 0;
   std::vector<std::uint16_t> columns_;
 };
 

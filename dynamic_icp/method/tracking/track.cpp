@@ -13,6 +13,7 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
+constexpr double kLogAlongSides = 8.0;   // of what has sides: it moves along them rather than anywhere
 constexpr double kLogHopeless = -8.0;    // relative to the best hypothesis
 constexpr int kDecisionDetections = 10;  // after so many the best hypothesis stays alone
 
@@ -20,13 +21,27 @@ constexpr int kDecisionDetections = 10;  // after so many the best hypothesis st
 
 Track::Track(const Detection& detection, double stamp_s, const TrackConfig& config)
     : time_s_(stamp_s + detection.mean_time_s) {
-  hypotheses_.emplace_back(detection, std::nullopt, config);
-  const Detection now = at_mean_time(detection, motion().velocity());
-  if (const std::optional<double> yaw = fit_yaw(now.points, 0.0, 0.5 * kQuarterTurn)) {
-    hypotheses_.emplace_back(detection, *yaw, config);
-    hypotheses_.emplace_back(detection, *yaw + kQuarterTurn, config);
-  }
+  hypotheses_.emplace_back(detection, std::nullopt, 0.0, config);
+  add_headings(detection, 0.0, config);
   evaluate();
+}
+
+/// The sides of what is seen, where they are long enough to show a direction.
+void Track::add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config) {
+  const Eigen::Matrix3d& level = detection.ground.level;
+  const std::vector<Eigen::Vector3d> points = points_at_mean_time(detection, body().velocity());
+  const std::optional<double> yaw = fit_yaw(points, level, 0.0, 0.5 * kQuarterTurn);
+  if (!yaw) {
+    return;
+  }
+  const Eigen::Matrix3d axes = level * upright_axes(*yaw);
+  if (std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
+               span_along(points, points.front(), axes.col(1), 0.0).length()) < kShortestSide_m) {
+    return;
+  }
+  for (const double heading : {*yaw, *yaw + kQuarterTurn}) {
+    hypotheses_.emplace_back(detection, heading, log_likelihood + kLogAlongSides, config);
+  }
 }
 
 void Track::predict(double time_s, const TrackConfig& config) {
@@ -38,10 +53,14 @@ void Track::predict(double time_s, const TrackConfig& config) {
 
 void Track::correct(const Detection& detection, double stamp_s, const TrackConfig& config) {
   predict(stamp_s + detection.mean_time_s, config);
+  const double so_far = best().log_likelihood();
   for (BoxFilter& hypothesis : hypotheses_) {
     hypothesis.correct(detection, config);
   }
   ++detections_;
+  if (std::none_of(hypotheses_.begin(), hypotheses_.end(), [](const BoxFilter& one) { return one.has_heading(); })) {
+    add_headings(detection, so_far, config);
+  }
   evaluate();
 }
 
@@ -58,16 +77,23 @@ void Track::evaluate() {
       static_cast<std::size_t>(std::max_element(hypotheses_.begin(), hypotheses_.end(), better) - hypotheses_.begin());
 }
 
-Eigen::Matrix3d Track::velocity_covariance() const {
-  Eigen::Matrix3d sum = Eigen::Matrix3d::Zero();
+BoxEstimate Track::estimate() const {
+  BoxEstimate result = best().estimate();
+  Eigen::Matrix3d velocity = Eigen::Matrix3d::Zero();
+  Eigen::Matrix3d centre = Eigen::Matrix3d::Zero();
   double weights = 0.0;
   for (const BoxFilter& hypothesis : hypotheses_) {
     const double weight = std::exp(hypothesis.log_likelihood() - best().log_likelihood());
-    const Eigen::Vector3d difference = hypothesis.motion().velocity() - motion().velocity();
-    sum += weight * (hypothesis.motion().covariance().block<3, 3>(3, 3) + difference * difference.transpose());
+    const BoxEstimate other = hypothesis.estimate();
+    const Eigen::Vector3d dv = other.velocity - result.velocity;
+    const Eigen::Vector3d dc = other.box.centre - result.box.centre;
+    velocity += weight * (other.velocity_covariance + dv * dv.transpose());
+    centre += weight * (other.centre_covariance + dc * dc.transpose());
     weights += weight;
   }
-  return sum / weights;
+  result.velocity_covariance = velocity / weights;
+  result.centre_covariance = centre / weights;
+  return result;
 }
 
 }  // namespace dynamic_icp::tracking

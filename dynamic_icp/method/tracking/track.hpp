@@ -28,13 +28,13 @@ class Track {
 
   [[nodiscard]] double time_s() const { return time_s_; }
   [[nodiscard]] const BoxFilter& best() const { return hypotheses_[best_]; }
-  [[nodiscard]] const MotionFilter& motion() const { return best().motion(); }
-  [[nodiscard]] OrientedBox box() const { return best().box(); }
+  [[nodiscard]] const BodyFilter& body() const { return best().body(); }
 
-  /// Of the velocity, about that of the best hypothesis, with the disagreement of the others: (m/s)^2, world.
-  [[nodiscard]] Eigen::Matrix3d velocity_covariance() const;
+  /// The best hypothesis; its covariances hold the disagreement of the others.
+  [[nodiscard]] BoxEstimate estimate() const;
 
  private:
+  void add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config);
   void evaluate();
 
   std::vector<BoxFilter> hypotheses_;

@@ -16,4 +16,16 @@ std::string_view to_string(TrackStatus status) {
   return "unknown";
 }
 
+std::string_view to_string(FaceView view) {
+  switch (view) {
+    case FaceView::kUnknown:
+      return "unknown";
+    case FaceView::kHidden:
+      return "hidden";
+    case FaceView::kSeen:
+      return "seen";
+  }
+  return "unknown";
+}
+
 }  // namespace dynamic_icp::tracking

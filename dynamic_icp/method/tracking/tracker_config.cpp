@@ -17,10 +17,7 @@ ConfigFields fields(TrackConfig& config) {
       {"prior_speed_mps", &config.prior_speed_mps, 0.1, 1000.0, "m/s", "typical horizontal speed of new objects"},
       {"prior_climb_mps", &config.prior_climb_mps, 0.01, 1000.0, "m/s", "typical vertical speed of new objects"},
       {"prior_yaw_rate_rps", &config.prior_yaw_rate_rps, 1e-3, 100.0, "rad/s", "typical yaw rate of new objects"},
-      {"vehicle_width_m", &config.vehicle_width_m, 0.0, 100.0, "m", "objects at least this wide count as vehicles"},
       {"largest_width_m", &config.largest_width_m, 0.0, 100.0, "m", "greatest likely width of vehicles"},
-      {"vehicle_length_m", &config.vehicle_length_m, 0.0, 100.0, "m",
-       "length of vehicles of which no more has been seen"},
   };
   append_fields(all, "motion", fields(config.motion));
   return all;
@@ -28,6 +25,8 @@ ConfigFields fields(TrackConfig& config) {
 
 ConfigFields fields(TrackerConfig& config) {
   ConfigFields all = {
+      {"min_range_m", &config.min_range_m, 0.0, 100.0, "m",
+       "what is nearer to its sensor belongs to the vehicle that carries it, or is its window"},
       {"min_points", &config.min_points, 1, 1e6, "", "moving points that initiate a track"},
       {"confirm_points", &config.confirm_points, 1, 1e6, "", "moving points that confirm a track in its first scan"},
       {"confirm_scans", &config.confirm_scans, 1, 1000, "", "scans in which a smaller object must be detected"},
@@ -35,12 +34,15 @@ ConfigFields fields(TrackerConfig& config) {
        "a track is confirmed when the standard deviation of its horizontal velocity is below this"},
       {"confirm_anyway_scans", &config.confirm_anyway_scans, 1, 1000, "",
        "or when it has been seen in so many scans, however well its velocity is known"},
-      {"coast_scans", &config.coast_scans, 0, 1000, "", "scans for which a track is kept without detections"},
+      {"coast_s", &config.coast_s, 0.0, 1000.0, "s", "time for which a track is kept without detections"},
+      {"coast_sigma_m", &config.coast_sigma_m, 0.0, 1000.0, "m",
+       "largest standard deviation of the position of such a track"},
       {"max_spread_mps", &config.max_spread_mps, 0.0, 100.0, "m/s",
        "points are no object when their radial velocities differ by more from those of a rigid body"},
       {"same_velocity_mps", &config.same_velocity_mps, 0.0, 100.0, "m/s",
        "static points in the box of a new object contradict it when their radial velocity differs by more"},
       {"min_speed_mps", &config.min_speed_mps, 0.0, 100.0, "m/s", "objects slower than this count as stationary"},
+      {"stand_s", &config.stand_s, 0.0, 1e6, "s", "time for which an object that stands is kept"},
       {"gate_m", &config.gate_m, 0.0, 100.0, "m", "association gate: distance of points from the predicted box"},
       {"gate_mps", &config.gate_mps, 0.0, 100.0, "m/s",
        "association gate: difference of their radial velocity from the predicted one"},

@@ -88,11 +88,28 @@ Json object_json(std::size_t id, const dynamics::ObjectEstimate& object) {
           {"points", object.members.size()}};
 }
 
-Json box_json(const tracking::OrientedBox& box) {
+Json box_json(const tracking::TrackedObject& object) {
+  const tracking::OrientedBox& box = object.box;
   const Eigen::Quaterniond orientation(box.axes);
+  const auto face = [&](tracking::Face which) { return to_string(object.faces[static_cast<std::size_t>(which)]); };
   return {{"center", vector_json(box.centre)},
+          {"center_covariance", matrix_json(object.centre_covariance)},
           {"size", vector_json(box.size)},
-          {"orientation_xyzw", vector_json(orientation.coeffs())}};
+          {"orientation_xyzw", vector_json(orientation.coeffs())},
+          {"faces",
+           {{"front", face(tracking::Face::kFront)},
+            {"rear", face(tracking::Face::kRear)},
+            {"left", face(tracking::Face::kLeft)},
+            {"right", face(tracking::Face::kRight)},
+            {"top", face(tracking::Face::kTop)},
+            {"bottom", face(tracking::Face::kBottom)}}}};
+}
+
+Json prediction_json(const tracking::ObjectPrediction& prediction) {
+  return {{"after_s", prediction.after_s},
+          {"center", vector_json(prediction.centre)},
+          {"center_covariance", matrix_json(prediction.centre_covariance)},
+          {"velocity", vector_json(prediction.velocity_sensor)}};
 }
 
 Json tracked_json(const tracking::TrackedObject& object) {
@@ -103,7 +120,8 @@ Json tracked_json(const tracking::TrackedObject& object) {
           {"yaw_rate", object.yaw_rate_rps},
           {"centroid", vector_json(object.centroid)},
           {"extent", vector_json(object.extent)},
-          {"box", box_json(object.box)},
+          {"box", box_json(object)},
+          {"prediction", prediction_json(object.prediction)},
           {"status", to_string(object.status)},
           {"age_scans", object.age_scans},
           {"points", object.members.size()}};

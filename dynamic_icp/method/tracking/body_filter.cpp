@@ -1,0 +1,213 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/body_filter.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include <Eigen/Eigenvalues>
+
+#include "dynamic_icp/method/base/se3.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+// Measurements more than this many standard deviations off count as if they were just so many off (Huber's influence).
+constexpr double kLargestInnovation = 3.0;
+constexpr double kWorstSquare = 16.0;     // of a normalised residual, for the likelihood: all may happen
+constexpr double kMinInformation = 1e-4;  // (s/m)^2: a standard deviation of 100 m/s
+constexpr double kFaceWalk_m = 0.02;      // per square root of a second: bodies are no boxes
+
+/// Covariance of the velocity's random walk over one second, along and across the motion.
+Matrix3d velocity_noise(const Vector3d& velocity, const Matrix3d& level, const MotionNoise& noise) {
+  const Vector3d up = level.col(2);
+  const Vector3d horizontal = velocity - up.dot(velocity) * up;
+  const double speed = horizontal.norm();
+  const Vector3d along = speed > 0.0 ? Vector3d(horizontal / speed) : Vector3d(level.col(0));
+  const Vector3d across = up.cross(along);
+  return noise.along_mps * noise.along_mps * along * along.transpose() +
+         noise.across_mps * noise.across_mps * across * across.transpose() +
+         noise.vertical_mps * noise.vertical_mps * up * up.transpose();
+}
+
+}  // namespace
+
+ConfigFields fields(MotionNoise& noise) {
+  return {
+      {"along_mps", &noise.along_mps, 0.01, 100.0, "m/s/sqrt(s)", "random walk of an object's speed along its motion"},
+      {"across_mps", &noise.across_mps, 0.01, 100.0, "m/s/sqrt(s)",
+       "random walk of its velocity across the motion, beyond what its yaw rate explains"},
+      {"vertical_mps", &noise.vertical_mps, 0.01, 100.0, "m/s/sqrt(s)", "random walk of its vertical velocity"},
+      {"yaw_rate_rps", &noise.yaw_rate_rps, 0.001, 100.0, "rad/s/sqrt(s)", "random walk of its yaw rate"},
+  };
+}
+
+double BodyFilter::yaw_sigma() const { return std::sqrt(P_(kYaw, kYaw)); }
+
+Matrix3d BodyFilter::axes() const { return level_ * upright_axes(yaw()); }
+
+void BodyFilter::predict(double dt_s, const MotionNoise& noise) {
+  const Vector3d v = velocity();
+  const Matrix3d turn = exp_so3(up() * (yaw_rate() * dt_s));
+  const Matrix3d half_turn = exp_so3(up() * (0.5 * yaw_rate() * dt_s));
+  Eigen::Matrix<double, kFirstFace, kFirstFace> F = Eigen::Matrix<double, kFirstFace, kFirstFace>::Identity();
+  F.block<3, 3>(0, kVelocity) = dt_s * half_turn;
+  F.block<3, 1>(0, kYawRate) = 0.5 * dt_s * dt_s * up().cross(half_turn * v);
+  F.block<3, 3>(kVelocity, kVelocity) = turn;
+  F.block<3, 1>(kVelocity, kYawRate) = dt_s * up().cross(turn * v);
+  F(kYaw, kYawRate) = dt_s;
+  x_.head<3>() += dt_s * half_turn * v;
+  x_.segment<3>(kVelocity) = turn * v;
+  x_[kYaw] += dt_s * yaw_rate();
+  P_.topRows<kFirstFace>() = (F * P_.topRows<kFirstFace>()).eval();
+  P_.leftCols<kFirstFace>() = (P_.leftCols<kFirstFace>() * F.transpose()).eval();
+  // White noise of the accelerations over t.
+  const double t = std::abs(dt_s);
+  const double sign = dt_s < 0.0 ? -1.0 : 1.0;
+  const Matrix3d q = velocity_noise(v, level_, noise);
+  P_.block<3, 3>(0, 0) += t * t * t / 3.0 * q;
+  P_.block<3, 3>(0, kVelocity) += sign * t * t / 2.0 * q;
+  P_.block<3, 3>(kVelocity, 0) += sign * t * t / 2.0 * q;
+  P_.block<3, 3>(kVelocity, kVelocity) += t * q;
+  if (P_(kYaw, kYaw) > 0.0) {  // else a body without heading
+    const double turning = noise.yaw_rate_rps * noise.yaw_rate_rps;
+    P_(kYaw, kYaw) += t * t * t / 3.0 * turning;
+    P_(kYaw, kYawRate) += sign * t * t / 2.0 * turning;
+    P_(kYawRate, kYaw) += sign * t * t / 2.0 * turning;
+    P_(kYawRate, kYawRate) += t * turning;
+  }
+  P_.diagonal().tail<kStates - kFirstFace>().array() += t * kFaceWalk_m * kFaceWalk_m;
+}
+
+double BodyFilter::correct(const Row& H, double residual, double variance) {
+  const Vector PHt = P_ * H.transpose();
+  const double predicted = H * PHt;
+  double S = predicted + variance;
+  const double log_likelihood = -0.5 * std::min(residual * residual / S, kWorstSquare) - 0.5 * std::log(S / variance);
+  const double excess = std::abs(residual) / (kLargestInnovation * std::sqrt(S));
+  if (excess > 1.0) {
+    variance = excess * S - predicted;
+    S = predicted + variance;
+  }
+  const Vector K = PHt / S;
+  x_ += K * residual;
+  P_.noalias() -= K * PHt.transpose();
+  return log_likelihood;
+}
+
+double BodyFilter::correct_face(Face face, const Vector3d& seen, double variance) {
+  const Matrix3d box = axes();
+  const int axis = axis_of(face);
+  const Vector3d outward = side_of(face) * box.col(axis);
+  const Vector3d from_reference = seen - position();
+  Row H = Row::Zero();
+  H.head<3>() = outward.transpose();
+  H[index(face)] = 1.0;
+  if (axis < 2) {
+    const Vector3d turned = side_of(face) * (axis == 0 ? Vector3d(box.col(1)) : Vector3d(-box.col(0)));
+    H[kYaw] = -turned.dot(from_reference);
+  }
+  return correct(H, outward.dot(from_reference) - distance(face), variance);
+}
+
+void BodyFilter::forget_face(Face face, double variance) {
+  P_.row(index(face)).setZero();
+  P_.col(index(face)).setZero();
+  P_(index(face), index(face)) = variance;
+}
+
+double BodyFilter::correct_position(int axis, const Vector3d& seen, double variance) {
+  const Vector3d direction = axes().col(axis);
+  Row H = Row::Zero();
+  H.head<3>() = direction.transpose();
+  return correct(H, direction.dot(seen - position()), variance);
+}
+
+double BodyFilter::correct_yaw(double yaw_rad, double variance) {
+  Row H = Row::Zero();
+  H[kYaw] = 1.0;
+  return correct(H, std::remainder(yaw_rad - yaw(), 2.0 * std::numbers::pi), variance);
+}
+
+double BodyFilter::correct_yaw_rate(double yaw_rate_rps, double variance) {
+  Row H = Row::Zero();
+  H[kYawRate] = 1.0;
+  return correct(H, yaw_rate_rps - yaw_rate(), variance);
+}
+
+double BodyFilter::correct_sideslip(double variance) {
+  const Matrix3d box = axes();
+  const double ahead = 0.5 * (distance(Face::kFront) - distance(Face::kRear));
+  Row H = Row::Zero();
+  H.segment<3>(kVelocity) = box.col(1).transpose();
+  H[kYaw] = -box.col(0).dot(velocity());
+  H[kYawRate] = ahead;
+  H[index(Face::kFront)] = 0.5 * yaw_rate();
+  H[index(Face::kRear)] = -0.5 * yaw_rate();
+  return correct(H, -box.col(1).dot(velocity()) - yaw_rate() * ahead, variance);
+}
+
+Vector3d BodyFilter::doppler_velocity(const Vector3d& sensor_world) const {
+  return velocity() - yaw_rate() * up().cross(position() - sensor_world);
+}
+
+Eigen::Matrix<double, 3, BodyFilter::kStates> BodyFilter::doppler_jacobian(const Vector3d& sensor_world) const {
+  Eigen::Matrix<double, 3, kStates> H = Eigen::Matrix<double, 3, kStates>::Zero();
+  H.leftCols<3>() = -yaw_rate() * skew(up());
+  H.middleCols<3>(kVelocity).setIdentity();
+  H.col(kYawRate) = -up().cross(position() - sensor_world);
+  return H;
+}
+
+Matrix3d BodyFilter::doppler_covariance(const Vector3d& sensor_world) const {
+  const Eigen::Matrix<double, 3, kStates> H = doppler_jacobian(sensor_world);
+  return H * P_ * H.transpose();
+}
+
+Vector3d BodyFilter::velocity_at(const Vector3d& from_reference) const {
+  return velocity() + yaw_rate() * up().cross(axes() * from_reference);
+}
+
+Matrix3d BodyFilter::velocity_covariance_at(const Vector3d& from_reference) const {
+  const Vector3d r = axes() * from_reference;
+  Eigen::Matrix<double, 3, kStates> H = Eigen::Matrix<double, 3, kStates>::Zero();
+  H.middleCols<3>(kVelocity).setIdentity();
+  H.col(kYawRate) = up().cross(r);
+  H.col(kYaw) = yaw_rate() * up().cross(up().cross(r));
+  return H * P_ * H.transpose();
+}
+
+double BodyFilter::correct_doppler(const ClusterVelocity& measured, const Vector3d& sensor_world,
+                                   const Matrix3d& floor) {
+  double log_likelihood = 0.0;
+  // The parts along the eigenvectors are independent of each other; those without information drop out.
+  const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(measured.information);
+  for (int i = 2; i >= 0; --i) {
+    const double information = eigen.eigenvalues()[i];
+    if (information < kMinInformation) {
+      continue;
+    }
+    const Vector3d e = eigen.eigenvectors().col(i);
+    const Row H = e.transpose() * doppler_jacobian(sensor_world);
+    const double residual = e.dot(measured.W - doppler_velocity(sensor_world));
+    log_likelihood += correct(H, residual, 1.0 / information + e.dot(floor * e));
+  }
+  return log_likelihood;
+}
+
+void BodyFilter::turn_around() {
+  x_[kYaw] += std::numbers::pi;
+  for (const Face face : {Face::kFront, Face::kLeft}) {
+    const int i = index(face);
+    std::swap(x_[i], x_[i + 1]);
+    P_.row(i).swap(P_.row(i + 1));
+    P_.col(i).swap(P_.col(i + 1));
+  }
+}
+
+}  // namespace dynamic_icp::tracking

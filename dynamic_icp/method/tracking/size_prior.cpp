@@ -1,0 +1,43 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/size_prior.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace dynamic_icp::tracking {
+namespace {
+
+constexpr double kScatter = 0.15;  // of sizes about the curves, as a share
+constexpr double kPersonSide_m = 1.2;
+constexpr double kPersonSpeed_mps = 2.5;
+
+Belief about(double mean) { return {mean, kScatter * kScatter * mean * mean}; }
+
+}  // namespace
+
+Belief at_least(const Belief& belief, double least) {
+  const double sigma = std::sqrt(belief.variance);
+  const double a = (least - belief.mean) / sigma;
+  const double mode = std::max(belief.mean, least);
+  if (a > 5.0) {  // the tail: nothing is left of the belief but the bound
+    return {mode, belief.variance / (a * a)};
+  }
+  const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
+  const double hazard = density / (0.5 * std::erfc(a / std::numbers::sqrt2));
+  const double bias = belief.mean + sigma * hazard - mode;
+  return {mode, belief.variance * std::max(0.0, 1.0 + a * hazard - hazard * hazard) + bias * bias};
+}
+
+Belief typical_length(double width_m, double height_m) { return about(1.95 * std::pow(width_m * height_m, 0.75)); }
+
+Belief typical_width(double length_m) { return about(std::min(2.5, 0.41 * length_m)); }
+
+Belief typical_width_by_height(double height_m) { return about(std::min(2.5, 1.3 + 0.33 * height_m)); }
+
+bool is_person_like(double longest_side_m, double speed_mps) {
+  return longest_side_m < kPersonSide_m && speed_mps < kPersonSpeed_mps;
+}
+
+}  // namespace dynamic_icp::tracking
