@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double kTrim = 0.01;            // of the points at either end
 constexpr double kReference_m = 0.01;     // the reference is a point of the body by definition
-constexpr double kLooseShare = 0.3;       // of what was seen of a body, as standard deviation of its middle
+constexpr double kLoose_m = 0.5;          // standard deviation of the middle of what is seen of a body, if as much
 constexpr double kUnknownFace_m = 10.0;   // standard deviation
 constexpr double kKnownFace_m = 0.5;      // a face known better than this was seen
 constexpr double kFalseEnd_m = 0.1;       // what is seen so far beyond a face ...
@@ -31,6 +31,8 @@ constexpr double kPivotShare = 0.15;      // ... and of the length that the poin
 constexpr double kBackwards_mps = 0.5;    // what moves backwards faster than this was taken the wrong way round
 constexpr double kLogHeading = -2.0;      // a scan without heading: more than the corrections of one cost
 constexpr double kWidthSigma_m = 0.5;
+constexpr double kSizeScatter = 0.25;     // of what is seen of sizes about the typical ones, as a share
+constexpr double kGrazing = 0.03;         // faces seen at a smaller angle show nothing
 constexpr double kEndOn = 0.25;           // part of an axis across the line of sight, below which it is end-on
 constexpr double kDimSpeed_mps = 0.5;
 constexpr double kDimReach_m = 1.5;  // beyond an end
@@ -122,7 +124,6 @@ void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
     log_likelihood_ += kLogHeading;
   }
   correct_faces(points, detection, config);
-  evaluate_size(config);
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
@@ -159,16 +160,21 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
     for (const int axis : {0, 1}) {
       std::swap(least_[static_cast<std::size_t>(2 * axis)], least_[static_cast<std::size_t>(2 * axis + 1)]);
       std::swap(faces_[static_cast<std::size_t>(2 * axis)], faces_[static_cast<std::size_t>(2 * axis + 1)]);
+      if (std::optional<Interval>& last = last_seen_[static_cast<std::size_t>(axis)]) {
+        last = Interval{-last->high, -last->low};
+      }
     }
   }
 }
 
 void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection& detection,
                               const TrackConfig& config) {
+  const std::array<AxisView, 3> views = look(points, detection);
+  const Vector3d reference = body_.position();
   for (const int axis : {0, 1, 2}) {
-    const AxisView view = look_along(axis, points, detection);
+    const AxisView& view = views[static_cast<std::size_t>(axis)];
     if (axis < 2) {
-      correct_middle(axis, view, detection, config);
+      correct_middle(axis, view);
     }
     for (const double side : {1.0, -1.0}) {
       const Face face = kFaces[static_cast<std::size_t>(2 * axis + (side > 0.0 ? 0 : 1))];
@@ -189,7 +195,9 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
       }
       if (side > 0.0 ? view.high_end : view.low_end) {
         faces_[i] = FaceView::kSeen;
-        log_likelihood_ += body_.correct_face(face, at_end, sigma * sigma);
+        const bool was_known = is_known(face);
+        const double log_likelihood = body_.correct_face(face, at_end, sigma * sigma);
+        log_likelihood_ += was_known ? log_likelihood : 0.0;  // else it could be anywhere
       } else {
         faces_[i] = faces_[i] == FaceView::kUnknown ? FaceView::kUnknown : FaceView::kHidden;
         if (is_known(face) && seen > body_.distance(face) + sigma) {
@@ -198,34 +206,72 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
       }
     }
   }
+  // What was seen, from where the reference is now.
+  for (const int axis : {0, 1}) {
+    const double shift = body_.axes().col(axis).dot(body_.position() - reference);
+    const Interval& seen = views[static_cast<std::size_t>(axis)].seen;
+    last_seen_[static_cast<std::size_t>(axis)] = Interval{seen.low - shift, seen.high - shift};
+  }
+  size_log_likelihood_ = size_log_likelihood(config);  // before what is too wide is cut off
+  limit_width(config);
   if (detection.ground.offset_m) {
     const Vector3d up = detection.ground.up();
     const Vector3d on_ground = body_.position() + (*detection.ground.offset_m - up.dot(body_.position())) * up;
     const double sigma = kGroundSigma_m + face_sigma(on_ground, detection, config);
     faces_[static_cast<std::size_t>(Face::kBottom)] = FaceView::kSeen;
-    log_likelihood_ += body_.correct_face(Face::kBottom, on_ground, sigma * sigma);
+    body_.correct_face(Face::kBottom, on_ground, sigma * sigma);
   }
 }
 
-/// Where neither end was ever seen, the points are anywhere in the body: they hold its reference loosely.
-void BoxFilter::correct_middle(int axis, const AxisView& view, const Detection& detection, const TrackConfig& config) {
-  const Face high = kFaces[static_cast<std::size_t>(2 * axis)];
-  const Face low = kFaces[static_cast<std::size_t>(2 * axis + 1)];
-  const double known = least_[static_cast<std::size_t>(high)] + least_[static_cast<std::size_t>(low)];
-  if (is_known(high) || is_known(low) || !(known > 0.0)) {
+/// No body is wider than the widest: sides that say so and are not seen now are forgotten, and bounds are drawn in.
+void BoxFilter::limit_width(const TrackConfig& config) {
+  const double excess = reach(Face::kLeft) + reach(Face::kRight) - config.largest_width_m;
+  if (!has_heading_ || excess <= 0.0) {
     return;
   }
-  const double expected = 0.5 * (least_[static_cast<std::size_t>(high)] - least_[static_cast<std::size_t>(low)]);
-  const double sigma = face_sigma(body_.position(), detection, config) + kLooseShare * known;
-  log_likelihood_ += body_.correct_position(axis, body_.position() + (view.seen.middle() - expected) *
-                                                                         body_.axes().col(axis), sigma * sigma);
+  const auto is_fixed = [&](Face face) {
+    return is_known(face) && faces_[static_cast<std::size_t>(face)] == FaceView::kSeen;
+  };
+  const double share = is_fixed(Face::kLeft) == is_fixed(Face::kRight) ? 0.5 : 1.0;
+  for (const Face face : {Face::kLeft, Face::kRight}) {
+    if (share == 1.0 && is_fixed(face)) {
+      continue;
+    }
+    least_[static_cast<std::size_t>(face)] = reach(face) - share * excess;
+    faces_[static_cast<std::size_t>(face)] = FaceView::kUnknown;
+    body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);
+  }
 }
 
-/// Vehicles have a greatest width, and are not wider than long.
-void BoxFilter::evaluate_size(const TrackConfig& config) {
-  const double width = reach(Face::kLeft) + reach(Face::kRight);
-  const double too_wide = std::max(0.0, width - config.largest_width_m);
-  log_likelihood_ += std::max(kWorstLog, -0.5 * std::pow(too_wide / kWidthSigma_m, 2));
+/// Where neither end was ever seen, the middle of the points holds the body, as far as it shows as much as before.
+void BoxFilter::correct_middle(int axis, const AxisView& view) {
+  const std::optional<Interval>& last = last_seen_[static_cast<std::size_t>(axis)];
+  if (!last || is_known(kFaces[static_cast<std::size_t>(2 * axis)]) ||
+      is_known(kFaces[static_cast<std::size_t>(2 * axis + 1)])) {
+    return;
+  }
+  const double sigma = kLoose_m + std::abs(last->length() - view.seen.length());
+  const Vector3d reference =
+      body_.position() + (view.seen.middle() - last->middle()) * body_.axes().col(axis);
+  log_likelihood_ += body_.correct_position(axis, reference, sigma * sigma);
+}
+
+/// How likely the sizes are that were seen: what is known of them, and what is too long or wide already. Not of a body
+/// without heading, which has neither.
+double BoxFilter::size_log_likelihood(const TrackConfig& config) const {
+  const double height = span(2);
+  if (!has_heading_ || is_person_like(std::max(span(0), span(1)), body_.velocity().norm())) {
+    return 0.0;
+  }
+  const auto surprise = [&](int axis, const Belief& typical) {
+    const double off = span(axis) - typical.mean;
+    return is_whole(axis) || off > 0.0 ? off / (kSizeScatter * typical.mean) : 0.0;
+  };
+  const Belief width = typical_width_by_height(height);
+  const double of_width = surprise(1, width);
+  const double of_length = surprise(0, typical_length(is_whole(1) ? span(1) : width.mean, height));
+  const double too_wide = std::max(0.0, span(1) - config.largest_width_m) / kWidthSigma_m;
+  return std::max(kWorstLog, -0.5 * (of_width * of_width + of_length * of_length + too_wide * too_wide));
 }
 
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next.
@@ -259,8 +305,7 @@ bool BoxFilter::is_true_end(const Vector3d& end, const Vector3d& outward, const 
   return true;
 }
 
-BoxFilter::AxisView BoxFilter::look_along(int axis, std::span<const Vector3d> points,
-                                          const Detection& detection) const {
+BoxFilter::AxisView BoxFilter::look_along(int axis, std::span<const Vector3d> points) const {
   const Vector3d direction = body_.axes().col(axis);
   AxisView view;
   view.seen = span_along(points, body_.position(), direction, kTrim);
@@ -279,9 +324,35 @@ BoxFilter::AxisView BoxFilter::look_along(int axis, std::span<const Vector3d> po
   }
   view.low /= low_count;
   view.high /= high_count;
-  view.high_end = is_true_end(view.high, direction, detection);
-  view.low_end = axis < 2 && is_true_end(view.low, -direction, detection);  // what is below bodies is hidden by them
   return view;
+}
+
+/// What a detection shows along each axis. How far a body reaches away from the sensor shows only a face that looks at
+/// the sensor and spans that axis.
+std::array<BoxFilter::AxisView, 3> BoxFilter::look(std::span<const Vector3d> points, const Detection& detection) const {
+  const Matrix3d axes = body_.axes();
+  std::array<AxisView, 3> views;
+  std::array<bool, 2> faces_sensor{};
+  for (const int axis : {0, 1}) {
+    AxisView& view = views[static_cast<std::size_t>(axis)] = look_along(axis, points);
+    const double sensor = axes.col(axis).dot(detection.sensor - body_.position());
+    const double grazing = kGrazing * (detection.sensor - body_.position()).norm();
+    view.high_end = sensor > view.seen.high && is_true_end(view.high, axes.col(axis), detection);
+    view.low_end = sensor < view.seen.low && is_true_end(view.low, -axes.col(axis), detection);
+    faces_sensor[static_cast<std::size_t>(axis)] = (view.high_end && sensor > view.seen.high + grazing) ||
+                                                   (view.low_end && sensor < view.seen.low - grazing);
+  }
+  for (const int axis : {0, 1}) {
+    AxisView& view = views[static_cast<std::size_t>(axis)];
+    if (faces_sensor[static_cast<std::size_t>(1 - axis)]) {
+      view.high_end = view.high_end || is_true_end(view.high, axes.col(axis), detection);
+      view.low_end = view.low_end || is_true_end(view.low, -axes.col(axis), detection);
+    }
+  }
+  // What is below bodies is hidden by them.
+  views[2] = look_along(2, points);
+  views[2].high_end = is_true_end(views[2].high, axes.col(2), detection);
+  return views;
 }
 
 bool BoxFilter::is_known(Face face) const { return body_.variance(face) < kKnownFace_m * kKnownFace_m; }
@@ -301,27 +372,28 @@ OrientedBox BoxFilter::seen_box() const {
   return box;
 }
 
+bool BoxFilter::is_whole(int axis) const {
+  return is_known(kFaces[static_cast<std::size_t>(2 * axis)]) &&
+         is_known(kFaces[static_cast<std::size_t>(2 * axis + 1)]);
+}
+
+double BoxFilter::span(int axis) const {
+  return std::max(0.0, reach(kFaces[static_cast<std::size_t>(2 * axis)]) +
+                           reach(kFaces[static_cast<std::size_t>(2 * axis + 1)]));
+}
+
 /// Along, to the left and up, with what is not seen filled in by what is likely.
 std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
-  const auto is_whole = [&](int axis) {
-    return is_known(kFaces[static_cast<std::size_t>(2 * axis)]) &&
-           is_known(kFaces[static_cast<std::size_t>(2 * axis + 1)]);
-  };
-  const auto seen = [&](int axis) {
-    return std::max(0.0, reach(kFaces[static_cast<std::size_t>(2 * axis)]) +
-                             reach(kFaces[static_cast<std::size_t>(2 * axis + 1)]));
-  };
-  const double height = seen(2);
-  const bool is_person =
-      !has_heading_ || is_person_like(std::max(seen(0), seen(1)), body_.velocity().norm());
+  const double height = span(2);
+  const bool is_person = !has_heading_ || is_person_like(std::max(span(0), span(1)), body_.velocity().norm());
   // The width first: it varies least.
-  Belief width{seen(1), 0.0};
+  Belief width{span(1), 0.0};
   if (!is_person && !is_whole(1)) {
-    width = at_least(is_whole(0) ? typical_width(seen(0)) : typical_width_by_height(height), seen(1));
+    width = at_least(is_whole(0) ? typical_width(span(0)) : typical_width_by_height(height), span(1));
   }
-  Belief length{seen(0), 0.0};
+  Belief length{span(0), 0.0};
   if (!is_person && !is_whole(0)) {
-    length = at_least(typical_length(width.mean, height), seen(0));
+    length = at_least(typical_length(width.mean, height), span(0));
   }
   std::array<Extent, 3> extents;
   for (const int axis : {0, 1, 2}) {
@@ -342,7 +414,7 @@ std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
       extent.middle = 0.5 * size.mean - body_.distance(low);
       extent.variance = 0.25 * size.variance;
     } else {
-      const double hidden = std::max(0.0, size.mean - seen(axis));
+      const double hidden = std::max(0.0, size.mean - span(axis));
       extent.middle = 0.5 * (reach(high) - reach(low));
       extent.variance = hidden * hidden / 12.0 + 0.25 * size.variance;
     }

@@ -54,7 +54,7 @@ class BoxFilter {
   [[nodiscard]] OrientedBox seen_box() const;
 
   /// How well the hypothesis has explained what was seen; comparable between hypotheses about the same detections.
-  [[nodiscard]] double log_likelihood() const { return log_likelihood_; }
+  [[nodiscard]] double log_likelihood() const { return log_likelihood_ + size_log_likelihood_; }
 
   /// Spread of the last detection's radial velocities about those of a rigid body, m/s.
   [[nodiscard]] double spread_mps() const { return spread_mps_; }
@@ -69,21 +69,26 @@ class BoxFilter {
   void correct_doppler(const Detection& detection, const TrackConfig& config);
   void correct_heading(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
   void correct_faces(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
-  void correct_middle(int axis, const AxisView& view, const Detection& detection, const TrackConfig& config);
-  void evaluate_size(const TrackConfig& config);
-  [[nodiscard]] AxisView look_along(int axis, std::span<const Eigen::Vector3d> points,
-                                    const Detection& detection) const;
+  void correct_middle(int axis, const AxisView& view);
+  void limit_width(const TrackConfig& config);
+  [[nodiscard]] double size_log_likelihood(const TrackConfig& config) const;
+  [[nodiscard]] AxisView look_along(int axis, std::span<const Eigen::Vector3d> points) const;
+  [[nodiscard]] std::array<AxisView, 3> look(std::span<const Eigen::Vector3d> points, const Detection& detection) const;
   [[nodiscard]] bool is_true_end(const Eigen::Vector3d& end, const Eigen::Vector3d& outward,
                                  const Detection& detection) const;
   [[nodiscard]] bool is_known(Face face) const;
   [[nodiscard]] double reach(Face face) const;
+  [[nodiscard]] bool is_whole(int axis) const;
+  [[nodiscard]] double span(int axis) const;
   [[nodiscard]] std::array<Extent, 3> extents() const;
 
   BodyFilter body_;
   bool has_heading_;
   std::array<double, kFaces.size()> least_{};    ///< m from the reference: points were seen so far out
   std::array<FaceView, kFaces.size()> faces_{};  ///< by Face
-  double log_likelihood_ = 0.0;
+  std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last
+  double log_likelihood_ = 0.0;       ///< of the motion
+  double size_log_likelihood_ = 0.0;  ///< of the sizes
   double spread_mps_ = 0.0;
   double signal_mps_ = 0.0;
 };

@@ -13,7 +13,7 @@ constexpr std::size_t kMaxPoints = 500;
 }  // namespace
 
 Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
-                         const SensorMotion& sensor, const Ground& ground, const RangeImage* view) {
+                         const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view) {
   Detection detection;
   const std::size_t stride = std::max<std::size_t>(1, (rows.size() + kMaxPoints - 1) / kMaxPoints);
   for (std::size_t i = 0; i < rows.size(); i += stride) {
@@ -27,8 +27,8 @@ Detection make_detection(const Scan& scan, std::span<const double> radial, std::
   }
   detection.mean_time_s /= static_cast<double>(detection.points.size());
   detection.sensor = sensor.position(detection.mean_time_s);
-  detection.T_sensor_world = sensor.T_world_sensor.inverse();
-  detection.ground = ground;
+  detection.T_sensor_world = sensor.pose(detection.mean_time_s).inverse();
+  detection.ground = heights.around(detection.points[detection.points.size() / 2]);
   detection.view = view;
   return detection;
 }

@@ -24,15 +24,15 @@ struct Detection {
   std::vector<double> times;                ///< s after the stamp of the scan
   double mean_time_s = 0.0;
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();                  ///< where the sensor was at the mean time
-  Eigen::Isometry3d T_sensor_world = Eigen::Isometry3d::Identity();  ///< at the stamp
-  Ground ground;                                                     ///< world
+  Eigen::Isometry3d T_sensor_world = Eigen::Isometry3d::Identity();  ///< at the mean time
+  Ground ground;                                                     ///< below it, world
   const RangeImage* view = nullptr;                                  ///< of the whole scan; none: nothing is hidden
 };
 
 /// The rows of the scan (at least one) as a detection; of many an evenly spread part, for more would not make it
 /// better.
 Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
-                         const SensorMotion& sensor, const Ground& ground, const RangeImage* view);
+                         const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view);
 
 /// The points where they would be seen at the mean time if all moved with `velocity` (m/s, world).
 std::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity);

@@ -63,6 +63,7 @@ struct TrackingInput {
   std::vector<Eigen::Vector3d> cell_points;      ///< their centroids, world
   std::vector<Eigen::Vector3d> cell_directions;  ///< their lines of sight, world
   RangeImage view;
+  GroundHeights heights;
 };
 
 /// Called with the number of an expectation, a row, and the row's line of sight in world axes.

@@ -2,9 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
+#include <cstddef>
+#include <cstdint>
 #include <optional>
+#include <span>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 namespace dynamic_icp::tracking {
 
@@ -22,5 +27,29 @@ struct Ground {
 /// stays.
 Ground updated_ground(const Ground& last, const Eigen::Vector3d& normal, double offset_m,
                       const Eigen::Vector3d& sensor_world);
+
+/// How far above or below that plane the ground is from place to place: roads bend, and planes are fitted to much of
+/// them.
+class GroundHeights {
+ public:
+  /// From the static points near the plane (m, sensor frame; `is_moving` has one flag per point).
+  GroundHeights(const Ground& ground, std::span<const Eigen::Vector3d> points, std::span<const std::uint8_t> is_moving,
+                const Eigen::Isometry3d& T_world_sensor);
+
+  /// The ground as it is below or above `point` (m, world).
+  [[nodiscard]] Ground around(const Eigen::Vector3d& point) const;
+
+ private:
+  static constexpr int kCells = 32;  // in each direction
+  static constexpr int kBins = 24;   // of heights
+  using Histogram = std::array<std::uint16_t, kBins>;
+
+  [[nodiscard]] std::optional<std::size_t> cell_of(const Eigen::Vector3d& from_sensor) const;
+  [[nodiscard]] Eigen::Vector3d in_level(const Eigen::Vector3d& point_world) const;
+
+  Ground ground_;
+  Eigen::Vector3d sensor_world_;
+  std::array<Histogram, static_cast<std::size_t>(kCells* kCells)> cells_{};
+};
 
 }  // namespace dynamic_icp::tracking

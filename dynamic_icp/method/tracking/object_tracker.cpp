@@ -16,7 +16,8 @@ using Eigen::Vector3d;
 
 constexpr std::int32_t kNobody = -1;
 constexpr double kMax = 2.0;       // new objects are not wider than so many vehicles
-constexpr double kWidthSlack_m = 0.3;
+constexpr double kWidthSlack_m = 0.1;
+constexpr double kSeeThrough_m = 1.0;  // beyond a gap
 constexpr double kSplinter = 0.1;  // a track with this share of the points of another may be a part of it
 constexpr double kSplinterVelocity_mps = 2.0;
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
@@ -102,7 +103,8 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   std::optional<RangeImage> view;
   MovingCells moving;
   std::vector<std::uint32_t> groups;
-  workers.both([&] { view.emplace(scan, workers); },
+  const Vector3d velocity_sensor = T_world_sensor.linear().transpose() * sensor.velocity_world;
+  workers.both([&] { view.emplace(scan, velocity_sensor, workers); },
                [&] {
                  moving = gather_cells(scan, radial, is_moving, config_.grouping, workers);
                  groups = group_cells(moving.cells, config_.grouping);
@@ -117,7 +119,8 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
                       std::move(groups),
                       {},
                       {},
-                      std::move(*view)};
+                      std::move(*view),
+                      GroundHeights(ground_, scan.points(), is_moving, T_world_sensor)};
   place_cells(input);
   std::vector<Expectation> expected;
   for (Entry& entry : entries_) {
@@ -129,7 +132,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   associate(input, expected, owner);
   collect_members(input, expected, owner, workers);
   initiate_tracks(input, owner, workers);
-  delete_tracks(input.stamp_s, sensor.T_world_sensor.translation());
+  delete_tracks(input);
   std::vector<TrackedObject> objects;
   for (const Entry& entry : entries_) {
     objects.push_back(report(entry, sensor));
@@ -178,7 +181,7 @@ void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectati
       }
       const double score = std::max(expected.distance_ratio(point, cell.time_s),
                                     expected.gate_ratio(input.cell_directions[i], cell.radial_mps));
-      if (score < best[i]) {
+      if (score < best[i] && expected.width_with(point, cell.time_s) < config_.track.largest_width_m + kWidthSlack_m) {
         best[i] = score;
         owner[i] = static_cast<std::int32_t>(k);
       }
@@ -272,7 +275,7 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
       return;
     }
     Track corrected = entry.track;
-    corrected.correct(make_detection(input.scan, input.radial, entry.members, input.sensor, ground_, &input.view), input.stamp_s,
+    corrected.correct(make_detection(input.scan, input.radial, entry.members, input.sensor, input.heights, &input.view), input.stamp_s,
                       config_.track);
     if (corrected.best().spread_mps() > config_.max_spread_mps) {
       ++entry.missed;
@@ -318,7 +321,7 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
       vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
   std::vector<std::optional<Track>> tracks(groups.size());
   workers.for_each(groups.size(), 1, [&](std::size_t i) {
-    tracks[i].emplace(make_detection(input.scan, input.radial, groups[i].rows, input.sensor, ground_, &input.view),
+    tracks[i].emplace(make_detection(input.scan, input.radial, groups[i].rows, input.sensor, input.heights, &input.view),
                       input.stamp_s, config_.track);
   });
   for (std::size_t i = 0; i < groups.size(); ++i) {
@@ -356,13 +359,13 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
 
 /// Whether two tracks are one body: one has its centre in what was seen of the other, or it is a splinter beside it or
 /// where more of it is likely, that moves as it does.
-bool ObjectTracker::are_same_object(const Entry& a, const Entry& b, const Vector3d& sensor_world) const {
+bool ObjectTracker::are_same_object(const Entry& a, const Entry& b, const TrackingInput& input) const {
+  const Eigen::Isometry3d& sensor = input.sensor.T_world_sensor;
   const bool a_is_smaller = a.members.size() < b.members.size();
   const Entry& small = a_is_smaller ? a : b;
   const Entry& large = a_is_smaller ? b : a;
   const OrientedBox of_small = small.predicted.best().seen_box();
   const OrientedBox of_large = large.predicted.best().seen_box();
-  const double range_m = (of_large.centre - sensor_world).norm();
   if (distance_outside(of_large, of_small.centre) <= 0.0 || distance_outside(of_small, of_large.centre) <= 0.0) {
     return true;
   }
@@ -370,18 +373,21 @@ bool ObjectTracker::are_same_object(const Entry& a, const Entry& b, const Vector
   if (small.members.empty() || (small.now.velocity - large.now.velocity).norm() > kSplinterVelocity_mps) {
     return false;
   }
-  if (distance_outside(large.now.box, of_small.centre) <= 0.0) {
-    return true;
+  if (large.predicted.best().has_heading() && size_with(of_large, of_small).y() > config_.track.largest_width_m) {
+    return false;
   }
   const bool is_splinter =
       static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size());
-  if (is_splinter) {
-    return distance_outside(of_large, of_small.centre) <= config_.growth_m;
+  if (is_splinter && distance_outside(of_large, of_small.centre) <= config_.growth_m) {
+    return true;
   }
-  // Sides of one body, seen apart.
-  const double gap_m = config_.grouping.link_distance_m + config_.grouping.link_growth * range_m;
-  return large.predicted.best().has_heading() && distance_between(of_large, of_small) <= gap_m &&
-         size_with(of_large, of_small).y() <= config_.track.largest_width_m;
+  // Sides of one body, seen apart; what is seen through a gap parts two.
+  const Gap gap = gap_between(of_large, of_small);
+  const double link_m =
+      config_.grouping.link_distance_m + config_.grouping.link_growth * (gap.middle - sensor.translation()).norm();
+  return large.predicted.best().has_heading() &&
+         (distance_outside(large.now.box, of_small.centre) <= 0.0 || gap.width <= link_m) &&
+         input.view.hides(sensor.inverse() * gap.middle, -kSeeThrough_m);
 }
 
 /// Whether nothing is to be expected of a track any more.
@@ -399,14 +405,14 @@ bool ObjectTracker::is_over(const Entry& entry, double stamp_s) const {
 }
 
 /// Ends tracks of which nothing is to be expected any more, and makes one of those that share a place.
-void ObjectTracker::delete_tracks(double stamp_s, const Vector3d& sensor_world) {
+void ObjectTracker::delete_tracks(const TrackingInput& input) {
   std::vector<Entry> living;
   for (Entry& entry : entries_) {
-    if (is_over(entry, stamp_s)) {
+    if (is_over(entry, input.stamp_s)) {
       continue;
     }
     const auto same =
-        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_same_object(older, entry, sensor_world); });
+        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_same_object(older, entry, input); });
     if (same == living.end()) {
       living.push_back(std::move(entry));
     } else if (entry.members.size() > same->members.size()) {

@@ -75,8 +75,8 @@ class ObjectTracker {
   [[nodiscard]] bool is_credible(const Entry& entry) const;
   void note_motion(Entry& entry, double stamp_s) const;
   [[nodiscard]] bool is_over(const Entry& entry, double stamp_s) const;
-  [[nodiscard]] bool are_same_object(const Entry& a, const Entry& b, const Eigen::Vector3d& sensor_world) const;
-  void delete_tracks(double stamp_s, const Eigen::Vector3d& sensor_world);
+  [[nodiscard]] bool are_same_object(const Entry& a, const Entry& b, const TrackingInput& input) const;
+  void delete_tracks(const TrackingInput& input);
   [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor) const;
 
   TrackerConfig config_;

@@ -6,6 +6,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <utility>
 #include <vector>
 
 namespace dynamic_icp::tracking {
@@ -80,15 +82,22 @@ std::array<Eigen::Vector3d, 8> corners(const OrientedBox& box) {
 
 }  // namespace
 
-double distance_between(const OrientedBox& a, const OrientedBox& b) {
-  double least = std::min(distance_outside(a, b.centre), distance_outside(b, a.centre));
-  for (const Eigen::Vector3d& corner : corners(a)) {
-    least = std::min(least, distance_outside(b, corner));
+Gap gap_between(const OrientedBox& a, const OrientedBox& b) {
+  Gap gap{std::numeric_limits<double>::infinity()};
+  const auto consider = [&](const OrientedBox& box, const Eigen::Vector3d& point) {
+    const Eigen::Vector3d q = box.axes.transpose() * (point - box.centre);
+    const Eigen::Vector3d nearest = q.cwiseMax(-0.5 * box.size).cwiseMin(0.5 * box.size);
+    if (const double width = (q - nearest).norm(); width < gap.width) {
+      gap = {width, box.centre + 0.5 * box.axes * (q + nearest)};
+    }
+  };
+  for (const auto& [box, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+    consider(*box, other->centre);
+    for (const Eigen::Vector3d& corner : corners(*other)) {
+      consider(*box, corner);
+    }
   }
-  for (const Eigen::Vector3d& corner : corners(b)) {
-    least = std::min(least, distance_outside(a, corner));
-  }
-  return least;
+  return gap;
 }
 
 Eigen::Vector3d size_with(const OrientedBox& a, const OrientedBox& b) {

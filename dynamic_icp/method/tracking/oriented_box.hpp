@@ -40,9 +40,14 @@ Eigen::Matrix3d upright_axes(double yaw_rad);
 /// How far outside of the box the point is, m; 0 inside.
 double distance_outside(const OrientedBox& box, const Eigen::Vector3d& point);
 
-/// How far boxes are apart, m: the least distance of a corner or the centre of one from the other; 0 where one reaches
-/// into the other.
-double distance_between(const OrientedBox& a, const OrientedBox& b);
+/// The space between two boxes.
+struct Gap {
+  double width = 0.0;                                ///< m; 0 where one reaches into the other
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m
+};
+
+/// Where a corner or the centre of one box is nearest to the other.
+Gap gap_between(const OrientedBox& a, const OrientedBox& b);
 
 /// Size of the smallest box along the axes of `a` that holds both.
 Eigen::Vector3d size_with(const OrientedBox& a, const OrientedBox& b);

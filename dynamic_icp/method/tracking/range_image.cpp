@@ -73,7 +73,7 @@ void find_cells(std::span<const Eigen::Vector3d> points, std::uint16_t* columns,
 
 double RangeImage::cell_width() { return 8.0 / kColumns; }  // where the measure grows most slowly, at 45 degrees
 
-RangeImage::RangeImage(const Scan& scan, const Workers& workers)
+RangeImage::RangeImage(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers)
     : nearest_squared_(static_cast<std::size_t>(kColumns * kRows), std::numeric_limits<float>::infinity()),
       column_seen_(kColumns, 0),
       columns_(scan.size()) {
@@ -82,10 +82,23 @@ RangeImage::RangeImage(const Scan& scan, const Workers& workers)
   workers.for_blocks(scan.size(), kPixelBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
     find_cells(std::span(scan.points()).subspan(begin, end - begin), &columns_[begin], &places[begin], &squared[begin]);
   });
+  std::vector<std::uint16_t> measured_columns = columns_;
+  if (scan.has_times()) {
+    workers.for_blocks(scan.size(), kPixelBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+      std::array<float, kPixelBlock> unit;
+      find_cells(std::span(scan.directions()).subspan(begin, end - begin), &measured_columns[begin], &places[begin],
+                 unit.data());
+      for (std::size_t row = begin; row < end; ++row) {
+        const double closing = scan.times()[row] * scan.directions()[row].dot(velocity_sensor);
+        const auto range = static_cast<float>(std::max(0.0, std::sqrt(static_cast<double>(squared[row])) - closing));
+        squared[row] = range * range;
+      }
+    });
+  }
   for (std::size_t row = 0; row < scan.size(); ++row) {
     float& nearest = nearest_squared_[places[row]];
     nearest = std::min(nearest, squared[row]);
-    column_seen_[columns_[row]] = 1;
+    column_seen_[measured_columns[row]] = 1;
     highest_row_ = std::max(highest_row_, static_cast<int>(places[row] % kRows));
   }
 }

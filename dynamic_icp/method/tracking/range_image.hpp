@@ -19,10 +19,10 @@ namespace dynamic_icp::tracking {
 /// plane shares the outermost cells, and the edge of the field of view is known sideways and as the highest that was seen anywhere.
 class RangeImage {
  public:
-  /// From the points of a scan, in the sensor frame.
-  RangeImage(const Scan& scan, const Workers& workers);
+  /// From a deskewed scan, as it was measured: `velocity_sensor` (m/s) is that of the sensor.
+  RangeImage(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers);
 
-  /// Whether what is at `point` (m, sensor frame) is hidden, or would be: something at least `clearance_m` nearer is
+  /// Whether what is at `point` (m, sensor frame when that direction was measured) is hidden, or would be: something at least `clearance_m` nearer is
   /// seen in its direction, or nothing is seen above and below it either, as beyond the edge of the field of view. A
   /// negative clearance: also by what is so much farther away.
   [[nodiscard]] bool hides(const Eigen::Vector3d& point, double clearance_m) const;
@@ -30,7 +30,7 @@ class RangeImage {
   /// Whether nothing in the whole scan is seen as high as `point` (m, sensor frame): it may be above the field of view.
   [[nodiscard]] bool is_above_all(const Eigen::Vector3d& point) const;
 
-  /// The column of each row of the scan; columns go round with the azimuth.
+  /// The column of each row of the deskewed scan; columns go round with the azimuth.
   [[nodiscard]] const std::vector<std::uint16_t>& columns() const { return columns_; }
 
   /// Columns that may hold points within `radius_m` of `centre`: `first`, `first` + 1, ..., `count` of them, modulo

@@ -10,6 +10,13 @@ Eigen::Vector3d SensorMotion::position(double time_s) const {
   return T_world_sensor.translation() + time_s * velocity_world;
 }
 
+Eigen::Isometry3d SensorMotion::pose(double time_s) const {
+  Eigen::Isometry3d pose = T_world_sensor;
+  pose.linear() *= exp_so3(time_s * angular_velocity_sensor);
+  pose.translation() = position(time_s);
+  return pose;
+}
+
 Eigen::Vector3d SensorMotion::direction_world(const Eigen::Vector3d& direction, double time_s) const {
   return time_s == 0.0 ? Eigen::Vector3d(T_world_sensor.linear() * direction) : turned(direction, time_s).normalized();
 }

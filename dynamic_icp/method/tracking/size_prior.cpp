@@ -10,6 +10,8 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kScatter = 0.15;  // of sizes about the curves, as a share
+constexpr double kMinSection_m2 = 0.25;  // less was not seen whole
+constexpr double kMinSide_m = 0.3;
 constexpr double kPersonSide_m = 1.2;
 constexpr double kPersonSpeed_mps = 2.5;
 
@@ -30,9 +32,11 @@ Belief at_least(const Belief& belief, double least) {
   return {mode, belief.variance * std::max(0.0, 1.0 + a * hazard - hazard * hazard) + bias * bias};
 }
 
-Belief typical_length(double width_m, double height_m) { return about(1.95 * std::pow(width_m * height_m, 0.75)); }
+Belief typical_length(double width_m, double height_m) {
+  return about(1.95 * std::pow(std::max(kMinSection_m2, width_m * height_m), 0.75));
+}
 
-Belief typical_width(double length_m) { return about(std::min(2.5, 0.41 * length_m)); }
+Belief typical_width(double length_m) { return about(std::clamp(0.41 * length_m, kMinSide_m, 2.5)); }
 
 Belief typical_width_by_height(double height_m) { return about(std::min(2.5, 1.3 + 0.33 * height_m)); }
 

@@ -14,6 +14,7 @@ namespace {
 
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
 constexpr double kLogAlongSides = 8.0;   // of what has sides: it moves along them rather than anywhere
+constexpr double kVehicle_m = 2.0;       // what is longer moves along its sides for sure
 constexpr double kLogHopeless = -8.0;    // relative to the best hypothesis
 constexpr int kDecisionDetections = 10;  // after so many the best hypothesis stays alone
 
@@ -35,9 +36,13 @@ void Track::add_headings(const Detection& detection, double log_likelihood, cons
     return;
   }
   const Eigen::Matrix3d axes = level * upright_axes(*yaw);
-  if (std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
-               span_along(points, points.front(), axes.col(1), 0.0).length()) < kShortestSide_m) {
+  const double side_m = std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
+                                 span_along(points, points.front(), axes.col(1), 0.0).length());
+  if (side_m < kShortestSide_m) {
     return;
+  }
+  if (side_m > kVehicle_m) {
+    hypotheses_.clear();
   }
   for (const double heading : {*yaw, *yaw + kQuarterTurn}) {
     hypotheses_.emplace_back(detection, heading, log_likelihood + kLogAlongSides, config);
@@ -53,13 +58,14 @@ void Track::predict(double time_s, const TrackConfig& config) {
 
 void Track::correct(const Detection& detection, double stamp_s, const TrackConfig& config) {
   predict(stamp_s + detection.mean_time_s, config);
-  const double so_far = best().log_likelihood();
   for (BoxFilter& hypothesis : hypotheses_) {
     hypothesis.correct(detection, config);
   }
   ++detections_;
   if (std::none_of(hypotheses_.begin(), hypotheses_.end(), [](const BoxFilter& one) { return one.has_heading(); })) {
-    add_headings(detection, so_far, config);
+    // A new hypothesis pays for knowing nothing before; one like the old, begun now, shows how much.
+    const BoxFilter anew(detection, std::nullopt, 0.0, config);
+    add_headings(detection, best().log_likelihood() - anew.log_likelihood(), config);
   }
   evaluate();
 }
