@@ -1,7 +1,5 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/method/tracking/motion_filter.hpp"
-
 #include <cmath>
 
 #include <Eigen/Cholesky>
@@ -9,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/random_source.hpp"
+#include "dynamic_icp/method/tracking/motion_filter.hpp"
 
 #include "testing/dense_algebra.hpp"
 

@@ -15,25 +15,29 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTrim = 0.01;            // of the points at either end
-constexpr double kReference_m = 0.01;     // the reference is a point of the body by definition
-constexpr double kLoose_m = 0.5;          // standard deviation of the middle of what is seen of a body, if as much
-constexpr double kUnknownFace_m = 10.0;   // standard deviation
-constexpr double kKnownFace_m = 0.5;      // a face known better than this was seen
-constexpr double kFalseEnd_m = 0.1;       // what is seen so far beyond a face ...
-constexpr double kFalseEndSigmas = 3.0;   // ... and its noise shows that the body did not end there
-constexpr double kGrowth = 0.3;           // of a bound, towards what is seen beyond it: noise must not move it
-constexpr double kYawSearch_rad = 0.35;   // about the heading
+constexpr double kTrim = 0.01;           // of the points at either end
+constexpr double kReference_m = 0.01;    // the reference is a point of the body by definition
+constexpr double kLoose_m = 0.5;         // standard deviation of the middle of what is seen of a body, if as much
+constexpr double kUnknownFace_m = 10.0;  // standard deviation
+constexpr double kKnownFace_m = 0.5;     // a face known better than this was seen
+constexpr double kFalseEnd_m = 0.1;      // what is seen so far beyond a face ...
+constexpr double kFalseEndSigmas = 3.0;  // ... and its noise shows that the body did not end there
+constexpr double kGrowth = 0.3;          // of a bound, towards what is seen beyond it: noise must not move it
+constexpr double kYawSearch_rad = 0.35;  // about the heading
 constexpr double kFirstYawSigma_rad = 0.1;
-constexpr double kSideslip_rad = 0.03;    // between heading and motion of the middle of a body ...
-constexpr double kSideslip_mps = 0.1;     // ... and whatever the speed ...
-constexpr double kPivotShare = 0.15;      // ... and of the length that the point without sideslip is behind the middle
-constexpr double kBackwards_mps = 0.5;    // what moves backwards faster than this was taken the wrong way round
-constexpr double kLogHeading = -2.0;      // a scan without heading: more than the corrections of one cost
+constexpr double kSideslip_rad = 0.03;  // between heading and motion of the middle of a body ...
+constexpr double kSideslip_mps = 0.1;   // ... and whatever the speed ...
+constexpr double kPivotShare = 0.15;    // ... and of the length that the point without sideslip is behind the middle
+constexpr double kBackwards_mps = 0.5;  // what moves backwards faster than this was taken the wrong way round
+constexpr double kLogHeading = -2.0;    // a scan without heading: more than the corrections of one cost
 constexpr double kWidthSigma_m = 0.5;
-constexpr double kSizeScatter = 0.25;     // of what is seen of sizes about the typical ones, as a share
-constexpr double kGrazing = 0.03;         // faces seen at a smaller angle show nothing
-constexpr double kEndOn = 0.25;           // part of an axis across the line of sight, below which it is end-on
+constexpr double kSizeScatter = 0.25;  // of what is seen of sizes about the typical ones, as a share
+constexpr double kGrazing = 0.03;      // faces seen at a smaller angle show nothing
+constexpr double kFacing = 0.3;        // cosine of the line of sight to a face that looks at the sensor
+constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
+constexpr double kMaxGap_m = 0.5;
+constexpr double kUniform = 0.29;  // standard deviation of what is anywhere in a gap, as a share
+constexpr double kEndOn = 0.25;    // part of an axis across the line of sight, below which it is end-on
 constexpr double kDimSpeed_mps = 0.5;
 constexpr double kDimReach_m = 1.5;  // beyond an end
 constexpr double kEndDepth_m = 0.3;  // points so near to the end of a span make the end
@@ -42,8 +46,8 @@ constexpr double kClearance_m = 1.0;
 constexpr double kWorstLog = -10.0;
 constexpr double kGroundSigma_m = 0.05;
 
-BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double yaw_sigma_rad,
-                 const Matrix3d& level, const TrackConfig& config) {
+BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double yaw_sigma_rad, const Matrix3d& level,
+                 const TrackConfig& config) {
   BodyFilter::Vector state = BodyFilter::Vector::Zero();
   state.head<3>() = position;
   state[BodyFilter::kYaw] = yaw_rad.value_or(0.0);
@@ -84,7 +88,9 @@ struct BoxFilter::AxisView {
   Interval seen;                     ///< from the reference
   Vector3d low = Vector3d::Zero();   ///< m, world: middle of the points at the low end
   Vector3d high = Vector3d::Zero();  ///< and at the high end
-  bool low_end = false;              ///< whether the body truly ends there
+  double low_gap = 0.0;              ///< m, from the low end to the next points
+  double high_gap = 0.0;
+  bool low_end = false;  ///< whether the body truly ends there
   bool high_end = false;
 };
 
@@ -134,8 +140,8 @@ void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& c
   // Roll and pitch of the body look like a vertical velocity, the more the farther it is.
   const Vector3d up = detection.ground.up();
   const double sway = config.sway_rps * (body_.position() - detection.sensor).norm();
-  const Matrix3d floor = config.doppler_floor_mps * config.doppler_floor_mps * Matrix3d::Identity() +
-                         sway * sway * up * up.transpose();
+  const Matrix3d floor =
+      config.doppler_floor_mps * config.doppler_floor_mps * Matrix3d::Identity() + sway * sway * up * up.transpose();
   log_likelihood_ += body_.correct_doppler(measured, detection.sensor, floor);
 }
 
@@ -167,8 +173,7 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
   }
 }
 
-void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection& detection,
-                              const TrackConfig& config) {
+void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection& detection, const TrackConfig& config) {
   const std::array<AxisView, 3> views = look(points, detection);
   const Vector3d reference = body_.position();
   for (const int axis : {0, 1, 2}) {
@@ -180,11 +185,15 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
       const Face face = kFaces[static_cast<std::size_t>(2 * axis + (side > 0.0 ? 0 : 1))];
       const auto i = static_cast<std::size_t>(face);
       const Vector3d& end = side > 0.0 ? view.high : view.low;
-      const double seen = side > 0.0 ? view.seen.high : -view.seen.low;
-      // The end of the span, beside the middle of the points there.
       const Vector3d outward = side * body_.axes().col(axis);
+      // Where rays pass beside an end they miss it by less than their distance there; faces that look at them they
+      // meet.
+      const bool is_beside = outward.dot((end - detection.sensor).normalized()) > -kFacing;
+      const double gap = is_beside ? side > 0.0 ? view.high_gap : view.low_gap : 0.0;
+      const double seen = (side > 0.0 ? view.seen.high : -view.seen.low) + 0.5 * gap;
+      // The end of the span, beside the middle of the points there.
       const Vector3d at_end = end + (seen - outward.dot(end - body_.position())) * outward;
-      const double sigma = face_sigma(at_end, detection, config);
+      const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
       least_[i] += (seen > least_[i] ? kGrowth : 0.0) * (seen - least_[i]);
       if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
         least_[i] = std::max(least_[i], seen);
@@ -251,8 +260,7 @@ void BoxFilter::correct_middle(int axis, const AxisView& view) {
     return;
   }
   const double sigma = kLoose_m + std::abs(last->length() - view.seen.length());
-  const Vector3d reference =
-      body_.position() + (view.seen.middle() - last->middle()) * body_.axes().col(axis);
+  const Vector3d reference = body_.position() + (view.seen.middle() - last->middle()) * body_.axes().col(axis);
   log_likelihood_ += body_.correct_position(axis, reference, sigma * sigma);
 }
 
@@ -293,7 +301,7 @@ bool BoxFilter::is_true_end(const Vector3d& end, const Vector3d& outward, const 
   }
   const double cell = range * RangeImage::cell_width();
   const bool is_upward = outward.dot(detection.ground.up()) > 0.5;
-  for (const double step : {cell, std::max(kLookBeyond_m, 2.0 * cell)}) {
+  for (const double step : {cell, std::max(kLookBeyond_m, 3.0 * cell)}) {
     const Vector3d beyond = detection.T_sensor_world * (end + step * sideways.normalized());
     if (is_upward && detection.view->is_above_all(beyond)) {
       return false;
@@ -311,8 +319,15 @@ BoxFilter::AxisView BoxFilter::look_along(int axis, std::span<const Vector3d> po
   view.seen = span_along(points, body_.position(), direction, kTrim);
   double low_count = 0.0;
   double high_count = 0.0;
+  view.low_gap = view.high_gap = kMaxGap_m;
   for (const Vector3d& point : points) {
     const double q = (point - body_.position()).dot(direction);
+    if (q > view.seen.low + kSamePlace_m) {
+      view.low_gap = std::min(view.low_gap, q - view.seen.low);
+    }
+    if (q < view.seen.high - kSamePlace_m) {
+      view.high_gap = std::min(view.high_gap, view.seen.high - q);
+    }
     if (q <= view.seen.low + kEndDepth_m) {
       view.low += point;
       low_count += 1.0;
@@ -339,8 +354,8 @@ std::array<BoxFilter::AxisView, 3> BoxFilter::look(std::span<const Vector3d> poi
     const double grazing = kGrazing * (detection.sensor - body_.position()).norm();
     view.high_end = sensor > view.seen.high && is_true_end(view.high, axes.col(axis), detection);
     view.low_end = sensor < view.seen.low && is_true_end(view.low, -axes.col(axis), detection);
-    faces_sensor[static_cast<std::size_t>(axis)] = (view.high_end && sensor > view.seen.high + grazing) ||
-                                                   (view.low_end && sensor < view.seen.low - grazing);
+    faces_sensor[static_cast<std::size_t>(axis)] =
+        (view.high_end && sensor > view.seen.high + grazing) || (view.low_end && sensor < view.seen.low - grazing);
   }
   for (const int axis : {0, 1}) {
     AxisView& view = views[static_cast<std::size_t>(axis)];
@@ -378,8 +393,8 @@ bool BoxFilter::is_whole(int axis) const {
 }
 
 double BoxFilter::span(int axis) const {
-  return std::max(0.0, reach(kFaces[static_cast<std::size_t>(2 * axis)]) +
-                           reach(kFaces[static_cast<std::size_t>(2 * axis + 1)]));
+  return std::max(
+      0.0, reach(kFaces[static_cast<std::size_t>(2 * axis)]) + reach(kFaces[static_cast<std::size_t>(2 * axis + 1)]));
 }
 
 /// Along, to the left and up, with what is not seen filled in by what is likely.
@@ -442,9 +457,13 @@ BoxEstimate BoxFilter::estimate() const {
     hidden(axis, axis) = extent.variance;
   }
   estimate.centre_covariance = H * body_.covariance() * H.transpose() + axes * hidden * axes.transpose();
-  if (!has_heading_) {
-    const Vector3d v = body_.level().transpose() * body_.velocity();
-    estimate.box.axes = body_.level() * upright_axes(std::atan2(v.y(), v.x()));
+  if (!has_heading_) {  // the side that the motion is nearest to counts as the front
+    const Vector3d v = axes.transpose() * body_.velocity();
+    const double quarters = std::round(std::atan2(v.y(), v.x()) / (0.5 * std::numbers::pi));
+    estimate.box.axes = body_.level() * upright_axes(body_.yaw() + 0.5 * std::numbers::pi * quarters);
+    if (std::abs(quarters) == 1.0) {
+      std::swap(estimate.box.size.x(), estimate.box.size.y());
+    }
   }
   return estimate;
 }

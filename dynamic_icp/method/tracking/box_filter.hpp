@@ -84,11 +84,11 @@ class BoxFilter {
 
   BodyFilter body_;
   bool has_heading_;
-  std::array<double, kFaces.size()> least_{};    ///< m from the reference: points were seen so far out
-  std::array<FaceView, kFaces.size()> faces_{};  ///< by Face
+  std::array<double, kFaces.size()> least_{};           ///< m from the reference: points were seen so far out
+  std::array<FaceView, kFaces.size()> faces_{};         ///< by Face
   std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last
-  double log_likelihood_ = 0.0;       ///< of the motion
-  double size_log_likelihood_ = 0.0;  ///< of the sizes
+  double log_likelihood_ = 0.0;                         ///< of the motion
+  double size_log_likelihood_ = 0.0;                    ///< of the sizes
   double spread_mps_ = 0.0;
   double signal_mps_ = 0.0;
 };

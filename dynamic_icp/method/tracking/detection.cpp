@@ -28,7 +28,9 @@ Detection make_detection(const Scan& scan, std::span<const double> radial, std::
   detection.mean_time_s /= static_cast<double>(detection.points.size());
   detection.sensor = sensor.position(detection.mean_time_s);
   detection.T_sensor_world = sensor.pose(detection.mean_time_s).inverse();
-  detection.ground = heights.around(detection.points[detection.points.size() / 2]);
+  detection.ground = heights.below(*std::min_element(
+      detection.points.begin(), detection.points.end(),
+      [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return heights.up().dot(a) < heights.up().dot(b); }));
   detection.view = view;
   return detection;
 }

@@ -147,6 +147,8 @@ void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMot
         for (const Expectation& expected : expectations) {
           OrientedBox box = above_ground(expected.box);
           box.size.head<2>().array() += 2.0 * expected.gate_m;
+          box.size.z() += expected.gate_m;
+          box.centre += 0.5 * expected.gate_m * box.axes.col(2);
           const double reach = 0.5 * box.size.norm();
           if (block.around.exteriorDistance(box.centre) > reach + block.latest_s * expected.velocity.norm()) {
             continue;

@@ -4,34 +4,58 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include <Eigen/Geometry>
+
+#include "dynamic_icp/method/base/quantile.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kSteepest_rad = 0.35;  // against the last ground
-constexpr double kGain = 0.2;           // of a new normal
+constexpr std::size_t kMemory = 9;      // scans
 
 // Heights are sorted into bins in cells of the ground.
 constexpr double kCell_m = 6.0;
+constexpr int kMaxReach = 3;  // cells
 constexpr double kBin_m = 0.05;
+constexpr double kHighest_m = 1.0;          // of the lowest point that is seen of an object above the ground ...
+constexpr double kDeepest_m = 0.3;          // ... and below it
 constexpr std::size_t kMaxPoints = 16384;   // of a scan: more would not make heights better
 constexpr std::uint32_t kFewestPoints = 6;  // of the bin with most points and its neighbours
 
 }  // namespace
 
-Ground updated_ground(const Ground& last, const Eigen::Vector3d& normal, double offset_m,
-                      const Eigen::Vector3d& sensor_world) {
-  if (normal.dot(last.up()) < std::cos(kSteepest_rad)) {
-    return last;
+const Ground& GroundFilter::update(const Eigen::Vector3d& normal, double offset_m,
+                                   const Eigen::Vector3d& sensor_world) {
+  if (normal.dot(ground_.up()) < std::cos(kSteepest_rad)) {
+    return ground_;
   }
-  const Eigen::Vector3d up =
-      last.offset_m ? Eigen::Vector3d((1.0 - kGain) * last.up() + kGain * normal).normalized() : normal;
+  const Plane plane{normal, normal.dot(sensor_world) - offset_m};
+  if (last_.size() < kMemory) {
+    last_.push_back(plane);
+  } else {
+    last_[next_] = plane;
+    next_ = (next_ + 1) % kMemory;
+  }
+  const auto median_of = [&](const auto& part) {
+    std::vector<double> values;
+    for (const Plane& one : last_) {
+      values.push_back(part(one));
+    }
+    return median(std::move(values));
+  };
+  Eigen::Vector3d up;
+  for (int axis = 0; axis < 3; ++axis) {
+    up[axis] = median_of([&](const Plane& one) { return one.normal[axis]; });
+  }
+  up.normalize();
   // The shortest turn from the last normal to this one: headings in the ground stay what they are.
-  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(last.up(), up);
-  const Eigen::Vector3d below_sensor = sensor_world - (normal.dot(sensor_world) - offset_m) * normal;
-  return {turn.toRotationMatrix() * last.level, up.dot(below_sensor)};
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(ground_.up(), up);
+  ground_.level = turn.toRotationMatrix() * ground_.level;
+  ground_.offset_m = up.dot(sensor_world) - median_of([](const Plane& one) { return one.height_m; });
+  return ground_;
 }
 
 GroundHeights::GroundHeights(const Ground& ground, std::span<const Eigen::Vector3d> points,
@@ -68,30 +92,38 @@ std::optional<std::size_t> GroundHeights::cell_of(const Eigen::Vector3d& from_se
   return static_cast<std::size_t>(place.y()) * kCells + static_cast<std::size_t>(place.x());
 }
 
-Ground GroundHeights::around(const Eigen::Vector3d& point) const {
+Ground GroundHeights::below(const Eigen::Vector3d& lowest) const {
   Ground result = ground_;
   if (!ground_.offset_m) {
     return result;
   }
-  Histogram sum{};
-  for (const double dx : {-0.5, 0.5}) {  // of the four cells nearest to the point
-    for (const double dy : {-0.5, 0.5}) {
-      if (const auto cell = cell_of(in_level(point) + kCell_m * Eigen::Vector3d(dx, dy, 0.0))) {
-        for (std::size_t i = 0; i < sum.size(); ++i) {
-          sum[i] = static_cast<std::uint16_t>(std::min(sum[i] + cells_[*cell][i], 0xffff));
+  // The nearest four cells, and where nothing is seen of the ground there, more of them.
+  for (int reach = 1; reach <= kMaxReach; ++reach) {
+    Histogram sum{};
+    for (int x = -reach; x < reach; ++x) {
+      for (int y = -reach; y < reach; ++y) {
+        if (const auto cell = cell_of(in_level(lowest) + kCell_m * Eigen::Vector3d(x + 0.5, y + 0.5, 0.0))) {
+          for (std::size_t i = 0; i < sum.size(); ++i) {
+            sum[i] = static_cast<std::uint16_t>(std::min(sum[i] + cells_[*cell][i], 0xffff));
+          }
         }
       }
     }
+    const auto most = static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
+    std::uint32_t count = 0;
+    double height = 0.0;
+    for (std::size_t i = most > 0 ? most - 1 : 0; i <= std::min(most + 1, sum.size() - 1); ++i) {
+      count += sum[i];
+      height += sum[i] * kBin_m * (static_cast<double>(i) + 0.5 - 0.5 * kBins);
+    }
+    if (count >= kFewestPoints) {
+      *result.offset_m += height / count;
+      return result;
+    }
   }
-  const auto most = static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
-  std::uint32_t count = 0;
-  double height = 0.0;
-  for (std::size_t i = most > 0 ? most - 1 : 0; i <= std::min(most + 1, sum.size() - 1); ++i) {
-    count += sum[i];
-    height += sum[i] * kBin_m * (static_cast<double>(i) + 0.5 - 0.5 * kBins);
-  }
-  if (count >= kFewestPoints) {
-    *result.offset_m += height / count;
+  const double height = ground_.up().dot(lowest) - *ground_.offset_m;
+  if (!(height > -kDeepest_m && height < kHighest_m)) {
+    result.offset_m.reset();
   }
   return result;
 }

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -22,11 +23,26 @@ struct Ground {
   [[nodiscard]] Eigen::Vector3d up() const { return level.col(2); }
 };
 
-/// The ground after `last` where a scan from `sensor_world` (m) shows a plane of points x with `normal` . x = `offset_m`
-/// (world). The direction follows slowly, the height at once. What is steep against the last ground is a wall: `last`
-/// stays.
-Ground updated_ground(const Ground& last, const Eigen::Vector3d& normal, double offset_m,
-                      const Eigen::Vector3d& sensor_world);
+/// The ground from scan to scan. A scan may take something else for it now and then: direction and height are the
+/// medians over the last ones.
+class GroundFilter {
+ public:
+  /// The ground where a scan from `sensor_world` (m) shows a plane of points x with `normal` . x = `offset_m` (world).
+  /// What is steep against the last ground is a wall: the ground stays what it was.
+  const Ground& update(const Eigen::Vector3d& normal, double offset_m, const Eigen::Vector3d& sensor_world);
+
+  [[nodiscard]] const Ground& ground() const { return ground_; }
+
+ private:
+  struct Plane {
+    Eigen::Vector3d normal;
+    double height_m = 0.0;  ///< of the sensor above it
+  };
+
+  std::vector<Plane> last_;  ///< a few, the newest anywhere
+  std::size_t next_ = 0;
+  Ground ground_;
+};
 
 /// How far above or below that plane the ground is from place to place: roads bend, and planes are fitted to much of
 /// them.
@@ -36,8 +52,11 @@ class GroundHeights {
   GroundHeights(const Ground& ground, std::span<const Eigen::Vector3d> points, std::span<const std::uint8_t> is_moving,
                 const Eigen::Isometry3d& T_world_sensor);
 
-  /// The ground as it is below or above `point` (m, world).
-  [[nodiscard]] Ground around(const Eigen::Vector3d& point) const;
+  [[nodiscard]] Eigen::Vector3d up() const { return ground_.up(); }
+
+  /// The ground below something whose lowest point seen is `lowest` (m, world). Where none is seen near by it is that
+  /// of the whole scan, unless that lies far below or above the point.
+  [[nodiscard]] Ground below(const Eigen::Vector3d& lowest) const;
 
  private:
   static constexpr int kCells = 32;  // in each direction

@@ -15,11 +15,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::int32_t kNobody = -1;
-constexpr double kMax = 2.0;       // new objects are not wider than so many vehicles
+constexpr double kMax = 2.0;  // new objects are not wider than so many vehicles
 constexpr double kWidthSlack_m = 0.1;
 constexpr double kSeeThrough_m = 1.0;  // beyond a gap
-constexpr double kSplinter = 0.1;  // a track with this share of the points of another may be a part of it
-constexpr double kSplinterVelocity_mps = 2.0;
+constexpr double kSplinter = 0.1;      // a track with this share of the points of another may be a part of it
+constexpr double kPartVelocity_mps =
+    0.5;  // standard deviation of the velocity of a part of a body from that of the body
+constexpr double kPartSigmas = 3.0;
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
 constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
 
@@ -31,6 +33,14 @@ double sweep_duration(const Scan& scan) {
 bool contradicts(double expected_mps, double radial_mps, const TrackerConfig& config) {
   return std::abs(expected_mps) > config.same_velocity_mps &&
          std::abs(radial_mps - expected_mps) > config.same_velocity_mps;
+}
+
+/// Whether two bodies may have one velocity.
+bool may_be_equal(const BoxEstimate& a, const BoxEstimate& b) {
+  const Vector3d apart = a.velocity - b.velocity;
+  const Eigen::Matrix3d covariance = a.velocity_covariance + b.velocity_covariance +
+                                     kPartVelocity_mps * kPartVelocity_mps * Eigen::Matrix3d::Identity();
+  return apart.dot(covariance.inverse() * apart) < kPartSigmas * kPartSigmas;
 }
 
 /// The cells' means in world axes.
@@ -46,12 +56,12 @@ void place_cells(TrackingInput& input) {
 /// A track with what is known of it besides its motion.
 struct ObjectTracker::Entry {
   std::int64_t id;
-  Track track;      ///< at the mean time of its last detection
-  Track predicted;  ///< at the stamp of the present scan, with what that scan shows
+  Track track;           ///< at the mean time of its last detection
+  Track predicted;       ///< at the stamp of the present scan, with what that scan shows
   BoxEstimate now = {};  ///< of the latter
   bool confirmed = false;
-  bool has_moved = false;      ///< beyond doubt
-  double moved_s = 0.0;        ///< when it moved last
+  bool has_moved = false;  ///< beyond doubt
+  double moved_s = 0.0;    ///< when it moved last
   int age = 0;
   int seen = 0;
   int missed = 0;
@@ -93,11 +103,9 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   last_stamp_ = scan.stamp();
   T_world_last_ = T_world_sensor;
 
-  ground_.offset_m = support ? ground_.offset_m : std::nullopt;
   if (support) {
     const Vector3d normal = T_world_sensor.linear() * support->normal;
-    ground_ = updated_ground(ground_, normal, support->offset_m + normal.dot(T_world_sensor.translation()),
-                             T_world_sensor.translation());
+    ground_.update(normal, support->offset_m + normal.dot(T_world_sensor.translation()), T_world_sensor.translation());
   }
 
   std::optional<RangeImage> view;
@@ -120,7 +128,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
                       {},
                       {},
                       std::move(*view),
-                      GroundHeights(ground_, scan.points(), is_moving, T_world_sensor)};
+                      GroundHeights(ground_.ground(), scan.points(), is_moving, T_world_sensor)};
   place_cells(input);
   std::vector<Expectation> expected;
   for (Entry& entry : entries_) {
@@ -153,7 +161,8 @@ void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radi
   flag_rows(scan, radial, sensor, expected, workers, is_moving);
 }
 
-void ObjectTracker::clear_carrier(const Scan& scan, const Workers& workers, std::vector<std::uint8_t>& is_moving) const {
+void ObjectTracker::clear_carrier(const Scan& scan, const Workers& workers,
+                                  std::vector<std::uint8_t>& is_moving) const {
   const double squared_m2 = config_.min_range_m * config_.min_range_m;
   workers.for_each(scan.size(), kPointBlock, [&](std::size_t row) {
     const Vector3d origin =
@@ -170,9 +179,9 @@ void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectati
   std::vector<double> best(owner.size(), 1.0);
   for (std::size_t k = 0; k < expectations.size(); ++k) {
     const Expectation& expected = expectations[k];
-    const double reach = std::max(0.5 * expected.box.size.norm() + expected.gate_m,
-                                  (expected.whole.centre - expected.box.centre).norm() +
-                                      0.5 * expected.whole.size.norm());
+    const double reach =
+        std::max(0.5 * expected.box.size.norm() + expected.gate_m,
+                 (expected.whole.centre - expected.box.centre).norm() + 0.5 * expected.whole.size.norm());
     for (std::size_t i = 0; i < owner.size(); ++i) {
       const MovingCell& cell = input.moving.cells[i];
       const Vector3d& point = input.cell_points[i];
@@ -235,10 +244,10 @@ void ObjectTracker::gather_static(const TrackingInput& input, std::span<const Ex
   std::vector<std::vector<std::uint32_t>> static_points(slow.size());
   std::vector<std::size_t> contradictions(slow.size(), 0);
   visit_static_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
-    if (contradicts(expected[i].W.dot(direction), input.radial[row], config_)) {
-      ++contradictions[i];
-    } else if (expected[i].gate_ratio(direction, input.radial[row]) < 1.0) {
+    if (expected[i].gate_ratio(direction, input.radial[row]) < 1.0) {
       static_points[i].push_back(row);
+    } else if (contradicts(expected[i].W.dot(direction), input.radial[row], config_)) {
+      ++contradictions[i];
     }
   });
   for (std::size_t i = 0; i < slow.size(); ++i) {
@@ -275,8 +284,8 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
       return;
     }
     Track corrected = entry.track;
-    corrected.correct(make_detection(input.scan, input.radial, entry.members, input.sensor, input.heights, &input.view), input.stamp_s,
-                      config_.track);
+    corrected.correct(make_detection(input.scan, input.radial, entry.members, input.sensor, input.heights, &input.view),
+                      input.stamp_s, config_.track);
     if (corrected.best().spread_mps() > config_.max_spread_mps) {
       ++entry.missed;
       entry.members.clear();
@@ -321,8 +330,9 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
       vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
   std::vector<std::optional<Track>> tracks(groups.size());
   workers.for_each(groups.size(), 1, [&](std::size_t i) {
-    tracks[i].emplace(make_detection(input.scan, input.radial, groups[i].rows, input.sensor, input.heights, &input.view),
-                      input.stamp_s, config_.track);
+    tracks[i].emplace(
+        make_detection(input.scan, input.radial, groups[i].rows, input.sensor, input.heights, &input.view),
+        input.stamp_s, config_.track);
   });
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const Track& track = *tracks[i];
@@ -370,7 +380,7 @@ bool ObjectTracker::are_same_object(const Entry& a, const Entry& b, const Tracki
     return true;
   }
   // What coasts has no points: it is hidden, not a part.
-  if (small.members.empty() || (small.now.velocity - large.now.velocity).norm() > kSplinterVelocity_mps) {
+  if (small.members.empty() || !may_be_equal(small.now, large.now)) {
     return false;
   }
   if (large.predicted.best().has_heading() && size_with(of_large, of_small).y() > config_.track.largest_width_m) {
@@ -378,7 +388,8 @@ bool ObjectTracker::are_same_object(const Entry& a, const Entry& b, const Tracki
   }
   const bool is_splinter =
       static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size());
-  if (is_splinter && distance_outside(of_large, of_small.centre) <= config_.growth_m) {
+  if (is_splinter && std::min(distance_outside(of_large, of_small.centre),
+                              distance_outside(large.now.box, of_small.centre)) <= config_.growth_m) {
     return true;
   }
   // Sides of one body, seen apart; what is seen through a gap parts two.
@@ -411,8 +422,8 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
     if (is_over(entry, input.stamp_s)) {
       continue;
     }
-    const auto same =
-        std::find_if(living.begin(), living.end(), [&](const Entry& older) { return are_same_object(older, entry, input); });
+    const auto same = std::find_if(living.begin(), living.end(),
+                                   [&](const Entry& older) { return are_same_object(older, entry, input); });
     if (same == living.end()) {
       living.push_back(std::move(entry));
     } else if (entry.members.size() > same->members.size()) {
@@ -449,7 +460,7 @@ TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sens
   object.centroid = object.box.centre;
   object.extent = aligned_extent(object.box);
   // Not of unit length: straight above the sensor it is zero, and nothing counts as observed.
-  const Vector3d across = (R * ground_.up()).cross(object.centroid);
+  const Vector3d across = (R * ground_.ground().up()).cross(object.centroid);
   const double sigma_mps = config_.tangential_sigma_mps;
   object.tangential_observed = across.dot(object.covariance * across) < sigma_mps * sigma_mps * across.squaredNorm();
   Track later = entry.predicted;

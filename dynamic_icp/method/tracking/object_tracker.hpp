@@ -81,7 +81,7 @@ class ObjectTracker {
 
   TrackerConfig config_;
   std::vector<Entry> entries_;
-  Ground ground_;
+  GroundFilter ground_;
   std::int64_t next_id_ = 1;
   std::optional<Stamp> first_stamp_;
   std::optional<Stamp> last_stamp_;

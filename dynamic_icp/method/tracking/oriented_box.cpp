@@ -137,8 +137,7 @@ std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, const Eig
   Eigen::Array2Xd plane(2, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < plane.cols(); ++i) {
     // Relative to one of them: coordinates in the world may be large.
-    plane.col(i) =
-        level.leftCols<2>().transpose() * (points[static_cast<std::size_t>(i) * stride] - points.front());
+    plane.col(i) = level.leftCols<2>().transpose() * (points[static_cast<std::size_t>(i) * stride] - points.front());
   }
   const double coarse = best_yaw(plane, near_yaw_rad, range_rad, kCoarseStep_rad);
   return best_yaw(plane, coarse, kCoarseStep_rad, kFineStep_rad);

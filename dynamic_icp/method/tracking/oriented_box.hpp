@@ -69,8 +69,8 @@ struct Interval {
 Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,
                     double trim);
 
-/// The direction of the sides of a body with a rectangular outline, seen along the third of the `level` axes: the yaw in
-/// [near_yaw - range, near_yaw + range] for which most points lie close to an edge of the rectangle around them
+/// The direction of the sides of a body with a rectangular outline, seen along the third of the `level` axes: the yaw
+/// in [near_yaw - range, near_yaw + range] for which most points lie close to an edge of the rectangle around them
 /// (closeness criterion of Zhang et al., L-shape fitting, IV 2017). Sides have no front: the result is known up to
 /// quarter turns. Nothing for fewer than five points.
 std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& level,

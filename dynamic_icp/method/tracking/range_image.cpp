@@ -127,11 +127,9 @@ bool RangeImage::hides(const Eigen::Vector3d& point, double clearance_m) const {
   if (!column_seen) {
     return true;
   }
-  float nearest = std::numeric_limits<float>::infinity();
-  for (int row = std::max(0, cell.row - 1); row <= std::min(kRows - 1, cell.row + 1); ++row) {
-    nearest = std::min(nearest, nearest_squared_[place(cell.column, row)]);
-  }
-  return std::sqrt(nearest) < point.norm() - clearance_m;
+  // Of two cells above each other the one that holds more of what is seen above the point: below may be the ground.
+  const Cell above = cell_of(point + 0.5 * kSlopePerRow * point.head<2>().norm() * Eigen::Vector3d::UnitZ());
+  return std::sqrt(nearest_squared_[place(cell.column, above.row)]) < point.norm() - clearance_m;
 }
 
 }  // namespace dynamic_icp::tracking

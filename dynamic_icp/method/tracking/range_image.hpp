@@ -16,15 +16,16 @@ namespace dynamic_icp::tracking {
 /// Tells the true end of a body from the place where something nearer begins to hide it.
 ///
 /// Made for bodies on the ground around the sensor: what is seen more than 46 degrees above or below its horizontal
-/// plane shares the outermost cells, and the edge of the field of view is known sideways and as the highest that was seen anywhere.
+/// plane shares the outermost cells, and the edge of the field of view is known sideways and as the highest that was
+/// seen anywhere.
 class RangeImage {
  public:
   /// From a deskewed scan, as it was measured: `velocity_sensor` (m/s) is that of the sensor.
   RangeImage(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers);
 
-  /// Whether what is at `point` (m, sensor frame when that direction was measured) is hidden, or would be: something at least `clearance_m` nearer is
-  /// seen in its direction, or nothing is seen above and below it either, as beyond the edge of the field of view. A
-  /// negative clearance: also by what is so much farther away.
+  /// Whether what is at `point` (m, sensor frame when that direction was measured) is hidden, or would be: something at
+  /// least `clearance_m` nearer is seen in its direction, or nothing is seen above and below it either, as beyond the
+  /// edge of the field of view. A negative clearance: also by what is so much farther away.
   [[nodiscard]] bool hides(const Eigen::Vector3d& point, double clearance_m) const;
 
   /// Whether nothing in the whole scan is seen as high as `point` (m, sensor frame): it may be above the field of view.

@@ -15,7 +15,7 @@ struct SensorMotion {
 
   [[nodiscard]] Eigen::Vector3d position(double time_s) const;  ///< in the world, so long after the stamp
 
-  [[nodiscard]] Eigen::Isometry3d pose(double time_s) const;       ///< T_world_sensor so long after the stamp
+  [[nodiscard]] Eigen::Isometry3d pose(double time_s) const;  ///< T_world_sensor so long after the stamp
 
   /// A line of sight measured so long after the stamp, in world axes.
   [[nodiscard]] Eigen::Vector3d direction_world(const Eigen::Vector3d& direction, double time_s) const;

@@ -9,7 +9,7 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr double kScatter = 0.15;  // of sizes about the curves, as a share
+constexpr double kScatter = 0.15;        // of sizes about the curves, as a share
 constexpr double kMinSection_m2 = 0.25;  // less was not seen whole
 constexpr double kMinSide_m = 0.3;
 constexpr double kPersonSide_m = 1.2;
@@ -24,7 +24,7 @@ Belief at_least(const Belief& belief, double least) {
   const double a = (least - belief.mean) / sigma;
   const double mode = std::max(belief.mean, least);
   if (a > 5.0) {  // the tail: nothing is left of the belief but the bound
-    return {mode, belief.variance / (a * a)};
+    return {mode, 2.0 * belief.variance / (a * a)};
   }
   const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
   const double hazard = density / (0.5 * std::erfc(a / std::numbers::sqrt2));

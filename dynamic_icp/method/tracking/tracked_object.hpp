@@ -43,15 +43,15 @@ struct TrackedObject {
   /// Whether the velocity across the line of sight is known to TrackerConfig::tangential_sigma_mps. Where it is
   /// not, only the part of the velocity along the line of sight should be used.
   bool tangential_observed = false;
-  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();  ///< m, sensor frame: centre of the box
-  Eigen::Vector3d extent = Eigen::Vector3d::Zero();    ///< m, the box along the axes of the sensor frame
-  OrientedBox box;                                     ///< sensor frame; the first axis points where it moves
+  Eigen::Vector3d centroid = Eigen::Vector3d::Zero();           ///< m, sensor frame: centre of the box
+  Eigen::Vector3d extent = Eigen::Vector3d::Zero();             ///< m, the box along the axes of the sensor frame
+  OrientedBox box;                                              ///< sensor frame; the first axis points where it moves
   Eigen::Matrix3d centre_covariance = Eigen::Matrix3d::Zero();  ///< m^2, of the centre of the box
   std::array<FaceView, kFaces.size()> faces{};                  ///< of the box, by Face
   ObjectPrediction prediction;
-  int age_scans = 0;                                   ///< scans since birth, 1 in the scan of birth
-  int scans_seen = 0;                                  ///< of these, with points
-  std::vector<std::uint32_t> members;                  ///< its rows of the scan, ascending
+  int age_scans = 0;                   ///< scans since birth, 1 in the scan of birth
+  int scans_seen = 0;                  ///< of these, with points
+  std::vector<std::uint32_t> members;  ///< its rows of the scan, ascending
 };
 
 }  // namespace dynamic_icp::tracking
