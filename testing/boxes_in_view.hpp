@@ -14,12 +14,14 @@
 #include "dynamic_icp/method/base/random_source.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/method/ego_motion/support_plane.hpp"
 #include "dynamic_icp/method/tracking/object_tracker.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 
 namespace dynamic_icp::tracking {
 
 inline constexpr double kScanPeriod_s = 0.1;
+inline constexpr double kSensorHeight_m = 1.5;  ///< of the origin above the ground
 
 // A world for tests: boxes that move on level ground, 1.5 m below the origin, before a distant wall, and a sensor that
 // may move, turn, be tilted and sweep. Every point is where a ray meets a surface; every Doppler is that of the
@@ -78,7 +80,7 @@ struct Hit {
 inline Hit first_hit(const std::vector<MovingBox>& boxes, const Eigen::Vector3d& origin, const Eigen::Vector3d& u) {
   Hit first;
   if (u.z() < 0.0) {
-    first.range = std::min(first.range, -(origin.z() + 1.5) / u.z());
+    first.range = std::min(first.range, -(origin.z() + kSensorHeight_m) / u.z());
   }
   for (std::size_t i = 0; i < boxes.size(); ++i) {
     const double distance = hit(boxes[i].box, origin, u);
@@ -149,10 +151,17 @@ inline std::vector<std::uint32_t> rows_on(const View& view, std::int32_t body) {
   return rows;
 }
 
+/// The ground in the frame of a sensor.
+inline ego_motion::SupportPlane ground_from(const Eigen::Isometry3d& T_world_sensor) {
+  return {T_world_sensor.linear().transpose() * Eigen::Vector3d::UnitZ(),
+          -kSensorHeight_m - T_world_sensor.translation().z()};
+}
+
 inline std::vector<TrackedObject> step(ObjectTracker& tracker, const View& view,
                                        const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity(),
                                        int threads = 1) {
-  return tracker.update(view.scan, view.radial, view.is_moving, T_world_sensor, Workers(threads));
+  return tracker.update(view.scan, view.radial, view.is_moving, T_world_sensor, ground_from(T_world_sensor),
+                        Workers(threads));
 }
 
 inline std::vector<TrackedObject> confirmed(const std::vector<TrackedObject>& all) {

@@ -109,7 +109,11 @@ TEST(SupportPlane, CellsOnItHoldTheRoad) {
   spatial::CellOrder order;
   DopplerRows rows;
   sort_into_cells(scan, 1.0, Workers(1), order, rows);
-  const std::vector<std::uint8_t> on = cells_on_support(scan, order);
+  const std::optional<SupportPlane> plane = find_support_plane(scan, order);
+  ASSERT_TRUE(plane);
+  EXPECT_GT(plane->normal.dot(street.R_sensor_level * Vector3d::UnitZ()), std::cos(0.02));
+  EXPECT_NEAR(plane->offset_m, -kHeight_m, 0.15);
+  const std::vector<std::uint8_t> on = cells_on_support(scan, order, *plane);
   ASSERT_EQ(on.size(), rows.cells());
   std::size_t road = 0;
   std::size_t road_found = 0;

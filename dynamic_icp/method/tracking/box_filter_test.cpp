@@ -2,22 +2,38 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/tracking/box_filter.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <numbers>
+#include <optional>
+#include <vector>
 
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/random_source.hpp"
+
+#include "testing/boxes_in_view.hpp"
+#include "testing/dense_algebra.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 using Eigen::Vector3d;
 
-const Vector3d kSize(10.0, 2.4, 2.5);
+const Vector3d kLorry(10.0, 2.4, 3.0);
+
+FaceView view_of_face(const BoxEstimate& estimate, Face face) { return estimate.faces[static_cast<std::size_t>(face)]; }
+
+/// Middle of a face, world.
+Vector3d middle_of(const OrientedBox& box, Face face) {
+  const int axis = axis_of(face);
+  return box.centre + side_of(face) * 0.5 * box.size[axis] * box.axes.col(axis);
+}
 
 /// The rear and the right side, up to a share `seen` of its length from the rear, of a lorry that drives straight with
-/// `velocity`; the sensor is in the origin.
-Detection detection_of(const Vector3d& centre, const Vector3d& velocity, double seen, std::uint64_t seed) {
+/// `velocity`; the sensor is in the origin and nothing hides anything.
+Detection rear_and_side(const Vector3d& centre, const Vector3d& velocity, double seen, std::uint64_t seed) {
   const Eigen::Matrix3d axes = upright_axes(std::atan2(velocity.y(), velocity.x()));
   Detection detection;
   for (std::uint64_t i = 0; i < 300; ++i) {
@@ -25,7 +41,7 @@ Detection detection_of(const Vector3d& centre, const Vector3d& velocity, double 
     Vector3d q(seen * one.uniform(0) - 0.5, one.uniform(1, -0.5, 0.5), one.uniform(2, -0.5, 0.5));
     (i % 3 == 0 ? q.x() : q.y()) = -0.5;
     const Vector3d noise(0.02 * one.normal(3), 0.02 * one.normal(4), 0.0);
-    detection.points.emplace_back(centre + axes * (q.cwiseProduct(kSize) + noise));
+    detection.points.emplace_back(centre + axes * (q.cwiseProduct(kLorry) + noise));
     detection.directions.push_back(detection.points.back().normalized());
     detection.radial.push_back(detection.directions.back().dot(velocity) + 0.05 * one.normal(5));
     detection.times.push_back(0.0);
@@ -38,13 +54,13 @@ TEST(BoxFilter, SidesShowTheDirectionOfTheMotion) {
   const Vector3d velocity = 10.0 * upright_axes(0.4).col(0);
   Vector3d centre(25, 6, 0);
   const TrackConfig config;
-  BoxFilter filter(detection_of(centre, velocity, 1.0, 1), 0.2, config);
+  BoxFilter filter(rear_and_side(centre, velocity, 1.0, 1), 0.2, 0.0, config);
   for (std::uint64_t k = 2; k < 3; ++k) {
     centre += 0.1 * velocity;
     filter.predict(0.1, config);
-    filter.correct(detection_of(centre, velocity, 1.0, k), config);
+    filter.correct(rear_and_side(centre, velocity, 1.0, k), config);
   }
-  const Vector3d v = filter.motion().velocity();
+  const Vector3d v = filter.body().velocity();
   EXPECT_NEAR(std::atan2(v.y(), v.x()), 0.4, 0.05);
 }
 
@@ -53,15 +69,243 @@ TEST(BoxFilter, ABoxThatGrowsStaysWhereItsTrueEndIs) {
   const Vector3d velocity(10, 0, 0);
   Vector3d centre(25, 6, 0);
   const TrackConfig config;
-  BoxFilter filter(detection_of(centre, velocity, 0.3, 1), 0.0, config);
+  BoxFilter filter(rear_and_side(centre, velocity, 0.3, 1), 0.0, 0.0, config);
   for (std::uint64_t k = 2; k < 12; ++k) {
     centre += 0.1 * velocity;
     filter.predict(0.1, config);
-    filter.correct(detection_of(centre, velocity, std::min(1.0, 0.1 * static_cast<double>(k + 2)), k), config);
-    const OrientedBox box = filter.box();
-    EXPECT_NEAR(box.centre.x() - 0.5 * box.size.x(), centre.x() - 5.0, 0.1) << "scan " << k;
-    EXPECT_NEAR(filter.motion().velocity().x(), 10.0, 0.1) << "scan " << k;
-    EXPECT_NEAR(filter.motion().velocity().y(), 0.0, 0.5) << "scan " << k;
+    filter.correct(rear_and_side(centre, velocity, std::min(1.0, 0.1 * static_cast<double>(k + 2)), k), config);
+    EXPECT_NEAR(middle_of(filter.estimate().box, Face::kRear).x(), centre.x() - 5.0, 0.1) << "scan " << k;
+    EXPECT_NEAR(filter.body().velocity().x(), 10.0, 0.1) << "scan " << k;
+    EXPECT_NEAR(filter.body().velocity().y(), 0.0, 0.5) << "scan " << k;
+  }
+}
+
+TEST(BoxFilter, WhatMovesBackwardsWasTakenTheWrongWayRound) {
+  const Vector3d velocity(10, 0, 0);
+  const TrackConfig config;
+  BoxFilter filter(rear_and_side({25, 6, 0}, velocity, 1.0, 1), std::numbers::pi, 0.0, config);
+  const BoxEstimate estimate = filter.estimate();
+  EXPECT_GT(estimate.box.axes.col(0).dot(velocity), 9.9);
+  EXPECT_NEAR(middle_of(estimate.box, Face::kRear).x(), 20.0, 0.3);
+}
+
+/// What the filter sees of the first of some bodies, as rays of a sensor meet them. Everything holds still in a scan.
+struct Scene {
+  View view;
+  RangeImage image;
+  Detection detection;
+
+  Scene(const std::vector<MovingBox>& boxes, double time_s)
+      : view(view_of(boxes, time_s, 0.0)), image(view.scan, Workers(1)) {
+    detection = make_detection(view.scan, view.radial, rows_on(view, 0), SensorMotion{},
+                               {Eigen::Matrix3d::Identity(), -kSensorHeight_m}, &image);
+  }
+  Scene(const Scene&) = delete;
+  Scene& operator=(const Scene&) = delete;
+};
+
+MovingBox moving_body(double x, double y, double yaw, double speed, const Vector3d& size) {
+  const Eigen::Matrix3d axes = upright_axes(yaw);
+  return {{{x, y, 0.5 * size.z() - kSensorHeight_m}, axes, size}, speed * axes.col(0), 0.0};
+}
+
+/// A thing that stands between azimuths `from` and `to` (degrees), 8 m away, higher than all else.
+MovingBox screen(double from, double to) {
+  const double low = 8.0 * std::tan(from * std::numbers::pi / 180.0);
+  const double high = 8.0 * std::tan(to * std::numbers::pi / 180.0);
+  return {{{8.0, 0.5 * (low + high), 0.0}, Eigen::Matrix3d::Identity(), {0.1, high - low, 4.0}}, Vector3d::Zero(), 0.0};
+}
+
+TEST(BoxFilter, OfALorrySeenFromBehindTheLengthIsALikelyOne) {
+  const TrackConfig config;
+  const auto lorry = [](double t) { return moving_body(30 + 12 * t, 0, 0.0, 12, kLorry); };
+  std::optional<BoxFilter> filter;
+  for (int k = 0; k < 8; ++k) {
+    const double t = k * kScanPeriod_s;
+    const Scene scene({lorry(t)}, t);
+    if (filter) {
+      filter->predict(kScanPeriod_s, config);
+      filter->correct(scene.detection, config);
+    } else {
+      filter.emplace(scene.detection, 0.0, 0.0, config);
+    }
+    const BoxEstimate estimate = filter->estimate();
+    EXPECT_EQ(view_of_face(estimate, Face::kFront), FaceView::kUnknown) << "scan " << k;
+    EXPECT_EQ(view_of_face(estimate, Face::kRear), FaceView::kSeen) << "scan " << k;
+    EXPECT_EQ(view_of_face(estimate, Face::kLeft), FaceView::kSeen) << "scan " << k;
+    EXPECT_EQ(view_of_face(estimate, Face::kBottom), FaceView::kSeen) << "scan " << k;
+    EXPECT_NEAR(middle_of(estimate.box, Face::kRear).x(), lorry(t).box.centre.x() - 5.0, 0.15) << "scan " << k;
+    EXPECT_NEAR(estimate.box.size.x(), 10.0, 3.0) << "scan " << k;
+    EXPECT_NEAR(estimate.box.size.y(), 2.4, 0.3) << "scan " << k;
+    EXPECT_NEAR(estimate.box.size.z(), 3.0, 0.5) << "scan " << k;
+    // And the covariance says how uncertain that makes the centre.
+    EXPECT_GT(std::sqrt(estimate.centre_covariance(0, 0)), 0.3) << "scan " << k;
+    EXPECT_LT(std::abs(estimate.box.centre.x() - lorry(t).box.centre.x()),
+              3.0 * std::sqrt(estimate.centre_covariance(0, 0)))
+        << "scan " << k;
+    EXPECT_LT(filter->seen_box().size.x(), 1.0) << "that much was seen";
+  }
+}
+
+TEST(BoxFilter, WhatComesIntoViewChangesTheLengthAndNotTheMotion) {
+  // A lorry comes out from behind a screen with its front first. The rear was never seen until the end of it.
+  const TrackConfig config;
+  const double yaw = 0.9;
+  const auto lorry = [&](double t) {
+    const Vector3d centre = Vector3d(22, -3, 0) + 8.0 * t * upright_axes(yaw).col(0);
+    return moving_body(centre.x(), centre.y(), yaw, 8, kLorry);
+  };
+  std::optional<BoxFilter> filter;
+  bool was_unknown = false;
+  for (int k = 0; k < 20; ++k) {
+    const double t = k * kScanPeriod_s;
+    const Scene scene({lorry(t), screen(-40.0, -5.0)}, t);
+    if (filter) {
+      filter->predict(kScanPeriod_s, config);
+      filter->correct(scene.detection, config);
+    } else {
+      filter.emplace(scene.detection, yaw, 0.0, config);
+    }
+    const BoxEstimate estimate = filter->estimate();
+    const OrientedBox truth = lorry(t).box;
+    was_unknown = was_unknown || view_of_face(estimate, Face::kRear) == FaceView::kUnknown;
+    const Vector3d end = middle_of(estimate.box, Face::kFront) - middle_of(truth, Face::kFront);
+    EXPECT_NEAR(end.dot(truth.axes.col(0)), 0.0, 0.25) << "scan " << k;
+    EXPECT_NEAR(filter->body().velocity().norm(), 8.0, k < 3 ? 1.0 : 0.4) << "scan " << k;
+    EXPECT_LT(estimate.velocity.cross(truth.axes.col(0)).norm(), k < 3 ? 1.5 : 0.8) << "scan " << k;
+  }
+  const BoxEstimate estimate = filter->estimate();
+  EXPECT_TRUE(was_unknown);
+  EXPECT_EQ(view_of_face(estimate, Face::kRear), FaceView::kSeen);
+  EXPECT_NEAR(estimate.box.size.x(), kLorry.x(), 0.3);
+  EXPECT_LT((estimate.box.centre - lorry(1.9).box.centre).head<2>().norm(), 0.3);
+}
+
+TEST(BoxFilter, WhatSomethingNearerHidesStaysAsItWas) {
+  // The lorry goes behind the screen with its front first.
+  const TrackConfig config;
+  const double yaw = 0.9;
+  const auto lorry = [&](double t) {
+    const Vector3d centre = Vector3d(22, -4, 0) + 8.0 * t * upright_axes(yaw).col(0);
+    return moving_body(centre.x(), centre.y(), yaw, 8, kLorry);
+  };
+  std::optional<BoxFilter> filter;
+  int hidden = 0;
+  for (int k = 0; k < 14; ++k) {
+    const double t = k * kScanPeriod_s;
+    const Scene scene({lorry(t), screen(4.0, 45.0)}, t);
+    if (filter) {
+      filter->predict(kScanPeriod_s, config);
+      filter->correct(scene.detection, config);
+    } else {
+      filter.emplace(scene.detection, yaw, 0.0, config);
+    }
+    const BoxEstimate estimate = filter->estimate();
+    const Vector3d front = middle_of(lorry(t).box, Face::kFront);
+    const bool is_behind = std::atan2(front.y(), front.x()) > 6.0 * std::numbers::pi / 180.0;
+    const bool is_before = std::atan2(front.y(), front.x()) < 2.0 * std::numbers::pi / 180.0;
+    if (is_before) {
+      EXPECT_EQ(view_of_face(estimate, Face::kFront), FaceView::kSeen) << "scan " << k;
+    }
+    if (is_behind) {
+      ++hidden;
+      EXPECT_EQ(view_of_face(estimate, Face::kFront), FaceView::kHidden) << "scan " << k;
+      EXPECT_EQ(view_of_face(estimate, Face::kRear), FaceView::kSeen) << "scan " << k;
+    }
+    EXPECT_NEAR(estimate.box.size.x(), kLorry.x(), 0.5) << "scan " << k;
+    EXPECT_LT((estimate.box.centre - lorry(t).box.centre).head<2>().norm(), 0.5) << "scan " << k;
+    EXPECT_LT((estimate.velocity - lorry(t).velocity).norm(), k < 3 ? 2.0 : 0.8) << "scan " << k;
+  }
+  EXPECT_GE(hidden, 4);
+}
+
+/// All faces of a body whose every face is measured with the noise that the filter takes for it: each is displaced as a
+/// whole, and so is the ground.
+Detection whole_body(const MovingBox& body, const RandomSource& random, const TrackConfig& config) {
+  Detection detection;
+  const auto sigma = [&](const Vector3d& at) { return config.face_sigma_m + config.face_sigma_growth * at.norm(); };
+  Vector3d high;
+  Vector3d low;
+  for (const int axis : {0, 1, 2}) {
+    const auto stream = static_cast<std::uint64_t>(2 * axis);
+    high[axis] = 0.5 * body.box.size[axis] + sigma(body.box.centre) * random.normal(stream);
+    low[axis] = -0.5 * body.box.size[axis] + sigma(body.box.centre) * random.normal(stream + 1);
+  }
+  const auto add = [&](const Vector3d& share) {
+    const Vector3d q = low + share.cwiseProduct(high - low);
+    const Vector3d point = body.box.centre + body.box.axes * q;
+    detection.points.push_back(point);
+    detection.directions.push_back(point.normalized());
+    const std::uint64_t stream = 100 + detection.points.size();
+    detection.radial.push_back(point.normalized().dot(body.velocity) +
+                               config.doppler_sigma_mps * random.normal(stream));
+    detection.times.push_back(0.0);
+  };
+  // Rear and right side in a grid with many points at the edges: none of the trimmed ones is missed.
+  for (int i = 0; i <= 12; ++i) {
+    for (int k = 0; k <= 6; ++k) {
+      add({i / 12.0, 0.0, k / 6.0});
+      add({0.0, i / 12.0, k / 6.0});
+    }
+  }
+  detection.ground.offset_m = -kSensorHeight_m + (0.05 + sigma(body.box.centre)) * random.normal(50);
+  // The Doppler shares an error, too.
+  const double shared = config.doppler_floor_mps * random.normal(51);
+  for (double& radial : detection.radial) {
+    radial += shared;
+  }
+  return detection;
+}
+
+TEST(BoxFilter, CovarianceOfTheCentreIsThatOfItsErrors) {
+  // Of a body of which all faces are seen the normalised squared error has the mean 3. The noise of the yaw and of the
+  // motion are not there, so that it may be less.
+  constexpr int kRuns = 60;
+  const TrackConfig config;
+  double sum = 0.0;
+  for (std::uint64_t run = 0; run < kRuns; ++run) {
+    const RandomSource random = RandomSource(41).fork(run);
+    const double yaw = 0.3;
+    MovingBox body = moving_body(20, 5, yaw, 9, {4.5, 1.8, 1.5});
+    std::optional<BoxFilter> filter;
+    for (std::uint64_t k = 0; k < 6; ++k) {
+      const Detection detection = whole_body(body, random.fork(k), config);
+      if (filter) {
+        filter->correct(detection, config);
+      } else {
+        filter.emplace(detection, yaw, 0.0, config);
+      }
+      if (k < 5) {
+        body.box.centre += kScanPeriod_s * body.velocity;
+        filter->predict(kScanPeriod_s, config);
+      }
+    }
+    const BoxEstimate estimate = filter->estimate();
+    sum += dense::normalised_squared(estimate.box.centre - body.box.centre, estimate.centre_covariance);
+  }
+  EXPECT_GT(sum / kRuns, 1.0);
+  EXPECT_LT(sum / kRuns, 4.5);
+  RecordProperty("nees", std::to_string(sum / kRuns));
+}
+
+TEST(BoxFilter, APersonIsNotThoughtToBeLonger) {
+  const TrackConfig config;
+  for (const std::optional<double> yaw : {std::optional<double>{}, std::optional<double>{0.3}}) {
+    std::optional<BoxFilter> filter;
+    for (int k = 0; k < 8; ++k) {
+      const double t = k * kScanPeriod_s;
+      const Scene scene({moving_body(12 + 1.4 * t, 1 + 0.4 * t, 0.3, 1.4, {0.5, 0.6, 1.7})}, t);
+      if (filter) {
+        filter->predict(kScanPeriod_s, config);
+        filter->correct(scene.detection, config);
+      } else {
+        filter.emplace(scene.detection, yaw, 0.0, config);
+      }
+      const BoxEstimate estimate = filter->estimate();
+      EXPECT_LT(estimate.box.size.x(), 1.0) << "scan " << k;
+      EXPECT_LT(estimate.box.size.y(), 1.0) << "scan " << k;
+      EXPECT_NEAR(estimate.box.size.z(), 1.7, 0.3) << "scan " << k;
+    }
   }
 }
 

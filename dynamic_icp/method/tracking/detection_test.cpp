@@ -37,7 +37,8 @@ TEST(Detection, IsInTheWorldAndKeepsTheChosenRows) {
   std::iota(radial.begin(), radial.end(), 0.0);
   const std::vector<std::uint32_t> rows = {3, 7, 11};
   const SensorMotion sensor = left_turn_at({100.0, 50.0, 0.0});
-  const Detection detection = make_detection(scan, radial, rows, sensor, nullptr);
+  const Ground ground{Eigen::AngleAxisd(0.1, Vector3d::UnitX()).toRotationMatrix(), -1.5};
+  const Detection detection = make_detection(scan, radial, rows, sensor, ground, nullptr);
   ASSERT_EQ(detection.points.size(), 3u);
   EXPECT_NEAR(detection.mean_time_s, (scan.times()[3] + scan.times()[7] + scan.times()[11]) / 3.0, 1e-15);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -47,6 +48,8 @@ TEST(Detection, IsInTheWorldAndKeepsTheChosenRows) {
     EXPECT_EQ(detection.times[k], scan.times()[rows[k]]);
   }
   EXPECT_TRUE(detection.sensor.isApprox(Vector3d(100.0 + 4.0 * detection.mean_time_s, 50.0, 0.0)));
+  EXPECT_EQ(detection.ground.level, ground.level);
+  EXPECT_EQ(detection.ground.offset_m, ground.offset_m);
   EXPECT_TRUE((detection.T_sensor_world * detection.points[0]).isApprox(scan.points()[3], 1e-12));
 }
 
@@ -54,7 +57,7 @@ TEST(Detection, OfManyRowsAnEvenPartFromEndToEnd) {
   const Scan scan = scan_of(5000);
   std::vector<std::uint32_t> rows(5000);
   std::iota(rows.begin(), rows.end(), 0U);
-  const Detection detection = make_detection(scan, std::vector<double>(5000, 1.0), rows, SensorMotion{}, nullptr);
+  const Detection detection = make_detection(scan, std::vector<double>(5000, 1.0), rows, SensorMotion{}, {}, nullptr);
   EXPECT_LE(detection.points.size(), 500u);
   EXPECT_GE(detection.points.size(), 250u);
   const double step = detection.times[1] - detection.times[0];

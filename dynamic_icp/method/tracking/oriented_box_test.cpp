@@ -2,17 +2,23 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <limits>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/random_source.hpp"
+#include "dynamic_icp/method/base/se3.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 OrientedBox box_of_car(double yaw) { return {{10, 5, 1}, upright_axes(yaw), {4, 2, 1.5}}; }
@@ -72,18 +78,112 @@ TEST(OrientedBox, NothingAndOnePointHaveNoSpan) {
 }
 
 TEST(OrientedBox, FitsTheYawOfTwoSides) {
-  for (const double yaw : {-1.3, -0.4, 0.0, 0.5, 1.1, 2.9}) {
-    const std::vector<Vector3d> points = two_sides(box_of_car(yaw), 0.02);
-    const std::optional<double> fitted = fit_yaw(points, yaw + 0.3, 0.785);
-    ASSERT_TRUE(fitted);
-    EXPECT_NEAR(std::remainder(*fitted - yaw, 0.5 * std::numbers::pi), 0.0, 0.02) << "yaw " << yaw;
+  // On level ground and on a slope, in whose axes the yaw counts.
+  for (const Matrix3d& level : {Matrix3d(Matrix3d::Identity()), exp_so3({0.1, -0.2, 0.4})}) {
+    for (const double yaw : {-1.3, -0.4, 0.0, 0.5, 1.1, 2.9}) {
+      OrientedBox box = box_of_car(yaw);
+      box.axes = level * box.axes;
+      const std::vector<Vector3d> points = two_sides(box, 0.02);
+      const std::optional<double> fitted = fit_yaw(points, level, yaw + 0.3, 0.785);
+      ASSERT_TRUE(fitted);
+      EXPECT_NEAR(std::remainder(*fitted - yaw, 0.5 * std::numbers::pi), 0.0, 0.02) << "yaw " << yaw;
+    }
   }
 }
 
+/// Points of the grid of `n` + 1 points a side that fills the box, faces included.
+std::vector<Vector3d> grid_in(const OrientedBox& box, int n) {
+  std::vector<Vector3d> points;
+  for (int i = 0; i <= n; ++i) {
+    for (int k = 0; k <= n; ++k) {
+      for (int m = 0; m <= n; ++m) {
+        const Vector3d q = Vector3d(i, k, m) / n - Vector3d::Constant(0.5);
+        points.emplace_back(box.centre + box.axes * q.cwiseProduct(box.size));
+      }
+    }
+  }
+  return points;
+}
+
+/// It stands on the ground, z = 0.
+OrientedBox random_box(const RandomSource& random, double spread) {
+  const double height = random.uniform(6, 0.5, 3);
+  return {{random.uniform(0, -spread, spread), random.uniform(1, -spread, spread), 0.5 * height},
+          upright_axes(random.uniform(3, -3, 3)),
+          {random.uniform(4, 0.5, 8), random.uniform(5, 0.5, 3), height}};
+}
+
+TEST(OrientedBox, DistanceBetweenIsThatOfTheNearestPoints) {
+  int apart = 0;
+  int overlapping = 0;
+  for (std::uint64_t k = 0; k < 60; ++k) {
+    const OrientedBox a = random_box(RandomSource(5).fork(2 * k), 6.0);
+    const OrientedBox b = random_box(RandomSource(5).fork(2 * k + 1), 6.0);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Vector3d& point : grid_in(a, 40)) {
+      least = std::min(least, distance_outside(b, point));
+    }
+    const double distance = distance_between(a, b);
+    EXPECT_EQ(distance, distance_between(b, a));
+    if (least == 0.0) {
+      ++overlapping;
+      continue;
+    }
+    ++apart;
+    // No farther than the diagonal of a cell of the grid from the truth.
+    EXPECT_LE(distance, least + 1e-9) << "pair " << k;
+    EXPECT_GT(distance, least - a.size.norm() / 80.0) << "pair " << k;
+  }
+  EXPECT_GT(apart, 20);
+  EXPECT_GT(overlapping, 5);
+}
+
+TEST(OrientedBox, BoxesThatReachIntoEachOtherAreNotApart) {
+  const OrientedBox box = box_of_car(0.4);
+  EXPECT_EQ(distance_between(box, box), 0.0);
+  OrientedBox inside = box;
+  inside.size *= 0.1;
+  EXPECT_EQ(distance_between(box, inside), 0.0);
+  OrientedBox corner_in = box_of_car(1.2);
+  corner_in.centre = box.centre + box.axes * Vector3d(3.0, 1.0, 0.5);
+  EXPECT_EQ(distance_between(box, corner_in), 0.0);
+}
+
+TEST(OrientedBox, SizeWithAnotherIsThatOfAllPointsOfBoth) {
+  for (std::uint64_t k = 0; k < 40; ++k) {
+    const OrientedBox a = random_box(RandomSource(6).fork(2 * k), 6.0);
+    const OrientedBox b = random_box(RandomSource(6).fork(2 * k + 1), 6.0);
+    Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
+    Vector3d high = -low;
+    for (const OrientedBox& box : {a, b}) {
+      for (const Vector3d& point : grid_in(box, 4)) {
+        const Vector3d q = a.axes.transpose() * point;
+        low = low.cwiseMin(q);
+        high = high.cwiseMax(q);
+      }
+    }
+    EXPECT_TRUE(size_with(a, b).isApprox(high - low, 1e-12)) << "pair " << k;
+  }
+}
+
+TEST(OrientedBox, FacesGoByTheirAxisAndSide) {
+  // Front and rear, left and right, top and bottom: the order in which other modules write them down.
+  const OrientedBox box = box_of_car(0.9);
+  std::vector<Vector3d> outward;
+  for (const Face face : kFaces) {
+    outward.emplace_back(side_of(face) * box.axes.col(axis_of(face)));
+  }
+  EXPECT_EQ(outward[static_cast<std::size_t>(Face::kFront)], Vector3d(box.axes.col(0)));
+  EXPECT_EQ(outward[static_cast<std::size_t>(Face::kRight)], Vector3d(-box.axes.col(1)));
+  EXPECT_EQ(outward[static_cast<std::size_t>(Face::kTop)], Vector3d::UnitZ());
+  EXPECT_EQ(outward[static_cast<std::size_t>(Face::kBottom)], Vector3d(-Vector3d::UnitZ()));
+}
+
 TEST(OrientedBox, TooFewPointsHaveNoYaw) {
-  EXPECT_FALSE(fit_yaw({}, 0.0, 0.5));
-  EXPECT_FALSE(fit_yaw(std::vector<Vector3d>(4, Vector3d::UnitX()), 0.0, 0.5));
-  EXPECT_TRUE(std::isfinite(fit_yaw(std::vector<Vector3d>(9, Vector3d::UnitX()), 0.0, 0.5).value()));
+  const Matrix3d level = Matrix3d::Identity();
+  EXPECT_FALSE(fit_yaw({}, level, 0.0, 0.5));
+  EXPECT_FALSE(fit_yaw(std::vector<Vector3d>(4, Vector3d::UnitX()), level, 0.0, 0.5));
+  EXPECT_TRUE(std::isfinite(fit_yaw(std::vector<Vector3d>(9, Vector3d::UnitX()), level, 0.0, 0.5).value()));
 }
 
 }  // namespace

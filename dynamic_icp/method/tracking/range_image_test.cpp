@@ -51,6 +51,27 @@ TEST(RangeImage, BeyondTheFieldOfViewAllIsHidden) {
   EXPECT_TRUE(RangeImage(Scan{}, Workers(1)).hides(at(0.0, 10.0), 1.0));
 }
 
+TEST(RangeImage, WithANegativeClearanceWhatIsFartherHidesToo) {
+  RawScan raw;
+  add_wall(raw, -60.0, 60.0, 50.0);
+  add_wall(raw, -10.0, 10.0, 20.0);
+  const RangeImage image(Scan::from_raw(raw), Workers(1));
+  EXPECT_TRUE(image.hides(at(5.0, 18.0), -3.0)) << "something is seen 2 m farther";
+  EXPECT_FALSE(image.hides(at(5.0, 16.0), -3.0));
+  EXPECT_FALSE(image.hides(at(15.0, 46.0), -3.0));
+}
+
+TEST(RangeImage, KnowsHowHighItSees) {
+  RawScan raw;
+  add_wall(raw, -60.0, 60.0, 50.0);  // up to 5 degrees, 4.4 m there
+  const RangeImage image(Scan::from_raw(raw), Workers(1));
+  EXPECT_FALSE(image.is_above_all({50.0, 0.0, 4.0}));
+  EXPECT_FALSE(image.is_above_all({20.0, 30.0, 0.0}));
+  EXPECT_TRUE(image.is_above_all({50.0, 0.0, 7.0}));
+  EXPECT_TRUE(image.is_above_all({10.0, 0.0, 1.4})) << "8 degrees";
+  EXPECT_TRUE(image.is_above_all({-50.0, 0.0, 7.0})) << "in whatever direction";
+}
+
 TEST(RangeImage, ColumnsAroundAPlaceHoldAllPointsThere) {
   RawScan raw;
   for (double azimuth = 0.0; azimuth < 360.0; azimuth += 0.1) {

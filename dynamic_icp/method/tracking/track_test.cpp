@@ -20,7 +20,8 @@ const Vector3d kCarBody(4.5, 1.8, 1.5);
 
 /// The rear and the right side of a car that drives straight; the sensor is in the origin, the points were measured
 /// `time_s` after the stamp.
-Detection car_at(const Vector3d& centre, const Vector3d& velocity, std::uint64_t seed, double time_s = 0.0) {
+Detection car_at(const Vector3d& centre, const Vector3d& velocity, std::uint64_t seed, double time_s = 0.0,
+                 const Vector3d& size = kCarBody) {
   const Eigen::Matrix3d axes = upright_axes(std::atan2(velocity.y(), velocity.x()));
   Detection detection;
   for (std::uint64_t i = 0; i < 200; ++i) {
@@ -28,7 +29,7 @@ Detection car_at(const Vector3d& centre, const Vector3d& velocity, std::uint64_t
     Vector3d q(one.uniform(0, -0.5, 0.5), one.uniform(1, -0.5, 0.5), one.uniform(2, -0.5, 0.5));
     (i % 3 == 0 ? q.x() : q.y()) = -0.5;
     const Vector3d noise(0.02 * one.normal(3), 0.02 * one.normal(4), 0.0);
-    detection.points.emplace_back(centre + time_s * velocity + axes * (q.cwiseProduct(kCarBody) + noise));
+    detection.points.emplace_back(centre + time_s * velocity + axes * (q.cwiseProduct(size) + noise));
     detection.directions.push_back(detection.points.back().normalized());
     detection.radial.push_back(detection.directions.back().dot(velocity) + 0.05 * one.normal(5));
     detection.times.push_back(time_s);
@@ -46,15 +47,15 @@ TEST(Track, FindsTheMotionThatOneScanLeavesOpen) {
   const Vector3d velocity = 12.0 * upright_axes(0.5).col(0);
   Vector3d centre(25.0, 8.0, 0.0);
   Track track(car_at(centre, velocity, 1), 0.0, config);
-  const double at_first = largest_sigma(track.velocity_covariance());
+  const double at_first = largest_sigma(track.estimate().velocity_covariance);
   for (std::uint64_t scan = 2; scan < 12; ++scan) {
     centre += 0.1 * velocity;
     track.correct(car_at(centre, velocity, scan), 0.1 * static_cast<double>(scan - 1), config);
   }
-  EXPECT_LT((track.motion().velocity() - velocity).norm(), 0.5);
-  EXPECT_LT((track.box().centre - centre).head<2>().norm(), 0.5);
-  EXPECT_GT(std::abs(track.box().axes.col(0).dot(velocity.normalized())), 0.99);
-  EXPECT_LT(largest_sigma(track.velocity_covariance()), 0.5 * at_first);
+  EXPECT_LT((track.body().velocity() - velocity).norm(), 0.5);
+  EXPECT_LT((track.estimate().box.centre - centre).head<2>().norm(), 0.5);
+  EXPECT_GT(std::abs(track.estimate().box.axes.col(0).dot(velocity.normalized())), 0.99);
+  EXPECT_LT(largest_sigma(track.estimate().velocity_covariance), 0.5 * at_first);
 }
 
 TEST(Track, IsAtTheMeanTimeOfItsLastMeasurement) {
@@ -70,22 +71,27 @@ TEST(Track, PredictsAlongItsVelocityAndBackAgain) {
   const TrackConfig config;
   const Vector3d velocity(10.0, 0.0, 0.0);
   Track track(car_at({20.0, 5.0, 0.0}, velocity, 1), 0.0, config);
-  const Vector3d position = track.motion().position();
-  const double sigma = largest_sigma(track.velocity_covariance());
-  const Vector3d step = 0.3 * track.motion().velocity();
+  const Vector3d position = track.body().position();
+  const double sigma = largest_sigma(track.estimate().velocity_covariance);
+  const Vector3d step = 0.3 * track.body().velocity();
   track.predict(0.3, config);
-  EXPECT_LT((track.motion().position() - position - step).norm(), 0.02 * step.norm() + 0.02);
-  EXPECT_GT(largest_sigma(track.velocity_covariance()), sigma) << "the future is less certain";
+  EXPECT_LT((track.body().position() - position - step).norm(), 0.02 * step.norm() + 0.02);
+  EXPECT_GT(largest_sigma(track.estimate().velocity_covariance), sigma) << "the future is less certain";
   track.predict(0.0, config);
-  EXPECT_LT((track.motion().position() - position).norm(), 1e-6);
+  EXPECT_LT((track.body().position() - position).norm(), 1e-6);
 }
 
 TEST(Track, CovarianceIncludesTheDisagreementOfTheHypotheses) {
-  // At first sight the side of a car tells its direction up to quarter turns only.
+  // Sides tell the direction up to quarter turns. Of a short body seen over a corner either may be the front: with the
+  // same radial velocity it drives along either of them, if it turns.
   const TrackConfig config;
-  const Track track(car_at({25.0, 8.0, 0.0}, 12.0 * upright_axes(0.5).col(0), 1), 0.0, config);
-  const Eigen::Matrix3d best = track.motion().covariance().block<3, 3>(3, 3);
-  EXPECT_GE(track.velocity_covariance().trace(), best.trace());
+  const Vector3d velocity = 3.0 * upright_axes(-0.25 * std::numbers::pi).col(0);
+  const Track track(car_at({25.0, 0.0, 0.0}, velocity, 1, 0.0, {2.3, 2.1, 1.5}), 0.0, config);
+  const BoxEstimate best = track.best().estimate();
+  const BoxEstimate all = track.estimate();
+  EXPECT_GT(std::sqrt(all.velocity_covariance(1, 1)), 1.0) << "the other way it moves by 4.2 m/s";
+  EXPECT_GT(all.velocity_covariance(1, 1), 2.0 * best.velocity_covariance(1, 1));
+  EXPECT_LT(std::sqrt(all.velocity_covariance(0, 0)), 0.3) << "along the line of sight they agree";
 }
 
 }  // namespace

@@ -1,0 +1,97 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/size_prior.hpp"
+
+#include <array>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::tracking {
+namespace {
+
+struct MeanSize {
+  const char* name;
+  double length, width, height;
+};
+
+// As the authors of KITTI and nuScenes state them, m. People are no such bodies.
+constexpr std::array kPublished = {
+    MeanSize{"KITTI car", 3.88, 1.63, 1.53},           MeanSize{"KITTI van", 5.06, 1.90, 2.21},
+    MeanSize{"KITTI truck", 10.1, 2.58, 3.25},         MeanSize{"KITTI cyclist", 1.76, 0.60, 1.74},
+    MeanSize{"nuScenes car", 4.63, 1.97, 1.74},        MeanSize{"nuScenes truck", 6.93, 2.51, 2.84},
+    MeanSize{"nuScenes bus", 11.2, 2.95, 3.47},        MeanSize{"nuScenes trailer", 12.3, 2.9, 3.87},
+    MeanSize{"nuScenes motorcycle", 2.11, 0.77, 1.47}, MeanSize{"nuScenes bicycle", 1.70, 0.60, 1.28},
+};
+
+TEST(SizePrior, LengthsOfRoadUsersLieOnItsCurve) {
+  for (const MeanSize& size : kPublished) {
+    const Belief belief = typical_length(size.width, size.height);
+    EXPECT_NEAR(belief.mean / size.length, 1.0, 0.25) << size.name;
+    EXPECT_LT(std::abs(belief.mean - size.length), 2.0 * std::sqrt(belief.variance)) << size.name;
+  }
+}
+
+TEST(SizePrior, WidthsOfRoadUsersLieOnItsCurve) {
+  for (const MeanSize& size : kPublished) {
+    EXPECT_NEAR(typical_width(size.length).mean / size.width, 1.0, 0.25) << size.name;
+  }
+}
+
+TEST(SizePrior, LargerBodiesAreLongerAndWider) {
+  EXPECT_LT(typical_length(1.5, 1.5).mean, typical_length(1.8, 1.5).mean);
+  EXPECT_LT(typical_length(1.8, 1.5).mean, typical_length(1.8, 2.2).mean);
+  EXPECT_LT(typical_width(2.0).mean, typical_width(4.0).mean);
+  EXPECT_LE(typical_width(30.0).mean, 2.55) << "what roads allow";
+  EXPECT_LT(typical_width_by_height(1.4).mean, typical_width_by_height(2.5).mean);
+  EXPECT_LE(typical_width_by_height(5.0).mean, 2.55);
+}
+
+/// The mean square of the difference from the mode of a Gaussian that is cut off below `least`, by summing it up.
+double mean_square_about_mode(const Belief& belief, double least) {
+  const double sigma = std::sqrt(belief.variance);
+  const double mode = std::max(belief.mean, least);
+  const double end = mode + 12.0 * sigma;
+  constexpr int kSteps = 400000;
+  const double step = (end - least) / kSteps;
+  double weights = 0.0;
+  double squares = 0.0;
+  for (int i = 0; i < kSteps; ++i) {
+    const double x = least + (i + 0.5) * step;
+    // Relative to the density at the mode: far out nothing of it would be left.
+    const double weight = std::exp(
+        -0.5 * ((x - belief.mean) * (x - belief.mean) - (mode - belief.mean) * (mode - belief.mean)) / belief.variance);
+    weights += weight;
+    squares += weight * (x - mode) * (x - mode);
+  }
+  return squares / weights;
+}
+
+TEST(SizePrior, WhatIsAtLeastSoLongIsACutOffGaussian) {
+  const Belief belief{4.5, 0.45};
+  const double sigma = std::sqrt(belief.variance);
+  for (const double sigmas : {-5.0, -2.0, -1.0, -0.2, 0.0, 0.2, 1.0, 2.0, 4.0}) {
+    const double least = belief.mean + sigmas * sigma;
+    const Belief result = at_least(belief, least);
+    EXPECT_EQ(result.mean, std::max(belief.mean, least)) << "the most likely value, " << sigmas << " sigma";
+    const double expected = mean_square_about_mode(belief, least);
+    EXPECT_NEAR(result.variance, expected, 1e-3 * expected) << sigmas << " sigma";
+  }
+}
+
+TEST(SizePrior, FarBelowTheBeliefTheBoundSaysNothing) {
+  const Belief belief{4.5, 0.45};
+  const Belief result = at_least(belief, 0.5);
+  EXPECT_EQ(result.mean, belief.mean);
+  EXPECT_NEAR(result.variance, belief.variance, 1e-6);
+}
+
+TEST(SizePrior, OnlySmallAndSlowBodiesAreLikePeople) {
+  EXPECT_TRUE(is_person_like(0.8, 1.5));
+  EXPECT_FALSE(is_person_like(0.8, 7.0)) << "a part of something faster";
+  EXPECT_FALSE(is_person_like(1.8, 1.5)) << "a bicycle";
+  EXPECT_FALSE(is_person_like(4.0, 0.5)) << "a car in a jam";
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
