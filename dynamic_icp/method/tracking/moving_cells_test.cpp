@@ -192,6 +192,19 @@ TEST(CellGroups, TwoAbreastThatAreLinkedAreParted) {
   EXPECT_EQ(groups_of(cells_at(places), 10).size(), 2u);
 }
 
+TEST(CellGroups, TwoAbreastThatOnlyABridgeLinksAreParted) {
+  // Ahead of the sensor their radial velocities are small and of both signs, as in one body that crosses.
+  std::vector<Vector3d> places;
+  add_vehicle(places, 20.0, -1.75);
+  add_vehicle(places, 20.0, 1.75);
+  MovingCells moving = cells_at(places);
+  for (MovingCell& one : moving.cells) {
+    one.radial_mps = one.centroid.y() > 0.0 ? 0.4 : -0.4;
+  }
+  ASSERT_EQ(group_cells(moving.cells, {}), std::vector<std::uint32_t>(places.size(), 0)) << "a bridge";
+  EXPECT_EQ(groups_of(moving, 10).size(), 2u);
+}
+
 TEST(CellGroups, TooFewPointsAreNoObject) {
   EXPECT_TRUE(groups_of(cells_at({{20, 0, 0}, {20.5, 0, 0}}), 3).empty());
   EXPECT_EQ(groups_of(cells_at({{20, 0, 0}, {20.5, 0, 0}}), 2).size(), 1u);

@@ -205,19 +205,52 @@ TEST(ObjectTracker, NumberOfThreadsChangesNoBit) {
                                   car(18, -9 + 8 * t, 0.5 * std::numbers::pi, 8)};
   };
   const std::vector<Objects> one = track(traffic, 8, 1);
-  for (const int threads : {2, 7}) {
+  for (const int threads : {2, 4, 7}) {
     const std::vector<Objects> many = track(traffic, 8, threads);
     for (std::size_t k = 0; k < one.size(); ++k) {
       ASSERT_EQ(many[k].size(), one[k].size());
       for (std::size_t i = 0; i < one[k].size(); ++i) {
         EXPECT_EQ(many[k][i].id, one[k][i].id);
+        EXPECT_EQ(many[k][i].status, one[k][i].status);
         EXPECT_EQ(many[k][i].velocity_sensor, one[k][i].velocity_sensor);
         EXPECT_EQ(many[k][i].covariance, one[k][i].covariance);
+        EXPECT_EQ(many[k][i].yaw_rate_rps, one[k][i].yaw_rate_rps);
         EXPECT_EQ(many[k][i].box.centre, one[k][i].box.centre);
+        EXPECT_EQ(many[k][i].box.axes, one[k][i].box.axes);
+        EXPECT_EQ(many[k][i].box.size, one[k][i].box.size);
+        EXPECT_EQ(many[k][i].centre_covariance, one[k][i].centre_covariance);
+        EXPECT_EQ(many[k][i].faces, one[k][i].faces);
+        EXPECT_EQ(many[k][i].prediction.centre, one[k][i].prediction.centre);
+        EXPECT_EQ(many[k][i].prediction.centre_covariance, one[k][i].prediction.centre_covariance);
         EXPECT_EQ(many[k][i].members, one[k][i].members);
       }
     }
   }
+}
+
+TEST(ObjectTracker, WhatIsNearItsSensorBelongsToItsCarrier) {
+  TrackerConfig config;
+  config.min_range_m = 2.0;
+  const ObjectTracker tracker{config};
+  RawScan raw;
+  raw.points = {{1.9, 0, 0}, {2.1, 0, 0}, {0, -1.2, 1.2}, {0, -1.5, 1.5}, {1.0, 0, 0}, {-30, 0, 0}};
+  raw.doppler.assign(raw.points.size(), 0.0);
+  std::vector<std::uint8_t> is_moving = {1, 1, 1, 1, 0, 1};
+  tracker.clear_carrier(Scan::from_raw(raw), Workers(2), is_moving);
+  EXPECT_EQ(is_moving, (std::vector<std::uint8_t>{0, 1, 0, 1, 0, 1}));
+}
+
+TEST(ObjectTracker, InARigTheMountingOfThePointsOwnSensorCounts) {
+  RawScan raw;
+  raw.mountings.assign(2, Eigen::Isometry3d::Identity());
+  raw.mountings[0].translation() = Vector3d(4, 0, 0);
+  raw.mountings[1].translation() = Vector3d(-4, 1, 0);
+  raw.points = {{4.5, 0, 0}, {4.5, 0, 0}, {-4.2, 1.3, 0}, {-4.2, 1.3, 0}, {0, 0, 0}, {5.5, 0, 0}};
+  raw.channels.sensor = {0, 1, 0, 1, 0, 0};
+  raw.doppler.assign(raw.points.size(), 0.0);
+  std::vector<std::uint8_t> is_moving(raw.points.size(), 1);
+  ObjectTracker{TrackerConfig{}}.clear_carrier(Scan::from_raw(raw), Workers(1), is_moving);
+  EXPECT_EQ(is_moving, (std::vector<std::uint8_t>{0, 1, 1, 0, 1, 1})) << "1 m";
 }
 
 TEST(ObjectTracker, EverySettingIsInRangeAndFoundByItsKey) {
