@@ -100,19 +100,30 @@ double BodyFilter::correct(const Row& H, double residual, double variance) {
   return log_likelihood;
 }
 
-double BodyFilter::correct_face(Face face, const Vector3d& seen, double variance) {
+BodyFilter::Row BodyFilter::face_jacobian(Face face, const Vector3d& seen) const {
   const Matrix3d box = axes();
   const int axis = axis_of(face);
-  const Vector3d outward = side_of(face) * box.col(axis);
-  const Vector3d from_reference = seen - position();
   Row H = Row::Zero();
-  H.head<3>() = outward.transpose();
+  H.head<3>() = side_of(face) * box.col(axis).transpose();
   H[index(face)] = 1.0;
   if (axis < 2) {
     const Vector3d turned = side_of(face) * (axis == 0 ? Vector3d(box.col(1)) : Vector3d(-box.col(0)));
-    H[kYaw] = -turned.dot(from_reference);
+    H[kYaw] = -turned.dot(seen - position());
   }
-  return correct(H, outward.dot(from_reference) - distance(face), variance);
+  return H;
+}
+
+double BodyFilter::beyond(Face face, const Vector3d& seen) const {
+  return side_of(face) * axes().col(axis_of(face)).dot(seen - position()) - distance(face);
+}
+
+double BodyFilter::beyond_sigma(Face face, const Vector3d& seen) const {
+  const Row H = face_jacobian(face, seen);
+  return std::sqrt(H * P_ * H.transpose());
+}
+
+double BodyFilter::correct_face(Face face, const Vector3d& seen, double variance) {
+  return correct(face_jacobian(face, seen), beyond(face, seen), variance);
 }
 
 void BodyFilter::forget_face(Face face, double variance) {

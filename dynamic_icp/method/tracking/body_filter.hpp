@@ -56,6 +56,10 @@ class BodyFilter {
   [[nodiscard]] Eigen::Vector3d velocity_at(const Eigen::Vector3d& from_reference) const;
   [[nodiscard]] Eigen::Matrix3d velocity_covariance_at(const Eigen::Vector3d& from_reference) const;
 
+  /// How far outside of a face a point lies (m, world), and the standard deviation of what is known of that.
+  [[nodiscard]] double beyond(Face face, const Eigen::Vector3d& point) const;
+  [[nodiscard]] double beyond_sigma(Face face, const Eigen::Vector3d& point) const;
+
   /// The state `dt_s` seconds later (or earlier, with as much uncertainty).
   void predict(double dt_s, const MotionNoise& noise);
 
@@ -93,6 +97,7 @@ class BodyFilter {
 
   static constexpr int index(Face face) { return kFirstFace + static_cast<int>(face); }
   [[nodiscard]] Eigen::Vector3d up() const { return level_.col(2); }
+  [[nodiscard]] Row face_jacobian(Face face, const Eigen::Vector3d& seen) const;
   [[nodiscard]] Eigen::Matrix<double, 3, kStates> doppler_jacobian(const Eigen::Vector3d& sensor_world) const;
   double correct(const Row& H, double residual, double variance);
 

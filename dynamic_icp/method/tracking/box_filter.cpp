@@ -198,7 +198,8 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
       if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
         least_[i] = std::max(least_[i], seen);
       }
-      if (is_known(face) && seen > body_.distance(face) + kFalseEnd_m + kFalseEndSigmas * sigma) {
+      const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
+      if (is_known(face) && body_.beyond(face, at_end) > kFalseEnd_m + kFalseEndSigmas * known_sigma) {
         body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);  // it was no end
         least_[i] = seen;
       }
@@ -209,7 +210,7 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
         log_likelihood_ += was_known ? log_likelihood : 0.0;  // else it could be anywhere
       } else {
         faces_[i] = faces_[i] == FaceView::kUnknown ? FaceView::kUnknown : FaceView::kHidden;
-        if (is_known(face) && seen > body_.distance(face) + sigma) {
+        if (is_known(face) && body_.beyond(face, at_end) > known_sigma) {
           log_likelihood_ += body_.correct_face(face, at_end, sigma * sigma);  // it is farther out than thought
         }
       }

@@ -38,7 +38,7 @@ TEST(Detection, IsInTheWorldAndKeepsTheChosenRows) {
   const std::vector<std::uint32_t> rows = {3, 7, 11};
   const SensorMotion sensor = left_turn_at({100.0, 50.0, 0.0});
   const Ground ground{Eigen::AngleAxisd(0.1, Vector3d::UnitX()).toRotationMatrix(), -1.5};
-  const Detection detection = make_detection(scan, radial, rows, sensor, ground, nullptr);
+  const Detection detection = make_detection(scan, radial, rows, sensor, GroundHeights(ground), nullptr);
   ASSERT_EQ(detection.points.size(), 3u);
   EXPECT_NEAR(detection.mean_time_s, (scan.times()[3] + scan.times()[7] + scan.times()[11]) / 3.0, 1e-15);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -49,15 +49,18 @@ TEST(Detection, IsInTheWorldAndKeepsTheChosenRows) {
   }
   EXPECT_TRUE(detection.sensor.isApprox(Vector3d(100.0 + 4.0 * detection.mean_time_s, 50.0, 0.0)));
   EXPECT_EQ(detection.ground.level, ground.level);
-  EXPECT_EQ(detection.ground.offset_m, ground.offset_m);
-  EXPECT_TRUE((detection.T_sensor_world * detection.points[0]).isApprox(scan.points()[3], 1e-12));
+  const Eigen::Isometry3d T_world_sensor = detection.T_sensor_world.inverse();
+  EXPECT_TRUE(T_world_sensor.translation().isApprox(detection.sensor, 1e-12)) << "at the mean time";
+  const Vector3d u = scan.directions()[7];
+  EXPECT_TRUE((T_world_sensor.linear() * u).isApprox(sensor.direction_world(u, detection.mean_time_s), 1e-6));
 }
 
 TEST(Detection, OfManyRowsAnEvenPartFromEndToEnd) {
   const Scan scan = scan_of(5000);
   std::vector<std::uint32_t> rows(5000);
   std::iota(rows.begin(), rows.end(), 0U);
-  const Detection detection = make_detection(scan, std::vector<double>(5000, 1.0), rows, SensorMotion{}, {}, nullptr);
+  const Detection detection =
+      make_detection(scan, std::vector<double>(5000, 1.0), rows, SensorMotion{}, GroundHeights(), nullptr);
   EXPECT_LE(detection.points.size(), 500u);
   EXPECT_GE(detection.points.size(), 250u);
   const double step = detection.times[1] - detection.times[0];

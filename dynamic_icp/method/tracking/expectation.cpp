@@ -15,6 +15,7 @@ using Eigen::Vector3d;
 constexpr double kGateSigmas = 2.0;
 constexpr double kMaxGate_m = 2.0;
 constexpr double kMaxGate_mps = 3.0;
+constexpr double kWidthSlack_m = 0.1;
 constexpr double kUnseenRatio = 0.9;  // of points where the body is likely but was not seen yet
 
 constexpr double kGroundClearance_m = 0.3;  // points lower in a box may be the road ...
@@ -59,6 +60,7 @@ Expectation::Expectation(const Track& predicted, const SensorMotion& sensor, con
   W_covariance = predicted.body().doppler_covariance(eye);
   const double position = std::sqrt(predicted.body().covariance().topLeftCorner<2, 2>().trace());
   gate_m = std::min(kMaxGate_m, config.gate_m + kGateSigmas * position);
+  max_width_m = config.track.largest_width_m + kWidthSlack_m + kGateSigmas * position;
   gate_mps = config.gate_mps;
 }
 
@@ -77,9 +79,12 @@ double Expectation::width_with(const Vector3d& point_world, double time_s) const
   return std::max(box.size.y(), beside + 0.5 * box.size.y());
 }
 
+double Expectation::radial_sigma(const Vector3d& direction_world) const {
+  return std::sqrt(std::max(0.0, direction_world.dot(W_covariance * direction_world)));
+}
+
 double Expectation::gate_ratio(const Vector3d& direction_world, double radial_mps) const {
-  const double sigma = std::sqrt(std::max(0.0, direction_world.dot(W_covariance * direction_world)));
-  const double gate = std::min(kMaxGate_mps, gate_mps + kGateSigmas * sigma);
+  const double gate = std::min(kMaxGate_mps, gate_mps + kGateSigmas * radial_sigma(direction_world));
   return std::abs(radial_mps - direction_world.dot(W)) / gate;
 }
 

@@ -29,6 +29,7 @@ struct Expectation {
   Eigen::Vector3d W;             ///< m/s: its points have the radial velocities u . W
   Eigen::Matrix3d W_covariance;  ///< (m/s)^2
   double gate_m = 0.0;           ///< distance from the box at which points may still be its own
+  double max_width_m = 0.0;      ///< of what was seen and what is added to it, as far as its place is known
   double gate_mps = 0.0;         ///< difference of their radial velocities, beyond the uncertainty of W
 
   /// `predicted` is the track at the stamp.
@@ -42,6 +43,9 @@ struct Expectation {
 
   /// The width of what was seen of the body together with the point.
   [[nodiscard]] double width_with(const Eigen::Vector3d& point_world, double time_s) const;
+
+  /// Standard deviation of the radial velocity that is expected, m/s.
+  [[nodiscard]] double radial_sigma(const Eigen::Vector3d& direction_world) const;
 
   /// Deviation of a radial velocity from the expected one as a share of what is allowed.
   [[nodiscard]] double gate_ratio(const Eigen::Vector3d& direction_world, double radial_mps) const;

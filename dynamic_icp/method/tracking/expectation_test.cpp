@@ -83,7 +83,9 @@ TEST(Expectation, VisitsTheStaticPointsInItsBoxAboveTheGround) {
   const std::vector<double> radial(scan.size(), 0.0);
   for (const int threads : {1, 2}) {
     const Workers workers(threads);
-    const TrackingInput input{scan, radial, is_moving, {}, 0.0, 0.0, {}, {}, {}, {}, RangeImage(scan, workers)};
+    const TrackingInput input{
+        scan,           radial, is_moving, {}, 0.0, 0.0, {}, {}, {}, {}, RangeImage(scan, Vector3d::Zero(), workers),
+        GroundHeights()};
     std::vector<std::uint32_t> visited;
     visit_static_points(input, std::vector<Expectation>{expected}, workers,
                         [&](std::size_t number, std::uint32_t row, const Vector3d& direction) {

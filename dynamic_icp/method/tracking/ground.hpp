@@ -48,6 +48,9 @@ class GroundFilter {
 /// them.
 class GroundHeights {
  public:
+  /// A plane.
+  explicit GroundHeights(const Ground& ground = {}) : ground_(ground) {}
+
   /// From the static points near the plane (m, sensor frame; `is_moving` has one flag per point).
   GroundHeights(const Ground& ground, std::span<const Eigen::Vector3d> points, std::span<const std::uint8_t> is_moving,
                 const Eigen::Isometry3d& T_world_sensor);
@@ -67,7 +70,7 @@ class GroundHeights {
   [[nodiscard]] Eigen::Vector3d in_level(const Eigen::Vector3d& point_world) const;
 
   Ground ground_;
-  Eigen::Vector3d sensor_world_;
+  Eigen::Vector3d sensor_world_ = Eigen::Vector3d::Zero();
   std::array<Histogram, static_cast<std::size_t>(kCells* kCells)> cells_{};
 };
 

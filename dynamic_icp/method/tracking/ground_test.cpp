@@ -3,10 +3,14 @@
 #include "dynamic_icp/method/tracking/ground.hpp"
 
 #include <cmath>
+#include <cstdint>
+#include <optional>
+#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/method/base/random_source.hpp"
 #include "dynamic_icp/method/base/se3.hpp"
 
 namespace dynamic_icp::tracking {
@@ -22,69 +26,103 @@ void expect_rotation(const Matrix3d& R) {
   EXPECT_NEAR(R.determinant(), 1.0, 1e-12);
 }
 
-TEST(Ground, TheFirstPlaneIsTakenAsItIs) {
+TEST(GroundFilter, TheFirstPlaneIsTakenAsItIs) {
   const Vector3d normal = exp_so3({0.1, -0.05, 0.0}).col(2);
-  const Ground ground = updated_ground({}, normal, -1.7, {0, 0, 0});
+  GroundFilter filter;
+  const Ground ground = filter.update(normal, -1.7, {0, 0, 0});
   EXPECT_LT(angle_between(ground.up(), normal), 1e-9);
   ASSERT_TRUE(ground.offset_m);
   EXPECT_NEAR(*ground.offset_m, -1.7, 1e-12);
   expect_rotation(ground.level);
 }
 
-TEST(Ground, FollowsATiltedPlane) {
-  // A road that begins to climb: the direction follows over some scans, never beyond, and the road is always at once
-  // where it is below the sensor.
+TEST(GroundFilter, FollowsARoadThatClimbs) {
   const Vector3d normal = exp_so3({0.0, -0.12, 0.0}).col(2);
   const Vector3d sensor(40.0, -30.0, 5.0);
   const double offset = normal.dot(sensor) - 1.8;
-  const Vector3d foot = sensor - 1.8 * normal;
-  Ground ground{Matrix3d::Identity(), 0.0};
-  double before = angle_between(ground.up(), normal);
-  for (int scan = 0; scan < 40; ++scan) {
-    ground = updated_ground(ground, normal, offset, sensor);
-    const double angle = angle_between(ground.up(), normal);
-    EXPECT_LT(angle, before) << "scan " << scan;
-    before = angle;
-    ASSERT_TRUE(ground.offset_m);
-    EXPECT_NEAR(ground.up().dot(foot), *ground.offset_m, 1e-9) << "scan " << scan;
-    expect_rotation(ground.level);
+  GroundFilter filter;
+  for (int scan = 0; scan < 20; ++scan) {
+    filter.update(Vector3d::UnitZ(), sensor.z() - 1.8, sensor);
   }
-  EXPECT_LT(before, 1e-3);
-  EXPECT_NEAR(*ground.offset_m, offset, 0.05);
+  for (int scan = 0; scan < 20; ++scan) {
+    filter.update(normal, offset, sensor);
+    expect_rotation(filter.ground().level);
+  }
+  EXPECT_LT(angle_between(filter.ground().up(), normal), 1e-6);
+  EXPECT_NEAR(*filter.ground().offset_m, offset, 1e-6);
 }
 
-TEST(Ground, OneBadPlaneTiltsItLittle) {
-  const Ground ground{Matrix3d::Identity(), -1.8};
-  const Vector3d normal = exp_so3({0.2, 0.0, 0.0}).col(2);
-  EXPECT_LT(angle_between(updated_ground(ground, normal, -1.8, {0, 0, 0}).up(), Vector3d::UnitZ()), 0.1);
+TEST(GroundFilter, AFewOtherPlanesDoNotMoveIt) {
+  // Two scans in five show a plane that leans on guard rails, from the first scan on.
+  const Vector3d wrong = exp_so3({0.2, 0.0, 0.0}).col(2);
+  GroundFilter filter;
+  for (int scan = 0; scan < 30; ++scan) {
+    const bool is_wrong = scan % 5 == 0 || scan % 5 == 2;
+    filter.update(is_wrong ? wrong : Vector3d::UnitZ(), is_wrong ? -4.3 : -2.0, {0, 0, 0});
+    if (scan > 8) {
+      EXPECT_LT(angle_between(filter.ground().up(), Vector3d::UnitZ()), 1e-9) << "scan " << scan;
+      EXPECT_NEAR(*filter.ground().offset_m, -2.0, 1e-9) << "scan " << scan;
+    }
+  }
 }
 
-TEST(Ground, AWallIsNoGround) {
-  const Ground ground{exp_so3({0.05, 0.02, 0.4}), -1.8};
+TEST(GroundFilter, AWallIsNoGround) {
+  GroundFilter filter;
+  const Ground before = filter.update(exp_so3({0.05, 0.02, 0.0}).col(2), -1.8, {0, 0, 0});
   for (const Vector3d& normal : {Vector3d(1, 0, 0), Vector3d(0.3, -0.8, 0.2).normalized().eval(), Vector3d(0, 0, -1)}) {
-    const Ground after = updated_ground(ground, normal, -3.0, {0, 0, 0});
-    EXPECT_EQ(after.level, ground.level);
-    EXPECT_EQ(after.offset_m, ground.offset_m);
+    const Ground after = filter.update(normal, -3.0, {0, 0, 0});
+    EXPECT_EQ(after.level, before.level);
+    EXPECT_EQ(after.offset_m, before.offset_m);
   }
 }
 
-TEST(Ground, HeadingsStayWhatTheyAre) {
+TEST(GroundFilter, HeadingsStayWhatTheyAre) {
   // The axes turn about no part of the normal: a heading moves by no more than the slope makes of it.
-  Ground ground{exp_so3({0.0, 0.0, 0.8}), -1.8};
+  GroundFilter filter;
   for (int scan = 0; scan < 200; ++scan) {
     // Round and round: small turns about the vertical would add up.
     const double phase = 0.3 * scan;
-    const Vector3d normal = exp_so3({0.05 * std::cos(phase), 0.05 * std::sin(phase), 0.0}).col(2);
-    ground = updated_ground(ground, normal, -1.8, {0, 0, 0});
+    filter.update(exp_so3({0.05 * std::cos(phase), 0.05 * std::sin(phase), 0.0}).col(2), -1.8, {0, 0, 0});
   }
-  for (int scan = 0; scan < 50; ++scan) {
-    ground = updated_ground(ground, Vector3d::UnitZ(), -1.8, {0, 0, 0});
+  for (int scan = 0; scan < 20; ++scan) {
+    filter.update(Vector3d::UnitZ(), -1.8, {0, 0, 0});
   }
-  EXPECT_NEAR(std::atan2(ground.level(1, 0), ground.level(0, 0)), 0.8, 0.05);
-  // One step: the turn is about an axis in the ground.
-  const Vector3d normal = exp_so3({0.1, 0.05, 0.0}).col(2);
-  const Ground next = updated_ground(ground, normal, -1.8, {0, 0, 0});
-  EXPECT_NEAR(log_so3(next.level * ground.level.transpose()).dot(ground.up()), 0.0, 1e-9);
+  EXPECT_NEAR(std::atan2(filter.ground().level(1, 0), filter.ground().level(0, 0)), 0.0, 0.1)
+      << "nine rounds about the vertical enclose 0.07 rad";
+}
+
+/// Points of a road whose height is `height(x, y)`, and a few of walls on it.
+template <class Height>
+std::vector<Vector3d> road_points(const Height& height) {
+  std::vector<Vector3d> points;
+  for (std::uint64_t i = 0; i < 20000; ++i) {
+    const RandomSource one = RandomSource(3).fork(i);
+    const double x = one.uniform(0, -60, 60);
+    const double y = one.uniform(1, -60, 60);
+    const double above = i % 3 == 0 ? one.uniform(2, 0.0, 3.0) : 0.01 * one.normal(3);
+    points.emplace_back(x, y, height(x, y) + above);
+  }
+  return points;
+}
+
+TEST(GroundHeights, FollowARoadThatBends) {
+  const auto height = [](double x, double) { return -1.8 + 1e-4 * x * x; };
+  const std::vector<Vector3d> points = road_points(height);
+  const std::vector<std::uint8_t> is_moving(points.size(), 0);
+  const GroundHeights heights({Matrix3d::Identity(), -1.8}, points, is_moving, Eigen::Isometry3d::Identity());
+  for (const double x : {-50.0, -20.0, 0.0, 33.0, 55.0}) {
+    const std::optional<double> offset = heights.below({x, 10.0, height(x, 10.0) + 0.5}).offset_m;
+    ASSERT_TRUE(offset);
+    EXPECT_NEAR(*offset, height(x, 10.0), 0.1) << "x = " << x;
+  }
+}
+
+TEST(GroundHeights, WithoutPointsThePlaneCountsUnlessItIsFarBelow) {
+  const GroundHeights heights({Matrix3d::Identity(), -1.8});
+  EXPECT_EQ(heights.below({20, 0, -1.5}).offset_m, -1.8);
+  EXPECT_FALSE(heights.below({20, 0, 0.5}).offset_m);
+  EXPECT_FALSE(heights.below({20, 0, -2.5}).offset_m);
+  EXPECT_FALSE(GroundHeights().below({20, 0, 0.5}).offset_m) << "no plane is known";
 }
 
 }  // namespace

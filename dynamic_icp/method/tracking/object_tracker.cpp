@@ -15,8 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::int32_t kNobody = -1;
-constexpr double kMax = 2.0;  // new objects are not wider than so many vehicles
-constexpr double kWidthSlack_m = 0.1;
+constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
 constexpr double kSeeThrough_m = 1.0;  // beyond a gap
 constexpr double kSplinter = 0.1;      // a track with this share of the points of another may be a part of it
 constexpr double kPartVelocity_mps =
@@ -30,9 +29,11 @@ double sweep_duration(const Scan& scan) {
 }
 
 /// Whether a point that stands cannot be part of a body that makes it expect a radial velocity.
-bool contradicts(double expected_mps, double radial_mps, const TrackerConfig& config) {
+bool contradicts(const Expectation& expected, const Vector3d& direction, double radial_mps,
+                 const TrackerConfig& config) {
+  const double expected_mps = expected.W.dot(direction);
   return std::abs(expected_mps) > config.same_velocity_mps &&
-         std::abs(radial_mps - expected_mps) > config.same_velocity_mps;
+         std::abs(radial_mps - expected_mps) > config.same_velocity_mps + expected.radial_sigma(direction);
 }
 
 /// Whether two bodies may have one velocity.
@@ -190,7 +191,7 @@ void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectati
       }
       const double score = std::max(expected.distance_ratio(point, cell.time_s),
                                     expected.gate_ratio(input.cell_directions[i], cell.radial_mps));
-      if (score < best[i] && expected.width_with(point, cell.time_s) < config_.track.largest_width_m + kWidthSlack_m) {
+      if (score < best[i] && expected.width_with(point, cell.time_s) < expected.max_width_m) {
         best[i] = score;
         owner[i] = static_cast<std::int32_t>(k);
       }
@@ -221,7 +222,7 @@ void ObjectTracker::associate(const TrackingInput& input, std::span<const Expect
       const Expectation& expected = expectations[static_cast<std::size_t>(k)];
       const double outside = expected.outside(input.cell_points[i], cell.time_s);
       if (outside < nearest && expected.gate_ratio(input.cell_directions[i], cell.radial_mps) < 2.0 &&
-          expected.width_with(input.cell_points[i], cell.time_s) < config_.track.largest_width_m + kWidthSlack_m) {
+          expected.width_with(input.cell_points[i], cell.time_s) < expected.max_width_m) {
         nearest = outside;
         owner[i] = k;
       }
@@ -244,10 +245,10 @@ void ObjectTracker::gather_static(const TrackingInput& input, std::span<const Ex
   std::vector<std::vector<std::uint32_t>> static_points(slow.size());
   std::vector<std::size_t> contradictions(slow.size(), 0);
   visit_static_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
-    if (expected[i].gate_ratio(direction, input.radial[row]) < 1.0) {
-      static_points[i].push_back(row);
-    } else if (contradicts(expected[i].W.dot(direction), input.radial[row], config_)) {
+    if (contradicts(expected[i], direction, input.radial[row], config_)) {
       ++contradictions[i];
+    } else if (expected[i].gate_ratio(direction, input.radial[row]) < 1.0) {
+      static_points[i].push_back(row);
     }
   });
   for (std::size_t i = 0; i < slow.size(); ++i) {
@@ -349,7 +350,7 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
   // Where many points are static, some that seem to move are errors of measurement.
   std::vector<std::size_t> contradictions(newborn.size(), 0);
   visit_static_points(input, expectations, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
-    contradictions[i] += contradicts(expectations[i].W.dot(direction), input.radial[row], config_) ? 1 : 0;
+    contradictions[i] += contradicts(expectations[i], direction, input.radial[row], config_) ? 1 : 0;
   });
   for (std::size_t i = 0; i < newborn.size(); ++i) {
     Entry& entry = newborn[i];
@@ -383,21 +384,20 @@ bool ObjectTracker::are_same_object(const Entry& a, const Entry& b, const Tracki
   if (small.members.empty() || !may_be_equal(small.now, large.now)) {
     return false;
   }
-  if (large.predicted.best().has_heading() && size_with(of_large, of_small).y() > config_.track.largest_width_m) {
-    return false;
-  }
   const bool is_splinter =
       static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size());
   if (is_splinter && std::min(distance_outside(of_large, of_small.centre),
                               distance_outside(large.now.box, of_small.centre)) <= config_.growth_m) {
     return true;
   }
+  if (!large.predicted.best().has_heading() || size_with(of_large, of_small).y() > config_.track.largest_width_m) {
+    return false;
+  }
   // Sides of one body, seen apart; what is seen through a gap parts two.
   const Gap gap = gap_between(of_large, of_small);
   const double link_m =
       config_.grouping.link_distance_m + config_.grouping.link_growth * (gap.middle - sensor.translation()).norm();
-  return large.predicted.best().has_heading() &&
-         (distance_outside(large.now.box, of_small.centre) <= 0.0 || gap.width <= link_m) &&
+  return (distance_outside(large.now.box, of_small.centre) <= 0.0 || gap.width <= link_m) &&
          input.view.hides(sensor.inverse() * gap.middle, -kSeeThrough_m);
 }
 

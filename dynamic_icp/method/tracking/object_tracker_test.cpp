@@ -90,6 +90,23 @@ TEST(ObjectTracker, KeepsACarThatCrossesTheLineOfSight) {
   }
 }
 
+TEST(ObjectTracker, TwoCarsThatPassEachOtherKeepTheirIds) {
+  const Traffic traffic = [](double t) {
+    return std::vector<MovingBox>{car(15 + 10 * t, -2, 0.0, 10), car(35 - 10 * t, 2, std::numbers::pi, 10)};
+  };
+  const std::vector<Objects> scans = track(traffic, 18);
+  const std::int64_t id_away = nearest(confirmed(scans[2]), traffic(0.2)[0].box.centre).id;
+  const std::int64_t id_near = nearest(confirmed(scans[2]), traffic(0.2)[1].box.centre).id;
+  EXPECT_NE(id_away, id_near);
+  for (std::size_t k = 3; k < scans.size(); ++k) {
+    const Objects objects = confirmed(scans[k]);
+    const std::vector<MovingBox> truth = traffic(static_cast<double>(k) * kScanPeriod_s);
+    ASSERT_EQ(objects.size(), 2u) << "scan " << k;
+    EXPECT_EQ(nearest(objects, truth[0].box.centre).id, id_away) << "scan " << k;
+    EXPECT_EQ(nearest(objects, truth[1].box.centre).id, id_near) << "scan " << k;
+  }
+}
+
 TEST(ObjectTracker, CarsSideBySideAreTwo) {
   const Traffic traffic = [](double t) {
     return std::vector<MovingBox>{car(20 + 6 * t, -1.75, 0.0, 6), car(20 + 6 * t, 1.75, 0.0, 6)};

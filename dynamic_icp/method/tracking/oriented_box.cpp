@@ -80,24 +80,45 @@ std::array<Eigen::Vector3d, 8> corners(const OrientedBox& box) {
   return result;
 }
 
+/// Whether the outlines of two upright boxes have a point in common: no side of either parts them.
+bool outlines_overlap(const OrientedBox& a, const OrientedBox& b) {
+  const Eigen::Vector3d apart = b.centre - a.centre;
+  const auto half_span = [](const OrientedBox& box, const Eigen::Vector3d& axis) {
+    return 0.5 * (box.axes.leftCols<2>().transpose() * axis).cwiseAbs().dot(box.size.head<2>());
+  };
+  for (const Eigen::Vector3d axis : {a.axes.col(0), a.axes.col(1), b.axes.col(0), b.axes.col(1)}) {
+    if (std::abs(axis.dot(apart)) > half_span(a, axis) + half_span(b, axis)) {
+      return false;
+    }
+  }
+  return true;
+}
+
 }  // namespace
 
 Gap gap_between(const OrientedBox& a, const OrientedBox& b) {
-  Gap gap{std::numeric_limits<double>::infinity()};
-  const auto consider = [&](const OrientedBox& box, const Eigen::Vector3d& point) {
-    const Eigen::Vector3d q = box.axes.transpose() * (point - box.centre);
-    const Eigen::Vector3d nearest = q.cwiseMax(-0.5 * box.size).cwiseMin(0.5 * box.size);
-    if (const double width = (q - nearest).norm(); width < gap.width) {
-      gap = {width, box.centre + 0.5 * box.axes * (q + nearest)};
-    }
-  };
-  for (const auto& [box, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
-    consider(*box, other->centre);
-    for (const Eigen::Vector3d& corner : corners(*other)) {
-      consider(*box, corner);
+  const Eigen::Vector3d up = a.axes.col(2);
+  Gap outlines{std::numeric_limits<double>::infinity(), 0.5 * (a.centre + b.centre)};
+  if (outlines_overlap(a, b)) {
+    outlines.width = 0.0;
+  } else {  // then a corner of one is nearest to the other
+    for (const auto& [box, other] : {std::pair(&a, &b), std::pair(&b, &a)}) {
+      for (const Eigen::Vector3d& corner : corners(*other)) {
+        const Eigen::Vector3d q = box->axes.transpose() * (corner - box->centre);
+        const Eigen::Vector3d half = 0.5 * box->size;
+        const Eigen::Vector3d nearest(std::clamp(q.x(), -half.x(), half.x()), std::clamp(q.y(), -half.y(), half.y()),
+                                      q.z());
+        if (const double width = (q - nearest).norm(); width < outlines.width) {
+          outlines = {width, box->centre + 0.5 * box->axes * (q + nearest)};
+        }
+      }
     }
   }
-  return gap;
+  // Above each other: the middle of what both heights share, or of what parts them.
+  const double low = std::max(up.dot(a.centre) - 0.5 * a.size.z(), up.dot(b.centre) - 0.5 * b.size.z());
+  const double high = std::min(up.dot(a.centre) + 0.5 * a.size.z(), up.dot(b.centre) + 0.5 * b.size.z());
+  return {std::hypot(outlines.width, std::max(0.0, low - high)),
+          outlines.middle + (0.5 * (low + high) - up.dot(outlines.middle)) * up};
 }
 
 Eigen::Vector3d size_with(const OrientedBox& a, const OrientedBox& b) {

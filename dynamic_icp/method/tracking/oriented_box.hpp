@@ -46,7 +46,7 @@ struct Gap {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m
 };
 
-/// Where a corner or the centre of one box is nearest to the other.
+/// Of two boxes with one upward axis.
 Gap gap_between(const OrientedBox& a, const OrientedBox& b);
 
 /// Size of the smallest box along the axes of `a` that holds both.

@@ -123,8 +123,8 @@ TEST(OrientedBox, DistanceBetweenIsThatOfTheNearestPoints) {
     for (const Vector3d& point : grid_in(a, 40)) {
       least = std::min(least, distance_outside(b, point));
     }
-    const double distance = distance_between(a, b);
-    EXPECT_EQ(distance, distance_between(b, a));
+    const double distance = gap_between(a, b).width;
+    EXPECT_EQ(distance, gap_between(b, a).width);
     if (least == 0.0) {
       ++overlapping;
       continue;
@@ -140,13 +140,27 @@ TEST(OrientedBox, DistanceBetweenIsThatOfTheNearestPoints) {
 
 TEST(OrientedBox, BoxesThatReachIntoEachOtherAreNotApart) {
   const OrientedBox box = box_of_car(0.4);
-  EXPECT_EQ(distance_between(box, box), 0.0);
+  EXPECT_EQ(gap_between(box, box).width, 0.0);
   OrientedBox inside = box;
   inside.size *= 0.1;
-  EXPECT_EQ(distance_between(box, inside), 0.0);
+  EXPECT_EQ(gap_between(box, inside).width, 0.0);
   OrientedBox corner_in = box_of_car(1.2);
   corner_in.centre = box.centre + box.axes * Vector3d(3.0, 1.0, 0.5);
-  EXPECT_EQ(distance_between(box, corner_in), 0.0);
+  EXPECT_EQ(gap_between(box, corner_in).width, 0.0);
+}
+
+TEST(OrientedBox, BoxesThatCrossAreNotApart) {
+  // Neither a corner nor the centre of one is in the other.
+  const OrientedBox along{{0, 0, 1}, Matrix3d::Identity(), {10, 1, 2}};
+  const OrientedBox across{{3, 1, 1}, Matrix3d::Identity(), {1, 10, 2}};
+  EXPECT_EQ(gap_between(along, across).width, 0.0);
+}
+
+TEST(OrientedBox, DistanceBetweenDoesNotDependOnTheirHeights) {
+  // Where both are as high as the nearest edge: a low box beside the corner of a high one, its ends farther away.
+  const OrientedBox high{{0, 0, 2}, upright_axes(0.25 * std::numbers::pi), {2, 2, 4}};
+  const OrientedBox low{{std::sqrt(2.0) + 1.5, 0, 1.8}, Matrix3d::Identity(), {1, 8, 0.4}};
+  EXPECT_NEAR(gap_between(high, low).width, 1.0, 1e-9);
 }
 
 TEST(OrientedBox, SizeWithAnotherIsThatOfAllPointsOfBoth) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/tracking/range_image.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <vector>
@@ -34,7 +35,7 @@ TEST(RangeImage, NearThingsHideWhatIsBehindThem) {
   RawScan raw;
   add_wall(raw, -60.0, 60.0, 50.0);
   add_wall(raw, -10.0, 10.0, 20.0);
-  const RangeImage image(Scan::from_raw(raw), Workers(1));
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
   EXPECT_TRUE(image.hides(at(5.0, 30.0), 1.0));
   EXPECT_FALSE(image.hides(at(5.0, 20.5), 1.0)) << "within the clearance";
   EXPECT_FALSE(image.hides(at(5.0, 10.0), 1.0)) << "before it";
@@ -45,26 +46,44 @@ TEST(RangeImage, NearThingsHideWhatIsBehindThem) {
 TEST(RangeImage, BeyondTheFieldOfViewAllIsHidden) {
   RawScan raw;
   add_wall(raw, -60.0, 60.0, 50.0);
-  const RangeImage image(Scan::from_raw(raw), Workers(1));
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
   EXPECT_TRUE(image.hides(at(65.0, 10.0), 1.0));
   EXPECT_TRUE(image.hides(at(180.0, 10.0), 1.0));
-  EXPECT_TRUE(RangeImage(Scan{}, Workers(1)).hides(at(0.0, 10.0), 1.0));
+  EXPECT_TRUE(RangeImage(Scan{}, Vector3d::Zero(), Workers(1)).hides(at(0.0, 10.0), 1.0));
 }
 
 TEST(RangeImage, WithANegativeClearanceWhatIsFartherHidesToo) {
   RawScan raw;
   add_wall(raw, -60.0, 60.0, 50.0);
   add_wall(raw, -10.0, 10.0, 20.0);
-  const RangeImage image(Scan::from_raw(raw), Workers(1));
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
   EXPECT_TRUE(image.hides(at(5.0, 18.0), -3.0)) << "something is seen 2 m farther";
   EXPECT_FALSE(image.hides(at(5.0, 16.0), -3.0));
   EXPECT_FALSE(image.hides(at(15.0, 46.0), -3.0));
 }
 
+TEST(RangeImage, TheGroundBeforeAThingDoesNotHideIt) {
+  // Level ground 1.5 m below the sensor, and a wall 60 m away: nothing is between the sensor and a car.
+  RawScan raw;
+  for (double azimuth = -20.0; azimuth <= 20.0; azimuth += 0.2) {
+    for (double elevation = -15.0; elevation <= 5.0; elevation += 0.2) {
+      const double a = azimuth * std::numbers::pi / 180.0;
+      const double e = elevation * std::numbers::pi / 180.0;
+      const Vector3d u(std::cos(e) * std::cos(a), std::cos(e) * std::sin(a), std::sin(e));
+      raw.points.emplace_back(std::min(60.0, u.z() < 0.0 ? -1.5 / u.z() : 60.0) * u);
+      raw.doppler.push_back(0.0);
+    }
+  }
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+  for (const double range : {10.0, 20.0, 30.0, 40.0, 50.0}) {
+    EXPECT_FALSE(image.hides({range, 1.0, -0.7}, 1.0)) << "0.8 m above the ground, range " << range;
+  }
+}
+
 TEST(RangeImage, KnowsHowHighItSees) {
   RawScan raw;
   add_wall(raw, -60.0, 60.0, 50.0);  // up to 5 degrees, 4.4 m there
-  const RangeImage image(Scan::from_raw(raw), Workers(1));
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
   EXPECT_FALSE(image.is_above_all({50.0, 0.0, 4.0}));
   EXPECT_FALSE(image.is_above_all({20.0, 30.0, 0.0}));
   EXPECT_TRUE(image.is_above_all({50.0, 0.0, 7.0}));
@@ -79,7 +98,7 @@ TEST(RangeImage, ColumnsAroundAPlaceHoldAllPointsThere) {
     raw.doppler.push_back(0.0);
   }
   const Scan scan = Scan::from_raw(raw);
-  const RangeImage image(scan, Workers(3));
+  const RangeImage image(scan, Vector3d::Zero(), Workers(3));
   for (double azimuth = 0.0; azimuth < 360.0; azimuth += 7.0) {
     const Vector3d centre = at(azimuth, 21.0);
     const RangeImage::ColumnRange range = RangeImage::columns_around(centre, 3.0);

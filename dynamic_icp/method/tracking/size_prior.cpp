@@ -23,8 +23,9 @@ Belief at_least(const Belief& belief, double least) {
   const double sigma = std::sqrt(belief.variance);
   const double a = (least - belief.mean) / sigma;
   const double mode = std::max(belief.mean, least);
-  if (a > 5.0) {  // the tail: nothing is left of the belief but the bound
-    return {mode, 2.0 * belief.variance / (a * a)};
+  if (a > 5.0) {  // the tail: the asymptotic series of what follows
+    const double b = 1.0 / (a * a);
+    return {mode, belief.variance * b * (2.0 - b * (10.0 - 74.0 * b))};
   }
   const double density = std::exp(-0.5 * a * a) / std::sqrt(2.0 * std::numbers::pi);
   const double hazard = density / (0.5 * std::erfc(a / std::numbers::sqrt2));

@@ -79,6 +79,18 @@ TEST(SizePrior, WhatIsAtLeastSoLongIsACutOffGaussian) {
   }
 }
 
+TEST(SizePrior, FarBeyondTheBeliefOnlyTheBoundIsLeft) {
+  const Belief belief{4.5, 0.45};
+  const double sigma = std::sqrt(belief.variance);
+  for (const double sigmas : {5.5, 8.0, 20.0}) {
+    const double least = belief.mean + sigmas * sigma;
+    const Belief result = at_least(belief, least);
+    EXPECT_EQ(result.mean, least);
+    const double expected = mean_square_about_mode(belief, least);
+    EXPECT_NEAR(result.variance, expected, 0.1 * expected) << sigmas << " sigma";
+  }
+}
+
 TEST(SizePrior, FarBelowTheBeliefTheBoundSaysNothing) {
   const Belief belief{4.5, 0.45};
   const Belief result = at_least(belief, 0.5);
