@@ -16,9 +16,10 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation_report.hpp"
-#include "dynamic_icp/recording/evaluation/object_tracking.hpp"
+#include "dynamic_icp/recording/evaluation/object_tracking_report.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/runs/frame_rows.hpp"
+#include "dynamic_icp/recording/runs/object_comparison.hpp"
 
 #include "apps/commands.hpp"
 #include "apps/messages.hpp"
@@ -99,16 +100,8 @@ void write_out(const std::string& text) {
   }
 }
 
-/// Objects are in a file of this name, which may be named by its folder.
-std::filesystem::path objects_file(const std::string& input) {
-  const std::filesystem::path path = input;
-  return std::filesystem::is_directory(path) ? path / "objects.jsonl" : path;
-}
-
 int evaluate_objects(const Options& options) {
-  const evaluation::ObjectTracking tracking =
-      evaluation::compare_tracks(evaluation::read_true_bodies(objects_file(options.reference)),
-                                 evaluation::read_reported_bodies(objects_file(options.estimate)));
+  const evaluation::ObjectTracking tracking = runs::compare_run_objects(options.estimate, options.reference);
   write_out(options.json ? evaluation::tracking_json(tracking) : evaluation::tracking_table(tracking));
   return 0;
 }
@@ -167,7 +160,8 @@ void add_evaluate_command(CLI::App& app, std::function<int()>& selected) {
   add_error_options(*command, *options);
   CLI::Option* objects = command->add_flag("--objects", options->objects,
                                            "compare the moving objects instead (objects.jsonl of both): HOTA, MOTA, "
-                                           "IDF1, errors of velocity, box and heading");
+                                           "IDF1, errors of velocity, box, heading and prediction; what labels say of "
+                                           "points where there are any");
   for (const char* of_poses : {"--align", "--gap-frames", "--gap-seconds", "--gap-meters", "--max-gap"}) {
     objects->excludes(of_poses);
   }

@@ -71,28 +71,11 @@ void add_doppler_translation(Motion& motion, std::span<const Seen* const> on_the
   }
 }
 
-/// The pose at a time. Nothing where the trajectory has none within half a second before and after; at its very end the
-/// last pose continues as the last two moved.
-std::optional<Eigen::Isometry3d> pose_at(const formats::Trajectory& truth, Stamp stamp) {
-  if (truth.size() < 2) {
-    return std::nullopt;
-  }
-  auto after = std::lower_bound(truth.begin(), truth.end(), stamp,
-                                [](const formats::StampedPose& pose, Stamp s) { return pose.stamp < s; });
-  after = std::clamp(after, truth.begin() + 1, truth.end() - 1);
-  const auto before = after - 1;
-  const double span_s = seconds_between(before->stamp, after->stamp);
-  const double since_s = seconds_between(before->stamp, stamp);
-  if (!(span_s > 0.0) || span_s > kLongestTruthGap_s || since_s < 0.0 || since_s > 2.0 * span_s) {
-    return std::nullopt;
-  }
-  return formats::interpolate(*before, *after, stamp);
-}
-
 std::optional<Motion> motion_by_truth(const Stretch& stretch, const formats::Trajectory& truth) {
   // The velocities are those in the middle of the sweeps.
   const auto pose = [&](const Seen& seen) {
-    return pose_at(truth, {seen.look.stamp.ns + std::llround(1e9 * seen.look.ego.reference_time_s)});
+    return formats::pose_at(truth, {seen.look.stamp.ns + std::llround(1e9 * seen.look.ego.reference_time_s)},
+                            kLongestTruthGap_s);
   };
   const std::optional<Eigen::Isometry3d> from = pose(stretch.first);
   const std::optional<Eigen::Isometry3d> to = pose(stretch.last);

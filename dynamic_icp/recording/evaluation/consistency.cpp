@@ -37,11 +37,9 @@ struct Mean {
   }
 };
 
-/// Adds e^T C^-1 e where there is one.
 void add_nees(Mean& mean, const Eigen::Vector3d& e, const Eigen::Matrix3d& C) {
-  const Eigen::LLT<Eigen::Matrix3d> cholesky(C);
-  if (C.allFinite() && cholesky.info() == Eigen::Success) {
-    mean.add(e.dot(cholesky.solve(e)));
+  if (const auto nees = squared_mahalanobis(e, C)) {
+    mean.add(*nees);
   }
 }
 
@@ -50,6 +48,15 @@ bool is_within_sigmas(const Vector6d& e, const Matrix6d& C) {
 }
 
 }  // namespace
+
+std::optional<double> squared_mahalanobis(const Eigen::Vector3d& e, const Eigen::Matrix3d& C) {
+  const Eigen::LLT<Eigen::Matrix3d> cholesky(C);
+  if (!C.allFinite() || cholesky.info() != Eigen::Success) {
+    return std::nullopt;
+  }
+  const double value = e.dot(cholesky.solve(e));
+  return std::isfinite(value) ? std::optional(value) : std::nullopt;
+}
 
 Consistency consistency(const Association& matched, std::span<const StatedMotion> stated) {
   if (stated.size() != matched.estimate_count) {

@@ -36,6 +36,9 @@ struct Consistency {
   std::optional<double> beyond_4_sigma;
 };
 
+/// e^T C^-1 e of an error and its covariance; empty where C is not positive definite or a number is not finite.
+std::optional<double> squared_mahalanobis(const Eigen::Vector3d& e, const Eigen::Matrix3d& C);
+
 /// The consistency of what is stated for each frame of the whole estimate. Only motions between frames that follow each
 /// other count. A block that is not positive definite has no NEES, but counts among those beyond four sigma. Throws
 /// std::invalid_argument when `stated` is not as long as the whole estimate.

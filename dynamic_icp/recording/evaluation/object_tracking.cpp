@@ -6,14 +6,12 @@
 #include <cmath>
 #include <map>
 #include <numbers>
-#include <string_view>
 
-#include <Eigen/Cholesky>
 #include <fmt/format.h>
-#include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/evaluation/assignment.hpp"
+#include "dynamic_icp/recording/evaluation/consistency.hpp"
 #include "dynamic_icp/recording/evaluation/statistics.hpp"
 #include "dynamic_icp/recording/formats/json_row.hpp"
 
@@ -71,28 +69,35 @@ ComparedScan compared(const ScanBodies& truth, const ScanBodies& reported, const
   return result;
 }
 
+/// Adds the NEES of an error to others where a covariance is stated.
+void add_nees(std::vector<double>& nees, const Eigen::Vector3d& error,
+              const std::optional<Eigen::Matrix3d>& covariance) {
+  if (const auto value = covariance ? squared_mahalanobis(error, *covariance) : std::nullopt) {
+    nees.push_back(*value);
+  }
+}
+
 /// Errors of pairs.
 struct PairErrors {
-  std::vector<double> overlap, along, across, heading, center, size, nees;
+  std::vector<double> overlap, along, across, heading, center, size, nees_velocity, nees_center;
 
-  void add(const Body& truth, const Body& reported, double common) {
-    overlap.push_back(common);
+  void add(const BodyPair& pair) {
+    const Body& truth = pair.truth;
+    const Body& reported = pair.reported;
+    overlap.push_back(pair.overlap);
     const Eigen::Vector3d ahead = truth.velocity.normalized();
     const Eigen::Vector3d error = reported.velocity - truth.velocity;
     along.push_back(std::abs(error.dot(ahead)));
     across.push_back((error - error.dot(ahead) * ahead).norm());
+    add_nees(nees_velocity, error, reported.velocity_covariance);
     const Eigen::Vector3d of_truth = truth.box.T_sensor_box.linear().col(0);
     const Eigen::Vector3d of_reported = reported.box.T_sensor_box.linear().col(0);
     heading.push_back(std::atan2(of_truth.cross(of_reported).norm(), of_truth.dot(of_reported)) * 180.0 /
                       std::numbers::pi);
-    center.push_back((reported.box.T_sensor_box.translation() - truth.box.T_sensor_box.translation()).norm());
+    const Eigen::Vector3d center_error = reported.box.T_sensor_box.translation() - truth.box.T_sensor_box.translation();
+    center.push_back(center_error.norm());
+    add_nees(nees_center, center_error, reported.center_covariance);
     size.push_back((reported.box.size - truth.box.size).cwiseAbs().mean());
-    if (reported.velocity_covariance) {
-      const Eigen::LLT<Eigen::Matrix3d> covariance(*reported.velocity_covariance);
-      if (covariance.info() == Eigen::Success) {
-        nees.push_back(error.dot(covariance.solve(error)));
-      }
-    }
   }
 };
 
@@ -102,15 +107,32 @@ struct FirstMatch {
   std::optional<double> matched_s;
 };
 
-void set_means(const PairErrors& errors, ObjectTracking& result) {
-  result.pairs = errors.overlap.size();
+void set_means(ObjectTracking& result) {
+  PairErrors errors;
+  for (const BodyPair& pair : result.pairs) {
+    errors.add(pair);
+  }
   result.overlap = mean_of(errors.overlap);
   result.along_mps = mean_of(errors.along);
   result.across_mps = mean_of(errors.across);
   result.heading_deg = mean_of(errors.heading);
   result.center_m = mean_of(errors.center);
   result.size_m = mean_of(errors.size);
-  result.nees_velocity = mean_of(errors.nees);
+  result.nees_velocity = mean_of(errors.nees_velocity);
+  result.nees_center = mean_of(errors.nees_center);
+}
+
+/// `span_s`: from the first scan that was compared to the last.
+void set_rates(double span_s, ObjectTracking& result) {
+  if (result.scans > 0) {
+    result.false_per_1000_scans =
+        1000.0 * static_cast<double>(result.score.false_bodies) / static_cast<double>(result.scans);
+  }
+  if (result.scans > 1 && span_s > 0.0 && result.score.true_bodies > 0) {
+    const double period_s = span_s / static_cast<double>(result.scans - 1);
+    result.switches_per_100_s = 100.0 * static_cast<double>(result.score.id_switches) /
+                                (period_s * static_cast<double>(result.score.true_bodies));
+  }
 }
 
 void set_latency(const std::map<std::int64_t, FirstMatch>& first_matches, ObjectTracking& result) {
@@ -148,8 +170,9 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
   }
   ObjectTracking result;
   std::vector<ScoredScan> scans;
-  PairErrors errors;
   std::map<std::int64_t, FirstMatch> first_matches;
+  double first_s = 0.0;
+  double last_s = 0.0;
   for (std::size_t k = matching.warm_up_scans; k < reported.size(); ++k) {
     const auto found = truth_of.find(reported[k].index);
     if (found == truth_of.end()) {
@@ -161,19 +184,83 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
       FirstMatch& match = first_matches.try_emplace(scan.truth[i]->id, FirstMatch{time_s, {}}).first->second;
       if (scan.partner[i]) {
         const double common = scan.overlap(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(*scan.partner[i]));
-        errors.add(*scan.truth[i], *scan.reported[*scan.partner[i]], common);
+        result.pairs.push_back({found->first, time_s, *scan.truth[i], *scan.reported[*scan.partner[i]], common});
         if (common >= kMinOverlap && !match.matched_s) {
           match.matched_s = time_s;
         }
       }
     }
     scans.push_back(scored(scan));
+    first_s = result.scans == 0 ? time_s : first_s;
+    last_s = time_s;
     ++result.scans;
   }
   result.score = score_tracking(scans, kMinOverlap);
-  set_means(errors, result);
+  set_means(result);
+  set_rates(last_s - first_s, result);
   set_latency(first_matches, result);
   return result;
+}
+
+namespace {
+
+constexpr double kNearestScan_s = 0.075;
+
+/// The scan of these, in the order of time, that is nearest; null where none is near.
+const ScanBodies* scan_near(const std::vector<ScanBodies>& scans, double time_s) {
+  const auto later = std::lower_bound(scans.begin(), scans.end(), time_s,
+                                      [](const ScanBodies& scan, double time) { return scan.time_s < time; });
+  const ScanBodies* nearest = nullptr;
+  const auto consider = [&](const ScanBodies& scan) {
+    const double apart_s = std::abs(scan.time_s - time_s);
+    if (apart_s <= (nearest == nullptr ? kNearestScan_s : std::abs(nearest->time_s - time_s))) {
+      nearest = &scan;
+    }
+  };
+  if (later != scans.end()) {
+    consider(*later);
+  }
+  if (later != scans.begin()) {
+    consider(*(later - 1));
+  }
+  return nearest;
+}
+
+/// Where the centre of a true body is at a time, seen from where the sensor is in scan `from`.
+std::optional<Eigen::Vector3d> true_center(std::int64_t id, double time_s, std::int64_t from,
+                                           const std::vector<ScanBodies>& truth, const ScanPoses& T_world_sensor) {
+  const ScanBodies* scan = scan_near(truth, time_s);
+  if (scan == nullptr) {
+    return std::nullopt;
+  }
+  const auto body = std::ranges::find(scan->bodies, id, &Body::id);
+  const auto here = T_world_sensor.find(from);
+  const auto there = T_world_sensor.find(scan->index);
+  if (body == scan->bodies.end() || here == T_world_sensor.end() || there == T_world_sensor.end()) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d center = body->box.T_sensor_box.translation() + (time_s - scan->time_s) * body->velocity;
+  return here->second.inverse() * (there->second * center);
+}
+
+}  // namespace
+
+PredictionError compare_predictions(const std::vector<BodyPair>& pairs, const std::vector<ScanBodies>& truth,
+                                    const ScanPoses& T_world_sensor) {
+  std::vector<double> distance;
+  std::vector<double> nees;
+  for (const BodyPair& pair : pairs) {
+    if (const std::optional<PredictedCenter>& predicted = pair.reported.prediction) {
+      const auto center =
+          true_center(pair.truth.id, pair.time_s + predicted->after_s, pair.scan, truth, T_world_sensor);
+      if (center) {
+        const Eigen::Vector3d error = predicted->center - *center;
+        distance.push_back(error.norm());
+        add_nees(nees, error, predicted->covariance);
+      }
+    }
+  }
+  return {distance.size(), mean_of(distance), mean_of(nees)};
 }
 
 namespace {
@@ -203,6 +290,14 @@ std::vector<ScanBodies> read_bodies(const std::filesystem::path& path, const Rea
   return scans;
 }
 
+double finite_number(const formats::JsonRow& row, const char* key) {
+  const double number = row.number(key);
+  if (!std::isfinite(number)) {
+    row.fail(key, "a finite number");
+  }
+  return number;
+}
+
 Eigen::Matrix3d matrix_of(const formats::JsonRow& row, const char* key) {
   Eigen::Matrix3d matrix;
   const formats::JsonRow::Json& rows = row.list(key);
@@ -217,14 +312,41 @@ Eigen::Matrix3d matrix_of(const formats::JsonRow& row, const char* key) {
   return matrix;
 }
 
+/// Empty where it is missing or null.
+std::optional<Eigen::Matrix3d> matrix_if_any(const formats::JsonRow& row, const char* key) {
+  return row.has(key) && !row.get(key).is_null() ? std::optional(matrix_of(row, key)) : std::nullopt;
+}
+
+Body true_body(const formats::JsonRow& row) {
+  Body body;
+  body.id = row.integer("id");
+  body.box = box_of(row, "center_sensor", "orientation_sensor_xyzw");
+  body.velocity = row.finite_vector("velocity_sensor");
+  body.points = static_cast<std::size_t>(row.integer("points"));
+  body.yaw_rate_rps = row.has("yaw_rate") ? finite_number(row, "yaw_rate") : 0.0;
+  return body;
+}
+
+Body reported_body(const formats::JsonRow& row) {
+  const formats::JsonRow box = row.object("box");
+  Body body;
+  body.id = row.integer("id");
+  body.box = box_of(box, "center", "orientation_xyzw");
+  body.velocity = row.finite_vector("velocity");
+  body.velocity_covariance = matrix_if_any(row, "velocity_covariance");
+  body.points = static_cast<std::size_t>(row.integer("points"));
+  body.center_covariance = matrix_if_any(box, "center_covariance");
+  if (row.has("prediction") && !row.get("prediction").is_null()) {
+    const formats::JsonRow prediction = row.object("prediction");
+    body.prediction = {finite_number(prediction, "after_s"), prediction.finite_vector("center"),
+                       matrix_if_any(prediction, "center_covariance")};
+  }
+  return body;
+}
+
 }  // namespace
 
-std::vector<ScanBodies> read_true_bodies(const std::filesystem::path& path) {
-  return read_bodies(path, [](const formats::JsonRow& row) {
-    return Body{row.integer("id"), box_of(row, "center_sensor", "orientation_sensor_xyzw"),
-                row.finite_vector("velocity_sensor"), std::nullopt, static_cast<std::size_t>(row.integer("points"))};
-  });
-}
+std::vector<ScanBodies> read_true_bodies(const std::filesystem::path& path) { return read_bodies(path, true_body); }
 
 std::vector<ScanBodies> read_reported_bodies(const std::filesystem::path& path) {
   return read_bodies(path, [&](const formats::JsonRow& row) {
@@ -232,68 +354,8 @@ std::vector<ScanBodies> read_reported_bodies(const std::filesystem::path& path) 
       throw DataError(
           fmt::format("{}: objects without boxes; expected those of a run with preset 'default'", path.string()));
     }
-    Body body{row.integer("id"), box_of(row.object("box"), "center", "orientation_xyzw"), row.finite_vector("velocity"),
-              std::nullopt, static_cast<std::size_t>(row.integer("points"))};
-    if (row.has("velocity_covariance") && !row.get("velocity_covariance").is_null()) {
-      body.velocity_covariance = matrix_of(row, "velocity_covariance");
-    }
-    return body;
+    return reported_body(row);
   });
-}
-
-std::string tracking_table(const ObjectTracking& tracking) {
-  const TrackingScore& score = tracking.score;
-  std::string text = fmt::format("objects    {} in {} scans, {} found, {} false, {} id switches\n\n", score.true_bodies,
-                                 tracking.scans, score.found, score.false_bodies, score.id_switches);
-  const auto add = [&](std::string_view name, std::optional<double> value, std::string_view unit) {
-    text += fmt::format("{:<42}{:>10}{}{}\n", name, value ? fmt::format("{:.3f}", *value) : "-",
-                        unit.empty() ? "" : " ", unit);
-  };
-  add("HOTA", score.hota, "");
-  add("  detection, DetA", score.detection, "");
-  add("  association, AssA", score.association, "");
-  add("  localisation, LocA", score.localisation, "");
-  add(fmt::format("MOTA, pairs by an overlap of {}", kMinOverlap), score.mota, "");
-  add("IDF1", score.idf1, "");
-  add("intersection over union", tracking.overlap, "");
-  add("velocity, along the motion", tracking.along_mps, "m/s");
-  add("velocity, across it", tracking.across_mps, "m/s");
-  add("heading", tracking.heading_deg, "deg");
-  add("centre", tracking.center_m, "m");
-  add("size, an edge", tracking.size_m, "m");
-  add("NEES of the velocity (3 is right)", tracking.nees_velocity, "");
-  add("latency, median over bodies", tracking.latency_s, "s");
-  add("latency, the longest", tracking.longest_latency_s, "s");
-  return text + "\nErrors are means of absolute values over pairs.\n";
-}
-
-std::string tracking_json(const ObjectTracking& tracking) {
-  using Json = nlohmann::ordered_json;
-  const auto number = [](std::optional<double> value) { return value ? Json(*value) : Json(nullptr); };
-  const TrackingScore& score = tracking.score;
-  const Json json = {{"scans", tracking.scans},
-                     {"true_objects", score.true_bodies},
-                     {"found", score.found},
-                     {"false_objects", score.false_bodies},
-                     {"id_switches", score.id_switches},
-                     {"hota", number(score.hota)},
-                     {"det_a", number(score.detection)},
-                     {"ass_a", number(score.association)},
-                     {"loc_a", number(score.localisation)},
-                     {"min_overlap", kMinOverlap},
-                     {"mota", number(score.mota)},
-                     {"idf1", number(score.idf1)},
-                     {"pairs", tracking.pairs},
-                     {"overlap_mean", number(tracking.overlap)},
-                     {"along_mae_mps", number(tracking.along_mps)},
-                     {"across_mae_mps", number(tracking.across_mps)},
-                     {"heading_mae_deg", number(tracking.heading_deg)},
-                     {"center_mae_m", number(tracking.center_m)},
-                     {"size_mae_m", number(tracking.size_m)},
-                     {"nees_velocity", number(tracking.nees_velocity)},
-                     {"latency_median_s", number(tracking.latency_s)},
-                     {"latency_max_s", number(tracking.longest_latency_s)}};
-  return json.dump(2) + "\n";
 }
 
 }  // namespace dynamic_icp::evaluation

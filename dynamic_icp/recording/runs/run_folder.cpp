@@ -91,29 +91,37 @@ RunFiles read_run(const fs::path& folder) {
   return run;
 }
 
-fs::path labels_file(const fs::path& run_folder, std::size_t index) {
-  return run_folder / "labels" / fmt::format("{:05}.bin", index + 1);
+fs::path labels_file(const fs::path& folder, std::size_t index) {
+  return folder / "labels" / fmt::format("{:05}.bin", index + 1);
 }
 
 bool lacks_labels(const RunFiles& run, std::size_t frame) {
   return fs::exists(run.folder / "labels") && !fs::exists(labels_file(run.folder, run.frames[frame].index));
 }
 
-std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::size_t frame, std::size_t points) {
-  const fs::path path = labels_file(run.folder, run.frames[frame].index);
+std::optional<std::vector<std::int32_t>> read_labels(const fs::path& folder, std::size_t index,
+                                                     std::optional<std::size_t> points) {
+  const fs::path path = labels_file(folder, index);
   if (!fs::exists(path)) {
     return std::nullopt;
   }
   const std::string bytes = formats::read_whole_file(path);
-  if (bytes.size() != 4 * points) {
-    throw DataError(fmt::format("{}: {} bytes, expected {}: int32 for each of the {} points of the scan", path.string(),
-                                bytes.size(), 4 * points, points));
+  if (bytes.size() % 4 != 0) {
+    throw DataError(fmt::format("{}: {} bytes, expected int32 numbers", path.string(), bytes.size()));
   }
-  std::vector<std::int32_t> labels(points);
-  for (std::size_t k = 0; k < points; ++k) {
+  std::vector<std::int32_t> labels(bytes.size() / 4);
+  if (points && labels.size() != *points) {
+    throw DataError(fmt::format("{}: {} bytes, expected {}: int32 for each of the {} points of the scan", path.string(),
+                                bytes.size(), 4 * *points, *points));
+  }
+  for (std::size_t k = 0; k < labels.size(); ++k) {
     labels[k] = formats::value_at<std::int32_t>(bytes, 4 * k);
   }
   return labels;
+}
+
+std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::size_t frame, std::size_t points) {
+  return read_labels(run.folder, run.frames[frame].index, points);
 }
 
 formats::ResultKind run_result() { return {"run.json", run_files}; }

@@ -46,8 +46,13 @@ bool lacks_labels(const RunFiles& run, std::size_t frame);
 /// id of its object. Empty optional when there is no such file; DataError when its length is not `points`.
 std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::size_t frame, std::size_t points);
 
-/// Where a run keeps the labels of scan `index` of the recording.
-std::filesystem::path labels_file(const std::filesystem::path& run_folder, std::size_t index);
+/// The same of scan `index` of the recording, in the folder of a run or of a simulated recording, where > 0 is the id
+/// of a moving body. DataError when the file holds no whole numbers, or other than `points` where this is given.
+std::optional<std::vector<std::int32_t>> read_labels(const std::filesystem::path& folder, std::size_t index,
+                                                     std::optional<std::size_t> points = {});
+
+/// Where a run, or a simulated recording, keeps the labels of scan `index` of the recording.
+std::filesystem::path labels_file(const std::filesystem::path& folder, std::size_t index);
 
 /// The files that the folder of a run may hold, its pictures and its report among them.
 formats::ResultKind run_result();
