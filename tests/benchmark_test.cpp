@@ -76,7 +76,7 @@ TEST_F(Benchmark, MakesTheTablesOfAllMethodsAndAblations) {
     EXPECT_EQ(json::parse(read_file(run / "run.json"))["ablation"], cell["ablation"]);
   }
   std::string all;
-  for (const char* name : {"accuracy", "consistency", "runtime", "ablation", "dynamics", "objects"}) {
+  for (const char* name : {"accuracy", "consistency", "runtime", "ablation", "dynamics", "objects", "tracks"}) {
     all += (all.empty() ? "" : "\n") + read_file(out() / "tables" / (std::string(name) + ".md"));
     EXPECT_GT(read_file(out() / "tables" / (std::string(name) + ".csv")).size(), 20u) << name;
     EXPECT_NE(read_file(out() / "tables" / (std::string(name) + ".tex")).find("\\toprule"), std::string::npos) << name;

@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <csignal>
 #include <iterator>
+#include <string>
+
+#include <fmt/format.h>
 
 #include "dynamic_icp/tools/benchmark/cell_run.hpp"
 
@@ -32,9 +35,14 @@ case $method in
   talks) echo "to standard output";;
 esac
 mkdir -p "$2"
+box='"box":{"center":[20,0,0],"size":[4,2,2],"orientation_xyzw":[0,0,0,1]},'
+if [ $method = velocities ]; then box=; fi
 echo '{"frames": 7, "rte_rmse_m": 0.5, "fps": null}' > "$2/summary.json"
 echo '{"assumptions": ["assumed"], "warnings": ["warned", "warned"]}' > "$2/run.json"
-echo '{"index": 0, "objects": []}' > "$2/objects.jsonl"
+for k in 0 1 2 3 4 5 6; do
+  echo '{"index":'$k',"timestamp":0.'$k',"objects":[{"id":1,"velocity":[11,0,0],"centroid":[20,0,0],'"$box" \
+       '"extent":[4,2,2],"points":60}]}'
+done > "$2/objects.jsonl"
 )");
     fs::permissions(program(), fs::perms::owner_all);
   }
@@ -155,6 +163,30 @@ TEST_F(CellQueueTest, BadTruthFailsTheCellAndNamesTheFile) {
   const CellResult result = run({planned})[0];
   EXPECT_FALSE(result.finished);
   EXPECT_NE(result.failure.find(planned.object_truth.string() + ", line 1"), std::string::npos) << result.failure;
+}
+
+TEST_F(CellQueueTest, ObjectsAreScoredAsTracksWhereTheyHaveBoxes) {
+  std::string truth;
+  for (int k = 0; k < 7; ++k) {
+    truth +=
+        fmt::format(R"({{"index":{},"timestamp":0.{},"objects":[{{"id":9,"velocity_sensor":[10,0,0],)"
+                    R"("center_sensor":[20,0,0],"size":[4,2,2],"orientation_sensor_xyzw":[0,0,0,1],"points":60}}]}})"
+                    "\n",
+                    k, k);
+  }
+  write_file(folder_ / "objects.jsonl", truth);
+  CellPlan boxes = plan("works");
+  CellPlan velocities = plan("velocities");
+  boxes.object_truth = velocities.object_truth = folder_ / "objects.jsonl";
+  const auto results = run({boxes, velocities});
+  ASSERT_TRUE(results[0].finished) << results[0].failure;
+  ASSERT_TRUE(results[1].finished) << results[1].failure;
+  EXPECT_NEAR(*results[0].tracks.hota, 1.0, 1e-9);
+  EXPECT_NEAR(*results[0].tracks.along_mps, 1.0, 1e-9);
+  EXPECT_EQ(results[0].tracks.false_per_1000_scans, 0.0);
+  EXPECT_EQ(results[1].objects.estimated_share, 1.0);
+  EXPECT_FALSE(results[1].tracks.hota);
+  EXPECT_FALSE(results[1].tracks.false_per_1000_scans);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/benchmark/cell_run.hpp"
 
+#include <algorithm>
 #include <cstring>
 
 #include <fmt/format.h>
@@ -9,6 +10,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/evaluation/object_error.hpp"
+#include "dynamic_icp/recording/evaluation/object_tracking.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/json_row.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
@@ -46,9 +48,9 @@ void read_notes(const fs::path& path, CellResult& result) {
   result.warnings = record.warnings.size();
 }
 
-std::vector<evaluation::ReportedObjects> reported_objects(const fs::path& path) {
+std::vector<evaluation::ReportedObjects> reported_objects(const std::vector<runs::ObjectsRow>& rows) {
   std::vector<evaluation::ReportedObjects> scans;
-  for (const runs::ObjectsRow& row : runs::read_objects(path)) {
+  for (const runs::ObjectsRow& row : rows) {
     evaluation::ReportedObjects& scan = scans.emplace_back();
     scan.index = static_cast<std::int64_t>(row.index);
     for (const runs::ObjectRow& object : row.objects) {
@@ -58,11 +60,49 @@ std::vector<evaluation::ReportedObjects> reported_objects(const fs::path& path) 
   return scans;
 }
 
-ObjectScores score_objects(const fs::path& truth, const fs::path& reported) {
+ObjectScores score_objects(const fs::path& truth, const std::vector<runs::ObjectsRow>& rows) {
   const evaluation::ObjectError error =
-      evaluation::compare_objects(evaluation::read_true_objects(truth), reported_objects(reported));
+      evaluation::compare_objects(evaluation::read_true_objects(truth), reported_objects(rows));
   return {error.along_mae_mps, error.lateral_mae_mps, error.median_relative_error, error.estimated_share,
           error.false_per_scan};
+}
+
+/// Whether there are objects, all of them with boxes.
+bool have_boxes(const std::vector<runs::ObjectsRow>& rows) {
+  const auto all_have = [](const runs::ObjectsRow& row) {
+    return std::ranges::all_of(row.objects, [](const runs::ObjectRow& object) { return object.box.has_value(); });
+  };
+  return std::ranges::any_of(rows, [](const runs::ObjectsRow& row) { return !row.objects.empty(); }) &&
+         std::ranges::all_of(rows, all_have);
+}
+
+TrackScores score_tracks(const fs::path& truth, const fs::path& reported) {
+  const evaluation::ObjectTracking tracking =
+      evaluation::compare_tracks(evaluation::read_true_bodies(truth), evaluation::read_reported_bodies(reported));
+  TrackScores scores;
+  scores.hota = tracking.score.hota;
+  scores.mota = tracking.score.mota;
+  scores.idf1 = tracking.score.idf1;
+  scores.switches_per_100_s = tracking.switches_per_100_s;
+  scores.false_per_1000_scans = tracking.false_per_1000_scans;
+  scores.along_mps = tracking.along_mps;
+  scores.across_mps = tracking.across_mps;
+  scores.heading_deg = tracking.heading_deg;
+  scores.center_m = tracking.center_m;
+  scores.size_m = tracking.size_m;
+  scores.overlap = tracking.overlap;
+  scores.nees_velocity = tracking.nees_velocity;
+  scores.nees_center = tracking.nees_center;
+  scores.latency_s = tracking.latency_s;
+  return scores;
+}
+
+void read_objects(const fs::path& truth, const fs::path& reported, CellResult& result) {
+  const std::vector<runs::ObjectsRow> rows = runs::read_objects(reported);
+  result.objects = score_objects(truth, rows);
+  if (have_boxes(rows)) {
+    result.tracks = score_tracks(truth, reported);
+  }
 }
 
 /// The last things the run said, without the program's name.
@@ -140,7 +180,7 @@ CellResult finish_cell(const fs::path& benchmark_folder, const CellPlan& plan, c
       read_summary(folder / "run" / "summary.json", result);
       read_notes(folder / "run" / "run.json", result);
       if (!plan.object_truth.empty()) {
-        result.objects = score_objects(plan.object_truth, folder / "run" / "objects.jsonl");
+        read_objects(plan.object_truth, folder / "run" / "objects.jsonl", result);
       }
       result.finished = true;
     } catch (const DataError& error) {

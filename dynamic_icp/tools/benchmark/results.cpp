@@ -21,9 +21,11 @@ Json cell_json(const CellResult& result) {
                {"folder", result.folder.string()},
                {"jobs", result.jobs},
                {"frames", result.frames}};
-  for_each_number(result, [&](const char* key, const std::optional<double>& value) {
+  const auto write = [&](const char* key, const std::optional<double>& value) {
     json[key] = value ? Json(*value) : Json(nullptr);
-  });
+  };
+  for_each_number(result, write);
+  for_each_track_number(result, write);
   json["notes"] = result.notes;
   json["warnings"] = result.warnings;
   return json;
@@ -38,9 +40,15 @@ CellResult cell_result(const Json& json) {
   result.folder = json.at("folder").get<std::string>();
   result.jobs = json.at("jobs").get<int>();
   result.frames = json.at("frames").get<std::size_t>();
-  for_each_number(result, [&](const char* key, std::optional<double>& value) {
+  const auto read = [&](const char* key, std::optional<double>& value) {
     const Json& number = json.at(key);
     value = number.is_null() ? std::nullopt : std::optional(number.get<double>());
+  };
+  for_each_number(result, read);
+  for_each_track_number(result, [&](const char* key, std::optional<double>& value) {
+    if (json.contains(key)) {
+      read(key, value);
+    }
   });
   result.warnings = json.at("warnings").get<std::size_t>();
   result.notes = json.at("notes").get<std::vector<std::string>>();

@@ -28,6 +28,24 @@ struct ObjectScores {
   std::optional<double> false_per_scan;   ///< reported objects where there is none
 };
 
+/// Moving objects as tracks against the truth (evaluation/object_tracking.hpp); of methods that report boxes.
+struct TrackScores {
+  std::optional<double> hota;
+  std::optional<double> mota;
+  std::optional<double> idf1;
+  std::optional<double> switches_per_100_s;
+  std::optional<double> false_per_1000_scans;
+  std::optional<double> along_mps;  ///< this and the next six: means over pairs
+  std::optional<double> across_mps;
+  std::optional<double> heading_deg;
+  std::optional<double> center_m;
+  std::optional<double> size_m;
+  std::optional<double> overlap;
+  std::optional<double> nees_velocity;
+  std::optional<double> nees_center;
+  std::optional<double> latency_s;  ///< median over bodies
+};
+
 /// The saved result of one cell. Numbers that do not exist (no ground truth, no objects) are absent.
 struct CellResult {
   CellKey key;
@@ -56,6 +74,7 @@ struct CellResult {
   std::optional<double> clustered_ratio_mean;
   std::optional<double> refined_ratio_mean;
   ObjectScores objects;
+  TrackScores tracks;
   std::vector<std::string> notes;  ///< what the run had to assume
   std::size_t warnings = 0;        ///< of the run; they are in its run.json
   int jobs = 1;                    ///< runs at the same time when this one was measured
@@ -88,6 +107,25 @@ void for_each_number(Result& result, const Visit& visit) {
   visit("objects_median_relative_error", result.objects.median_relative_error);
   visit("objects_estimated_share", result.objects.estimated_share);
   visit("objects_false_per_scan", result.objects.false_per_scan);
+}
+
+/// The same for the numbers of tracks, which results of older versions do not have.
+template <class Result, class Visit>
+void for_each_track_number(Result& result, const Visit& visit) {
+  visit("tracks_hota", result.tracks.hota);
+  visit("tracks_mota", result.tracks.mota);
+  visit("tracks_idf1", result.tracks.idf1);
+  visit("tracks_id_switches_per_100_s", result.tracks.switches_per_100_s);
+  visit("tracks_false_per_1000_scans", result.tracks.false_per_1000_scans);
+  visit("tracks_along_mae_mps", result.tracks.along_mps);
+  visit("tracks_across_mae_mps", result.tracks.across_mps);
+  visit("tracks_heading_mae_deg", result.tracks.heading_deg);
+  visit("tracks_center_mae_m", result.tracks.center_m);
+  visit("tracks_size_mae_m", result.tracks.size_m);
+  visit("tracks_overlap_mean", result.tracks.overlap);
+  visit("tracks_nees_velocity", result.tracks.nees_velocity);
+  visit("tracks_nees_center", result.tracks.nees_center);
+  visit("tracks_latency_median_s", result.tracks.latency_s);
 }
 
 /// Where and with what the cells were run.

@@ -35,6 +35,7 @@ CellResult full_cell() {
   cell.clustered_ratio_mean = 0.6;
   cell.refined_ratio_mean = 0.7;
   cell.objects = {1.0, 2.0, 0.03, 0.9, 0.25};
+  cell.tracks = {0.7, 0.65, 0.8, 1.25, 33.0, 0.41, 0.72, 2.26, 0.31, 0.24, 0.63, 3.14, 2.96, 0.15};
   cell.notes = {"a scan period of 0.1 s is assumed", "\"quoted\""};
   cell.warnings = 4;
   cell.jobs = 3;
@@ -70,6 +71,20 @@ void expect_equal(const CellResult& a, const CellResult& b) {
   EXPECT_EQ(a.objects.median_relative_error, b.objects.median_relative_error);
   EXPECT_EQ(a.objects.estimated_share, b.objects.estimated_share);
   EXPECT_EQ(a.objects.false_per_scan, b.objects.false_per_scan);
+  EXPECT_EQ(a.tracks.hota, b.tracks.hota);
+  EXPECT_EQ(a.tracks.mota, b.tracks.mota);
+  EXPECT_EQ(a.tracks.idf1, b.tracks.idf1);
+  EXPECT_EQ(a.tracks.switches_per_100_s, b.tracks.switches_per_100_s);
+  EXPECT_EQ(a.tracks.false_per_1000_scans, b.tracks.false_per_1000_scans);
+  EXPECT_EQ(a.tracks.along_mps, b.tracks.along_mps);
+  EXPECT_EQ(a.tracks.across_mps, b.tracks.across_mps);
+  EXPECT_EQ(a.tracks.heading_deg, b.tracks.heading_deg);
+  EXPECT_EQ(a.tracks.center_m, b.tracks.center_m);
+  EXPECT_EQ(a.tracks.size_m, b.tracks.size_m);
+  EXPECT_EQ(a.tracks.overlap, b.tracks.overlap);
+  EXPECT_EQ(a.tracks.nees_velocity, b.tracks.nees_velocity);
+  EXPECT_EQ(a.tracks.nees_center, b.tracks.nees_center);
+  EXPECT_EQ(a.tracks.latency_s, b.tracks.latency_s);
   EXPECT_EQ(a.notes, b.notes);
   EXPECT_EQ(a.warnings, b.warnings);
   EXPECT_EQ(a.jobs, b.jobs);
@@ -103,6 +118,16 @@ TEST(Results, NamesThatAreNotUtf8DoNotStopTheWriting) {
   BenchmarkResults results;
   results.info.sequences = {{"a\xff", "/d/a\xff"}};
   EXPECT_NO_THROW(results_from_json(to_json(results), "results.json"));
+}
+
+TEST(Results, OfOlderVersionsHaveNoTracks) {
+  std::string older = to_json(full_cell());
+  for (std::size_t at = 0; (at = older.find("\"tracks_")) != std::string::npos;) {
+    older.erase(at, older.find(',', at) + 1 - at);
+  }
+  CellResult expected = full_cell();
+  expected.tracks = {};
+  expect_equal(cell_from_json(older, "cell.json"), expected);
 }
 
 TEST(Results, RefusalsNameTheFileAndWhatIsMissing) {

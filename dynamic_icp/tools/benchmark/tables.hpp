@@ -27,6 +27,8 @@ Table ablation_table(const BenchmarkResults& results);
 Table dynamics_table(const BenchmarkResults& results);
 /// (6) Object velocities of dynamic-icp against the truth per sequence, where there is truth.
 Table objects_table(const BenchmarkResults& results);
+/// (7) Its moving objects as tracks per sequence, where there is truth and boxes were reported.
+Table tracks_table(const BenchmarkResults& results);
 
 /// The names of all tables.
 std::vector<std::string> table_names();

@@ -58,7 +58,8 @@ TEST(Tables, AllNamesAreKnown) {
   const BenchmarkResults none;
   EXPECT_EQ(table_names(),
             (std::vector<std::string>{accuracy_table(none).name, consistency_table(none).name, runtime_table(none).name,
-                                      ablation_table(none).name, dynamics_table(none).name, objects_table(none).name}));
+                                      ablation_table(none).name, dynamics_table(none).name, objects_table(none).name,
+                                      tracks_table(none).name}));
 }
 
 TEST(Tables, AccuracyHasThePapersNamesAndOrder) {
@@ -176,13 +177,29 @@ TEST(Tables, DynamicsAndObjectsAreThoseOfOurs) {
   EXPECT_EQ(row(objects, 0), "a | 0.53 | 1.08 | 2.87% | 90.0% | 0.25");
 }
 
+TEST(Tables, TracksAreThoseOfRunsWithBoxes) {
+  CellResult ours = cell("a", "dynamic-icp", 0.1);
+  ours.tracks = {0.712, 0.655, 0.801, 1.25, 33.34, 0.41, 0.72, 2.26, 0.31, 0.24, 0.63, 3.14, 2.94, 0.1};
+  CellResult older = cell("b", "dynamic-icp", 0.1);
+  older.objects.estimated_share = 0.5;
+  const BenchmarkResults results = with({"a", "b", "c"}, {ours, older, failed_cell("c", "dynamic-icp")});
+  const Table table = tracks_table(results);
+  ASSERT_EQ(table.rows.size(), 2u) << "of the second nothing is known";
+  EXPECT_EQ(row(table, 0),
+            "a | 71.2% | 65.5% | 80.1% | 1.25 | 33.3 | 0.41 | 0.72 | 2.3 | 0.31 | 0.24 | 0.63 | 3.1 | 2.9 | 0.10");
+  EXPECT_EQ(row(table, 1).substr(0, 19), "c | failed | failed");
+  EXPECT_NE(table.caption.find("AevaScenes: another data set"), std::string::npos);
+  EXPECT_TRUE(tracks_table(with({"b"}, {older})).rows.empty());
+}
+
 TEST(Tables, EveryCaptionSaysWithWhatWhereAndOnWhat) {
   CellResult ours = cell("a", "dynamic-icp", 0.1);
   ours.objects.estimated_share = 0.0;
+  ours.tracks.false_per_1000_scans = 0.0;
   ours.jobs = 3;
   ours.notes = {"the sensor sees"};
   const auto tables = all_tables(with({"a"}, {ours, cell("a", "dynamic-icp", 0.1, "no-vf")}));
-  EXPECT_EQ(tables.size(), 5u);
+  EXPECT_EQ(tables.size(), 6u);
   for (const Table& table : tables) {
     for (const char* words :
          {"9.8.7", "preset paper with a.b=3", "a good machine", "threads of a run: 4", "runs at the same time: 3",
