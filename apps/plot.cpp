@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include <cstdint>
 #include <filesystem>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <CLI/CLI.hpp>
@@ -13,6 +15,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/tools/figures/object_figure.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
 #include "dynamic_icp/tools/figures/run_figures.hpp"
 #include "dynamic_icp/tools/figures/step_figure.hpp"
@@ -35,6 +38,7 @@ struct PlotOptions {
   std::string output;
   std::optional<std::int64_t> frame;
   std::optional<std::int64_t> pair;
+  std::int64_t worst_objects = 0;
   std::string theme = "light";
   std::string format = "svg";
   double scale = 2.0;
@@ -70,6 +74,9 @@ Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme
   if (options.frame && *options.frame < 0) {
     throw UsageError(fmt::format("--frame is {}, expected 0 or more", *options.frame));
   }
+  if (options.worst_objects < 0) {
+    throw UsageError(fmt::format("--worst-objects is {}, expected 0 or more", options.worst_objects));
+  }
   const runs::RunFiles run = runs::read_run(options.folders.front());
   const std::optional<std::size_t> frame =
       options.frame ? std::optional(static_cast<std::size_t>(*options.frame)) : std::nullopt;
@@ -77,6 +84,10 @@ Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme
   Pictures pictures{figures::draw_figures(run, context, theme), context.notes};
   if (options.pair) {
     pictures.figures.push_back({"steps", steps_of_pair(run, *options.pair, theme)});
+  }
+  if (options.worst_objects > 0) {
+    auto worst = figures::draw_worst_objects(run, static_cast<std::size_t>(options.worst_objects), theme);
+    std::move(worst.begin(), worst.end(), std::back_inserter(pictures.figures));
   }
   return pictures;
 }
@@ -96,8 +107,8 @@ void check_comparable(const std::vector<runs::RunFiles>& runs) {
 }
 
 Pictures pictures_of_runs(const PlotOptions& options, const drawing::Theme& theme) {
-  if (options.frame || options.pair) {
-    throw UsageError("--frame and --pair are for the pictures of one run");
+  if (options.frame || options.pair || options.worst_objects != 0) {
+    throw UsageError("--frame, --pair and --worst-objects are for the pictures of one run");
   }
   std::vector<runs::RunFiles> runs;
   for (const std::string& folder : options.folders) {
@@ -167,6 +178,9 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
   add_option(*command, "--pair", options->pair, "N",
              "Also draw the steps from this scan to its alignment with the next one, as --frame counts them: "
              "steps.svg (runs with --save-labels show the points as the method sorted them)");
+  add_option(*command, "--worst-objects", options->worst_objects, "N",
+             "Also draw so many moving objects of a simulated recording, those whose boxes overlap least with the true "
+             "ones, each of another body: worst_object_1.svg, ... (default 0)");
   add_option(*command, "--theme", options->theme, "NAME", "Background of the pictures: light or dark (default light)");
   add_option(*command, "--format", options->format, "NAME", "Files to write: svg, png or both (default svg)")
       ->check(CLI::IsMember({"svg", "png", "both"}).description(""));

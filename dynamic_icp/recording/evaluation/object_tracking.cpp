@@ -6,6 +6,7 @@
 #include <cmath>
 #include <map>
 #include <numbers>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -200,6 +201,19 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
   set_rates(last_s - first_s, result);
   set_latency(first_matches, result);
   return result;
+}
+
+std::vector<BodyPair> worst_pairs(std::vector<BodyPair> pairs, std::size_t count) {
+  std::ranges::stable_sort(pairs, {}, &BodyPair::overlap);
+  std::vector<BodyPair> worst;
+  for (BodyPair& pair : pairs) {
+    const bool is_known =
+        std::ranges::any_of(worst, [&](const BodyPair& other) { return other.truth.id == pair.truth.id; });
+    if (worst.size() < count && !is_known) {
+      worst.push_back(std::move(pair));
+    }
+  }
+  return worst;
 }
 
 namespace {

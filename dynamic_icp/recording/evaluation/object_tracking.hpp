@@ -97,6 +97,9 @@ constexpr double kMinOverlap = 0.25;
 ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::vector<ScanBodies>& reported,
                               const ObjectMatching& matching = {});
 
+/// The pairs with the smallest overlap, the worst first: at most `count`, and one of each true body.
+std::vector<BodyPair> worst_pairs(std::vector<BodyPair> pairs, std::size_t count);
+
 /// T_world_sensor by the index of a scan in its recording.
 using ScanPoses = std::map<std::int64_t, Eigen::Isometry3d>;
 

@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/evaluation/object_tracking.hpp"
 
 #include <numbers>
+#include <tuple>
 
 #include <gtest/gtest.h>
 
@@ -103,6 +104,21 @@ TEST(ObjectTracking, LatencyIsFromWhenABodyCounts) {
     }
   }
   EXPECT_NEAR(*compare_tracks(truth, reported, kAtOnce).latency_s, 0.2, 1e-12);
+}
+
+TEST(ObjectTracking, TheWorstPairsAreOfDifferentBodies) {
+  std::vector<BodyPair> pairs;
+  for (const auto& [scan, id, overlap] :
+       {std::tuple(0, 1, 0.3), {1, 1, 0.2}, {1, 2, 0.25}, {2, 1, 0.2}, {2, 3, 0.9}, {3, 4, 0.5}}) {
+    pairs.push_back({scan, 0.1 * scan, car(id), car(7), overlap});
+  }
+  const std::vector<BodyPair> worst = worst_pairs(pairs, 3);
+  ASSERT_EQ(worst.size(), 3U);
+  EXPECT_EQ(worst[0].truth.id, 1);
+  EXPECT_EQ(worst[0].scan, 1) << "the first of two that are equally bad";
+  EXPECT_EQ(worst[1].truth.id, 2);
+  EXPECT_EQ(worst[2].truth.id, 4);
+  EXPECT_EQ(worst_pairs(pairs, 10).size(), 4U);
 }
 
 /// The sensor stands at the origin in scan 0 and, a second later in scan 1, at (5, 0, 0) and turned to the left. The

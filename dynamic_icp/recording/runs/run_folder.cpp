@@ -48,6 +48,7 @@ std::vector<std::string> run_files(const fs::path& folder) {
     files.push_back("plots/" + picture + ".svg");
     files.push_back("plots/" + picture + ".png");
   }
+  files.insert(files.end(), {"plots/worst_object_#.svg", "plots/worst_object_#.png"});
   if (const std::string map = map_in(folder / "run.json"); !map.empty()) {
     files.push_back(map);
   }
