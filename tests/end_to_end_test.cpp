@@ -279,6 +279,8 @@ TEST_F(EndToEnd, ObjectsAreComparedAsTracks) {
   EXPECT_GT(tracking["hota"], 0.3);
   EXPECT_LE(tracking["hota"], 1.0);
   EXPECT_LT(tracking["heading_mae_deg"], 10.0);
+  EXPECT_GT(tracking["points_in_box_median"], 0.8);
+  EXPECT_TRUE(tracking["map_ghosts"].is_null()) << "the run wrote no labels";
   EXPECT_NE(run_program(command).text.find("HOTA"), std::string::npos);
 
   const Outcome contradiction = run_program(command + " --gap-frames 2");
