@@ -71,8 +71,8 @@ ComparedScan compared(const ScanBodies& truth, const ScanBodies& reported, const
 }
 
 /// Adds the NEES of an error to others where a covariance is stated.
-void add_nees(std::vector<double>& nees, const Eigen::Vector3d& error,
-              const std::optional<Eigen::Matrix3d>& covariance) {
+void append_nees(std::vector<double>& nees, const Eigen::Vector3d& error,
+                 const std::optional<Eigen::Matrix3d>& covariance) {
   if (const auto value = covariance ? squared_mahalanobis(error, *covariance) : std::nullopt) {
     nees.push_back(*value);
   }
@@ -90,14 +90,14 @@ struct PairErrors {
     const Eigen::Vector3d error = reported.velocity - truth.velocity;
     along.push_back(std::abs(error.dot(ahead)));
     across.push_back((error - error.dot(ahead) * ahead).norm());
-    add_nees(nees_velocity, error, reported.velocity_covariance);
+    append_nees(nees_velocity, error, reported.velocity_covariance);
     const Eigen::Vector3d of_truth = truth.box.T_sensor_box.linear().col(0);
     const Eigen::Vector3d of_reported = reported.box.T_sensor_box.linear().col(0);
     heading.push_back(std::atan2(of_truth.cross(of_reported).norm(), of_truth.dot(of_reported)) * 180.0 /
                       std::numbers::pi);
     const Eigen::Vector3d center_error = reported.box.T_sensor_box.translation() - truth.box.T_sensor_box.translation();
     center.push_back(center_error.norm());
-    add_nees(nees_center, center_error, reported.center_covariance);
+    append_nees(nees_center, center_error, reported.center_covariance);
     size.push_back((reported.box.size - truth.box.size).cwiseAbs().mean());
   }
 };
@@ -270,7 +270,7 @@ PredictionError compare_predictions(const std::vector<BodyPair>& pairs, const st
       if (center) {
         const Eigen::Vector3d error = predicted->center - *center;
         distance.push_back(error.norm());
-        add_nees(nees, error, predicted->covariance);
+        append_nees(nees, error, predicted->covariance);
       }
     }
   }

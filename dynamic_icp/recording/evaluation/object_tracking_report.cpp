@@ -43,40 +43,40 @@ std::string tracking_table(const ObjectTracking& tracking) {
 }
 
 std::string tracking_json(const ObjectTracking& tracking) {
-  using Json = nlohmann::ordered_json;
-  const auto number = [](std::optional<double> value) { return value ? Json(*value) : Json(nullptr); };
+  using OrderedJson = nlohmann::ordered_json;
+  const auto number = [](std::optional<double> value) { return value ? OrderedJson(*value) : OrderedJson(nullptr); };
   const TrackingScore& score = tracking.score;
-  const Json json = {{"scans", tracking.scans},
-                     {"true_objects", score.true_bodies},
-                     {"found", score.found},
-                     {"false_objects", score.false_bodies},
-                     {"id_switches", score.id_switches},
-                     {"id_switches_per_100_s", number(tracking.switches_per_100_s)},
-                     {"false_per_1000_scans", number(tracking.false_per_1000_scans)},
-                     {"hota", number(score.hota)},
-                     {"det_a", number(score.detection)},
-                     {"ass_a", number(score.association)},
-                     {"loc_a", number(score.localisation)},
-                     {"min_overlap", kMinOverlap},
-                     {"mota", number(score.mota)},
-                     {"idf1", number(score.idf1)},
-                     {"pairs", tracking.pairs.size()},
-                     {"overlap_mean", number(tracking.overlap)},
-                     {"along_mae_mps", number(tracking.along_mps)},
-                     {"across_mae_mps", number(tracking.across_mps)},
-                     {"heading_mae_deg", number(tracking.heading_deg)},
-                     {"center_mae_m", number(tracking.center_m)},
-                     {"size_mae_m", number(tracking.size_m)},
-                     {"nees_velocity", number(tracking.nees_velocity)},
-                     {"nees_center", number(tracking.nees_center)},
-                     {"predictions", tracking.prediction.count},
-                     {"predicted_center_mae_m", number(tracking.prediction.center_m)},
-                     {"nees_predicted_center", number(tracking.prediction.nees)},
-                     {"points_in_box_median", number(tracking.held.median)},
-                     {"points_in_box_p5", number(tracking.held.p5)},
-                     {"map_ghosts", number(tracking.map_ghosts)},
-                     {"latency_median_s", number(tracking.latency_s)},
-                     {"latency_max_s", number(tracking.longest_latency_s)}};
+  const OrderedJson json = {{"scans", tracking.scans},
+                            {"true_objects", score.true_bodies},
+                            {"found", score.found},
+                            {"false_objects", score.false_bodies},
+                            {"id_switches", score.id_switches},
+                            {"id_switches_per_100_s", number(tracking.switches_per_100_s)},
+                            {"false_per_1000_scans", number(tracking.false_per_1000_scans)},
+                            {"hota", number(score.hota)},
+                            {"det_a", number(score.detection)},
+                            {"ass_a", number(score.association)},
+                            {"loc_a", number(score.localisation)},
+                            {"min_overlap", kMinOverlap},
+                            {"mota", number(score.mota)},
+                            {"idf1", number(score.idf1)},
+                            {"pairs", tracking.pairs.size()},
+                            {"overlap_mean", number(tracking.overlap)},
+                            {"along_mae_mps", number(tracking.along_mps)},
+                            {"across_mae_mps", number(tracking.across_mps)},
+                            {"heading_mae_deg", number(tracking.heading_deg)},
+                            {"center_mae_m", number(tracking.center_m)},
+                            {"size_mae_m", number(tracking.size_m)},
+                            {"nees_velocity", number(tracking.nees_velocity)},
+                            {"nees_center", number(tracking.nees_center)},
+                            {"predictions", tracking.prediction.count},
+                            {"predicted_center_mae_m", number(tracking.prediction.center_m)},
+                            {"nees_predicted_center", number(tracking.prediction.nees)},
+                            {"points_in_box_median", number(tracking.held.median)},
+                            {"points_in_box_p5", number(tracking.held.p5)},
+                            {"map_ghosts", number(tracking.map_ghosts)},
+                            {"latency_median_s", number(tracking.latency_s)},
+                            {"latency_max_s", number(tracking.longest_latency_s)}};
   return json.dump(2) + "\n";
 }
 

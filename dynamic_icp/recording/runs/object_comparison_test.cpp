@@ -11,7 +11,7 @@
 namespace dynamic_icp::runs {
 namespace {
 
-std::string labels(const std::vector<std::int32_t>& values) {
+std::string label_bytes(const std::vector<std::int32_t>& values) {
   return {reinterpret_cast<const char*>(values.data()), sizeof(std::int32_t) * values.size()};
 }
 
@@ -45,9 +45,9 @@ class ObjectComparison : public testing::Test {
   /// The truth in all scans, and what the run says of one.
   void write_labels() const {
     for (int k = 1; k <= 20; ++k) {
-      folder_.write(fmt::format("drive/labels/{:05}.bin", k), labels({0, 0, 0, 0, 1, 1, 1, 1}));
+      folder_.write(fmt::format("drive/labels/{:05}.bin", k), label_bytes({0, 0, 0, 0, 1, 1, 1, 1}));
     }
-    folder_.write("run/labels/00007.bin", labels({0, 0, 0, -1, 4, 4, 4, 0}));
+    folder_.write("run/labels/00007.bin", label_bytes({0, 0, 0, -1, 4, 4, 4, 0}));
   }
 
   [[nodiscard]] evaluation::ObjectTracking compare() const {
@@ -146,7 +146,7 @@ TEST_F(ObjectComparison, ScansThatTakeTimeNeedTheMotionOfTheSensor) {
 
 TEST_F(ObjectComparison, RefusalsNameTheFile) {
   write_labels();
-  folder_.write("run/labels/00007.bin", labels({0, 0, 0}));
+  folder_.write("run/labels/00007.bin", label_bytes({0, 0, 0}));
   EXPECT_NE(refusal().find("run/labels/00007.bin"), std::string::npos) << refusal();
   write_labels();
   folder_.write("drive/motion.csv", "timestamp,x\n1,2\n");

@@ -270,7 +270,7 @@ Table tracks_table(const BenchmarkResults& results) {
   table.caption =
       "Moving objects with boxes and ids against the truth; true objects count as in the table of their velocities, "
       "and "
-      "pair with reported ones by the intersection over union of their boxes. HOTA, MOTA, IDF1 (the latter at an "
+      "pair with reported ones by the intersection over union of their boxes. HOTA, MOTA, IDF1 (the last two at an "
       "overlap "
       "of 0.25); switches: changes of id per 100 s in which an object that counts is there; false: reported without a "
       "partner at that overlap, per 1,000 scans. Over pairs, mean absolute errors: of the velocity along and across "

@@ -26,8 +26,8 @@ constexpr drawing::PixelBox kObjectPanel{20.0, 76.0, 860.0, 560.0};
 constexpr double kArrowOfObject_s = 0.5;
 constexpr double kAroundObject_m = 5.0;
 constexpr std::size_t kMaxObjectDots = 6000;
-constexpr std::size_t kTruthColour = 2;  // in the order of the theme
-constexpr std::size_t kReportedColour = 1;
+constexpr std::size_t kTrueBodyColour = 2;  // in the order of the theme
+constexpr std::size_t kReportedBodyColour = 1;
 
 /// Both boxes with their arrows and some metres around them.
 GroundView view_of(const BodyPair& pair) {
@@ -47,7 +47,7 @@ GroundView view_of(const BodyPair& pair) {
   return {kObjectPanel, region};
 }
 
-void draw_points(drawing::Svg& svg, const GroundView& view, const ShownScan& scan, const drawing::Theme& theme) {
+void draw_points_around(drawing::Svg& svg, const GroundView& view, const ShownScan& scan, const drawing::Theme& theme) {
   for (const bool on_objects : {false, true}) {
     std::vector<Eigen::Vector3d> seen;
     for (std::size_t k = 0; k < scan.size(); ++k) {
@@ -104,8 +104,8 @@ drawing::Svg object_figure(const BodyPair& pair, const ShownScan& scan, const dr
                   center_error.norm(), size_error.x(), size_error.y(), size_error.z(),
                   (pair.reported.velocity - pair.truth.velocity).norm()),
       {.colour = theme.ink});
-  const drawing::LegendEntry legend[] = {{"truth", theme.series[kTruthColour]},
-                                         {"reported", theme.series[kReportedColour]},
+  const drawing::LegendEntry legend[] = {{"truth", theme.series[kTrueBodyColour]},
+                                         {"reported", theme.series[kReportedBodyColour]},
                                          {"points on objects", theme.ink},
                                          {"other points", theme.muted},
                                          {"to the sensor", theme.grid}};
@@ -114,9 +114,9 @@ drawing::Svg object_figure(const BodyPair& pair, const ShownScan& scan, const dr
   svg.begin_clip(kObjectPanel);
   const GroundView view = view_of(pair);
   svg.line(view.at(center), view.at(0.0, 0.0), {.stroke = theme.grid, .width = 2.0});
-  draw_points(svg, view, scan, theme);
-  draw_body(svg, view, pair.truth, {.stroke = theme.series[kTruthColour], .width = 2.5});
-  draw_body(svg, view, pair.reported, {.stroke = theme.series[kReportedColour], .width = 2.5, .dash = "7 4"});
+  draw_points_around(svg, view, scan, theme);
+  draw_body(svg, view, pair.truth, {.stroke = theme.series[kTrueBodyColour], .width = 2.5});
+  draw_body(svg, view, pair.reported, {.stroke = theme.series[kReportedBodyColour], .width = 2.5, .dash = "7 4"});
   draw_scale(svg, view, theme);
   svg.end_clip();
   return svg;
