@@ -112,6 +112,7 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   if (now.measured == nullptr) {
     ego_.status = ego_motion::EgoVelocityStatus::kFromMotion;
     ego_.unobservable.setZero();
+    memory_.may_be_object = memory_.is_moving;
     return;
   }
   const Scan& whole = memory_.whole;
@@ -119,6 +120,12 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   workers_.for_each(whole.size(), kPointBlock,
                     [&](std::size_t i) { memory_.radial[i] = whole.doppler()[i] - memory_.predicted[i]; });
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(ego_), workers_, memory_.is_moving);
+  memory_.may_be_object = memory_.is_moving;
+  // The map takes in nothing of what objects are about to cross.
+  tracking::SensorMotion sensor{T_world_sensor_};
+  sensor.velocity_world = T_world_sensor_.linear() * sweep.velocity;
+  sensor.angular_velocity_sensor = sweep.omega;
+  tracker_.flag_expected(whole, memory_.radial, sensor, workers_, memory_.is_moving);
 }
 
 /// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.

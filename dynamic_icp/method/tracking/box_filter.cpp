@@ -45,6 +45,7 @@ constexpr double kLookBeyond_m = 0.4;
 constexpr double kClearance_m = 1.0;
 constexpr double kWorstLog = -10.0;
 constexpr double kGroundSigma_m = 0.05;
+constexpr double kNoBox = 0.05;  // bodies end by this share of their size nearer or farther than boxes do
 
 BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double yaw_sigma_rad, const Matrix3d& level,
                  const TrackConfig& config) {
@@ -418,17 +419,19 @@ std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
     const Belief size = axis == 0 ? length : axis == 1 ? width : Belief{height, 0.0};
     Extent& extent = extents[static_cast<std::size_t>(axis)];
     extent.size = size.mean;
+    const double shape = kNoBox * kNoBox * size.mean * size.mean;  // m^2, of an end that is seen
     if (is_known(high) && is_known(low)) {
       extent.weight_high = extent.weight_low = 0.5;
       extent.middle = 0.5 * (body_.distance(high) - body_.distance(low));
+      extent.variance = 0.5 * shape;
     } else if (is_known(high)) {
       extent.weight_high = 1.0;
       extent.middle = body_.distance(high) - 0.5 * size.mean;
-      extent.variance = 0.25 * size.variance;
+      extent.variance = 0.25 * size.variance + shape;
     } else if (is_known(low)) {
       extent.weight_low = 1.0;
       extent.middle = 0.5 * size.mean - body_.distance(low);
-      extent.variance = 0.25 * size.variance;
+      extent.variance = 0.25 * size.variance + shape;
     } else {
       const double hidden = std::max(0.0, size.mean - span(axis));
       extent.middle = 0.5 * (reach(high) - reach(low));

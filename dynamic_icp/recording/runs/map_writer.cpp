@@ -2,11 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/runs/map_writer.hpp"
 
+#include <algorithm>
 #include <vector>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/spatial/cell_key.hpp"
+#include "dynamic_icp/method/tracking/oriented_box.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/point_table.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
@@ -17,6 +20,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr double kMaxVoxels = 1 << 30;  // from the origin along an axis, see VoxelHashMap
+
+constexpr double kRegion_m = 4.0;
+// What a body leaves behind lies in its box or so near to it, but not on the road.
+constexpr double kHalo_m = 0.15;
+constexpr double kRoad_m = 0.3;
+// An object clears its place once it has been seen so often, moves so fast and its motion is known.
+constexpr int kScansSeen = 3;
+constexpr double kMinSpeed_mps = 1.0;
+
+std::uint64_t region_of(const Eigen::Vector3d& point) { return spatial::clamped_cell_key(point / kRegion_m); }
 
 double checked(double voxel_size_m) {
   if (!(voxel_size_m >= MapWriter::kMinVoxelSize_m && voxel_size_m <= MapWriter::kMaxVoxelSize_m)) {
@@ -76,12 +89,63 @@ void MapWriter::add(const odometry::Frame& frame) {
                       format_seconds(frame.stamp), in_world.back().norm(), voxel_size_m_));
     }
   }
+  const std::size_t before = voxels_.size();
   voxels_.add(in_world);
+  is_ghost_.resize(voxels_.size(), 0);
+  for (std::size_t i = before; i < voxels_.size(); ++i) {
+    const auto index = static_cast<std::uint32_t>(i);
+    regions_[region_of(voxels_.point(index))].push_back(index);
+  }
+  for (const tracking::TrackedObject& object : frame.tracked) {
+    if (object.scans_seen >= kScansSeen && object.tangential_observed &&
+        object.velocity_sensor.norm() > kMinSpeed_mps) {
+      take_out(object, frame.T_world_sensor);
+    }
+  }
+}
+
+/// The points in the box of an object.
+void MapWriter::take_out(const tracking::TrackedObject& object, const Eigen::Isometry3d& T_world_sensor) {
+  tracking::OrientedBox box = object.box;
+  box.size.head<2>().array() += 2.0 * kHalo_m;
+  box.size.z() += kHalo_m - kRoad_m;
+  box.centre = T_world_sensor * Eigen::Vector3d(box.centre + 0.5 * (kHalo_m + kRoad_m) * box.axes.col(2));
+  box.axes = T_world_sensor.linear() * box.axes;
+  if (!(box.size.minCoeff() > 0.0)) {
+    return;
+  }
+  const Eigen::Vector3d reach = 0.5 * tracking::aligned_extent(box);
+  const Eigen::Array3d low = ((box.centre - reach) / kRegion_m).array().floor();
+  const Eigen::Array3d high = ((box.centre + reach) / kRegion_m).array().floor();
+  for (double x = low.x(); x <= high.x(); ++x) {
+    for (double y = low.y(); y <= high.y(); ++y) {
+      for (double z = low.z(); z <= high.z(); ++z) {
+        const auto region = regions_.find(region_of(kRegion_m * Eigen::Vector3d(x + 0.5, y + 0.5, z + 0.5)));
+        if (region == regions_.end()) {
+          continue;
+        }
+        std::erase_if(region->second, [&](std::uint32_t index) {
+          if (tracking::distance_outside(box, voxels_.point(index)) > 0.0) {
+            return false;
+          }
+          is_ghost_[index] = 1;
+          ++ghosts_;
+          return true;
+        });
+      }
+    }
+  }
 }
 
 void MapWriter::write(const fs::path& path) const {
   check_map_file(path);
-  const std::vector<formats::NamedArray> table = formats::point_table(voxels_.points());
+  std::vector<Eigen::Vector3d> points;
+  for (std::uint32_t i = 0; i < voxels_.size(); ++i) {
+    if (is_ghost_[i] == 0) {
+      points.push_back(voxels_.point(i));
+    }
+  }
+  const std::vector<formats::NamedArray> table = formats::point_table(points);
   formats::write_whole_file(path, path.extension() == ".ply" ? formats::ply_bytes(table) : formats::pcd_bytes(table));
 }
 

@@ -3,7 +3,12 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
+#include <map>
+#include <vector>
+
+#include <Eigen/Geometry>
 
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/spatial/voxel_hash_map.hpp"
@@ -20,9 +25,10 @@ void check_map_file(const std::filesystem::path& path);
 std::filesystem::path map_destination(const std::filesystem::path& path, const std::filesystem::path& output,
                                       const std::filesystem::path& staging);
 
-/// Collects the static points of a run in world axes: of each voxel the first point that falls into it. The memory it
-/// takes (about 90 bytes a voxel) grows with the scene and not with the time spent in it; the points and their order
-/// depend on the frames alone.
+/// Collects the static points of a run in world axes: of each voxel the first point that falls into it. Where a tracked
+/// object drives nothing static can stand: points that it leaves there, or left before it began to move, are taken out
+/// again. The memory it takes (about 110 bytes a voxel) grows with the scene and not with the time spent in it; the
+/// points and their order depend on the frames alone.
 class MapWriter {
  public:
   static constexpr double kMinVoxelSize_m = 0.01;
@@ -35,15 +41,20 @@ class MapWriter {
   /// far out for voxels to be counted (2^30 of them) or nowhere; nothing of the frame is added then.
   void add(const odometry::Frame& frame);
 
-  [[nodiscard]] std::size_t size() const { return voxels_.size(); }
+  [[nodiscard]] std::size_t size() const { return voxels_.size() - ghosts_; }
 
   /// Writes one point cloud of float32 x, y, z (m), by the age of the points, as the ending of the file says: whole or
   /// not at all. Throws as `check_map_file` does, and DataError naming file and reason when the machine fails.
   void write(const std::filesystem::path& path) const;
 
  private:
+  void take_out(const tracking::TrackedObject& object, const Eigen::Isometry3d& T_world_sensor);
+
   double voxel_size_m_;
   spatial::VoxelHashMap voxels_;
+  std::map<std::uint64_t, std::vector<std::uint32_t>> regions_;  ///< points by cubes of a few metres
+  std::vector<std::uint8_t> is_ghost_;                           ///< of each point
+  std::size_t ghosts_ = 0;
 };
 
 }  // namespace dynamic_icp::runs
