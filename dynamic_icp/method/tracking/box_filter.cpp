@@ -84,15 +84,18 @@ double sight_yaw(const Vector3d& point, const Detection& detection) {
 
 }  // namespace
 
+/// Where the points along one axis of the box end.
+struct BoxFilter::EndView {
+  Vector3d middle = Vector3d::Zero();  ///< m, world: of the points there
+  double gap = 0.0;                    ///< m, from the end to the next points
+  bool is_true = false;                ///< whether the body ends there, too
+};
+
 /// What a detection shows along one axis of the box.
 struct BoxFilter::AxisView {
-  Interval seen;                     ///< from the reference
-  Vector3d low = Vector3d::Zero();   ///< m, world: middle of the points at the low end
-  Vector3d high = Vector3d::Zero();  ///< and at the high end
-  double low_gap = 0.0;              ///< m, from the low end to the next points
-  double high_gap = 0.0;
-  bool low_end = false;  ///< whether the body truly ends there
-  bool high_end = false;
+  Interval seen;  ///< m, from the reference
+  EndView low;
+  EndView high;
 };
 
 /// The extent of the box along one axis.
@@ -165,8 +168,8 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
   if (body_.axes().col(0).dot(body_.velocity()) < -kBackwards_mps) {
     body_.turn_around();
     for (const int axis : {0, 1}) {
-      std::swap(least_[static_cast<std::size_t>(2 * axis)], least_[static_cast<std::size_t>(2 * axis + 1)]);
-      std::swap(faces_[static_cast<std::size_t>(2 * axis)], faces_[static_cast<std::size_t>(2 * axis + 1)]);
+      std::swap(least_[index_of(high_face(axis))], least_[index_of(low_face(axis))]);
+      std::swap(faces_[index_of(high_face(axis))], faces_[index_of(low_face(axis))]);
       if (std::optional<Interval>& last = last_seen_[static_cast<std::size_t>(axis)]) {
         last = Interval{-last->high, -last->low};
       }
@@ -182,40 +185,8 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
     if (axis < 2) {
       correct_middle(axis, view);
     }
-    for (const double side : {1.0, -1.0}) {
-      const Face face = kFaces[static_cast<std::size_t>(2 * axis + (side > 0.0 ? 0 : 1))];
-      const auto i = static_cast<std::size_t>(face);
-      const Vector3d& end = side > 0.0 ? view.high : view.low;
-      const Vector3d outward = side * body_.axes().col(axis);
-      // Where rays pass beside an end they miss it by less than their distance there; faces that look at them they
-      // meet.
-      const bool is_beside = outward.dot((end - detection.sensor).normalized()) > -kFacing;
-      const double gap = is_beside ? side > 0.0 ? view.high_gap : view.low_gap : 0.0;
-      const double seen = (side > 0.0 ? view.seen.high : -view.seen.low) + 0.5 * gap;
-      // The end of the span, beside the middle of the points there.
-      const Vector3d at_end = end + (seen - outward.dot(end - body_.position())) * outward;
-      const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
-      least_[i] += (seen > least_[i] ? kGrowth : 0.0) * (seen - least_[i]);
-      if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
-        least_[i] = std::max(least_[i], seen);
-      }
-      const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
-      if (is_known(face) && body_.beyond(face, at_end) > kFalseEnd_m + kFalseEndSigmas * known_sigma) {
-        body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);  // it was no end
-        least_[i] = seen;
-      }
-      if (side > 0.0 ? view.high_end : view.low_end) {
-        faces_[i] = FaceView::kSeen;
-        const bool was_known = is_known(face);
-        const double log_likelihood = body_.correct_face(face, at_end, sigma * sigma);
-        log_likelihood_ += was_known ? log_likelihood : 0.0;  // else it could be anywhere
-      } else {
-        faces_[i] = faces_[i] == FaceView::kUnknown ? FaceView::kUnknown : FaceView::kHidden;
-        if (is_known(face) && body_.beyond(face, at_end) > known_sigma) {
-          log_likelihood_ += body_.correct_face(face, at_end, sigma * sigma);  // it is farther out than thought
-        }
-      }
-    }
+    correct_face(high_face(axis), view.high, view.seen.high, detection, config);
+    correct_face(low_face(axis), view.low, -view.seen.low, detection, config);
   }
   // What was seen, from where the reference is now.
   for (const int axis : {0, 1}) {
@@ -229,9 +200,44 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
     const Vector3d up = detection.ground.up();
     const Vector3d on_ground = body_.position() + (*detection.ground.offset_m - up.dot(body_.position())) * up;
     const double sigma = kGroundSigma_m + face_sigma(on_ground, detection, config);
-    faces_[static_cast<std::size_t>(Face::kBottom)] = FaceView::kSeen;
+    faces_[index_of(Face::kBottom)] = FaceView::kSeen;
     body_.correct_face(Face::kBottom, on_ground, sigma * sigma);
   }
+}
+
+/// `span_end`: how far from the reference the points reach towards the face, m.
+void BoxFilter::correct_face(Face face, const EndView& end, double span_end, const Detection& detection,
+                             const TrackConfig& config) {
+  const std::size_t i = index_of(face);
+  const Vector3d outward = side_of(face) * body_.axes().col(axis_of(face));
+  // Where rays pass beside an end they miss it by less than their distance there; faces that look at them they meet.
+  const bool is_beside = outward.dot((end.middle - detection.sensor).normalized()) > -kFacing;
+  const double gap = is_beside ? end.gap : 0.0;
+  const double seen = span_end + 0.5 * gap;
+  // The end of the span, beside the middle of the points there.
+  const Vector3d at_end = end.middle + (seen - outward.dot(end.middle - body_.position())) * outward;
+  const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
+  const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
+  if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
+    least_[i] = std::max(least_[i], seen);
+  } else {
+    least_[i] += kGrowth * std::max(0.0, seen - least_[i]);
+  }
+  if (is_known(face) && body_.beyond(face, at_end) > kFalseEnd_m + kFalseEndSigmas * known_sigma) {
+    body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);  // it was no end
+    least_[i] = seen;
+  }
+  const bool was_known = is_known(face);  // else it could be anywhere, and no place surprises
+  if (end.is_true) {
+    faces_[i] = FaceView::kSeen;
+  } else {
+    faces_[i] = faces_[i] == FaceView::kUnknown ? FaceView::kUnknown : FaceView::kHidden;
+    if (!was_known || body_.beyond(face, at_end) < known_sigma) {
+      return;
+    }
+  }
+  const double log_likelihood = body_.correct_face(face, at_end, sigma * sigma);
+  log_likelihood_ += was_known ? log_likelihood : 0.0;
 }
 
 /// No body is wider than the widest: sides that say so and are not seen now are forgotten, and bounds are drawn in.
@@ -240,16 +246,14 @@ void BoxFilter::limit_width(const TrackConfig& config) {
   if (!has_heading_ || excess <= 0.0) {
     return;
   }
-  const auto is_fixed = [&](Face face) {
-    return is_known(face) && faces_[static_cast<std::size_t>(face)] == FaceView::kSeen;
-  };
+  const auto is_fixed = [&](Face face) { return is_known(face) && faces_[index_of(face)] == FaceView::kSeen; };
   const double share = is_fixed(Face::kLeft) == is_fixed(Face::kRight) ? 0.5 : 1.0;
   for (const Face face : {Face::kLeft, Face::kRight}) {
     if (share == 1.0 && is_fixed(face)) {
       continue;
     }
-    least_[static_cast<std::size_t>(face)] = reach(face) - share * excess;
-    faces_[static_cast<std::size_t>(face)] = FaceView::kUnknown;
+    least_[index_of(face)] = reach(face) - share * excess;
+    faces_[index_of(face)] = FaceView::kUnknown;
     body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);
   }
 }
@@ -257,8 +261,7 @@ void BoxFilter::limit_width(const TrackConfig& config) {
 /// Where neither end was ever seen, the middle of the points holds the body, as far as it shows as much as before.
 void BoxFilter::correct_middle(int axis, const AxisView& view) {
   const std::optional<Interval>& last = last_seen_[static_cast<std::size_t>(axis)];
-  if (!last || is_known(kFaces[static_cast<std::size_t>(2 * axis)]) ||
-      is_known(kFaces[static_cast<std::size_t>(2 * axis + 1)])) {
+  if (!last || is_known(high_face(axis)) || is_known(low_face(axis))) {
     return;
   }
   const double sigma = kLoose_m + std::abs(last->length() - view.seen.length());
@@ -319,28 +322,23 @@ BoxFilter::AxisView BoxFilter::look_along(int axis, std::span<const Vector3d> po
   const Vector3d direction = body_.axes().col(axis);
   AxisView view;
   view.seen = span_along(points, body_.position(), direction, kTrim);
-  double low_count = 0.0;
-  double high_count = 0.0;
-  view.low_gap = view.high_gap = kMaxGap_m;
-  for (const Vector3d& point : points) {
-    const double q = (point - body_.position()).dot(direction);
-    if (q > view.seen.low + kSamePlace_m) {
-      view.low_gap = std::min(view.low_gap, q - view.seen.low);
+  const auto look_at = [&](EndView& end, auto&& inwards) {  // how far inwards of the end a point lies
+    double count = 0.0;
+    end.gap = kMaxGap_m;
+    for (const Vector3d& point : points) {
+      const double depth = inwards((point - body_.position()).dot(direction));
+      if (depth <= kEndDepth_m) {
+        end.middle += point;
+        count += 1.0;
+      }
+      if (depth > kSamePlace_m) {
+        end.gap = std::min(end.gap, depth);
+      }
     }
-    if (q < view.seen.high - kSamePlace_m) {
-      view.high_gap = std::min(view.high_gap, view.seen.high - q);
-    }
-    if (q <= view.seen.low + kEndDepth_m) {
-      view.low += point;
-      low_count += 1.0;
-    }
-    if (q >= view.seen.high - kEndDepth_m) {
-      view.high += point;
-      high_count += 1.0;
-    }
-  }
-  view.low /= low_count;
-  view.high /= high_count;
+    end.middle /= count;
+  };
+  look_at(view.low, [&](double q) { return q - view.seen.low; });
+  look_at(view.high, [&](double q) { return view.seen.high - q; });
   return view;
 }
 
@@ -354,50 +352,42 @@ std::array<BoxFilter::AxisView, 3> BoxFilter::look(std::span<const Vector3d> poi
     AxisView& view = views[static_cast<std::size_t>(axis)] = look_along(axis, points);
     const double sensor = axes.col(axis).dot(detection.sensor - body_.position());
     const double grazing = kGrazing * (detection.sensor - body_.position()).norm();
-    view.high_end = sensor > view.seen.high && is_true_end(view.high, axes.col(axis), detection);
-    view.low_end = sensor < view.seen.low && is_true_end(view.low, -axes.col(axis), detection);
-    faces_sensor[static_cast<std::size_t>(axis)] =
-        (view.high_end && sensor > view.seen.high + grazing) || (view.low_end && sensor < view.seen.low - grazing);
+    view.high.is_true = sensor > view.seen.high && is_true_end(view.high.middle, axes.col(axis), detection);
+    view.low.is_true = sensor < view.seen.low && is_true_end(view.low.middle, -axes.col(axis), detection);
+    faces_sensor[static_cast<std::size_t>(axis)] = (view.high.is_true && sensor > view.seen.high + grazing) ||
+                                                   (view.low.is_true && sensor < view.seen.low - grazing);
   }
   for (const int axis : {0, 1}) {
     AxisView& view = views[static_cast<std::size_t>(axis)];
     if (faces_sensor[static_cast<std::size_t>(1 - axis)]) {
-      view.high_end = view.high_end || is_true_end(view.high, axes.col(axis), detection);
-      view.low_end = view.low_end || is_true_end(view.low, -axes.col(axis), detection);
+      view.high.is_true = view.high.is_true || is_true_end(view.high.middle, axes.col(axis), detection);
+      view.low.is_true = view.low.is_true || is_true_end(view.low.middle, -axes.col(axis), detection);
     }
   }
   // What is below bodies is hidden by them.
   views[2] = look_along(2, points);
-  views[2].high_end = is_true_end(views[2].high, axes.col(2), detection);
+  views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), detection);
   return views;
 }
 
 bool BoxFilter::is_known(Face face) const { return body_.variance(face) < kKnownFace_m * kKnownFace_m; }
 
-double BoxFilter::reach(Face face) const {
-  return is_known(face) ? body_.distance(face) : least_[static_cast<std::size_t>(face)];
-}
+double BoxFilter::reach(Face face) const { return is_known(face) ? body_.distance(face) : least_[index_of(face)]; }
 
 OrientedBox BoxFilter::seen_box() const {
   OrientedBox box{body_.position(), body_.axes(), Vector3d::Zero()};
   for (const int axis : {0, 1, 2}) {
-    const double high = reach(kFaces[static_cast<std::size_t>(2 * axis)]);
-    const double low = reach(kFaces[static_cast<std::size_t>(2 * axis + 1)]);
+    const double high = reach(high_face(axis));
+    const double low = reach(low_face(axis));
     box.size[axis] = std::max(0.0, high + low);
     box.centre += 0.5 * (high - low) * box.axes.col(axis);
   }
   return box;
 }
 
-bool BoxFilter::is_whole(int axis) const {
-  return is_known(kFaces[static_cast<std::size_t>(2 * axis)]) &&
-         is_known(kFaces[static_cast<std::size_t>(2 * axis + 1)]);
-}
+bool BoxFilter::is_whole(int axis) const { return is_known(high_face(axis)) && is_known(low_face(axis)); }
 
-double BoxFilter::span(int axis) const {
-  return std::max(
-      0.0, reach(kFaces[static_cast<std::size_t>(2 * axis)]) + reach(kFaces[static_cast<std::size_t>(2 * axis + 1)]));
-}
+double BoxFilter::span(int axis) const { return std::max(0.0, reach(high_face(axis)) + reach(low_face(axis))); }
 
 /// Along, to the left and up, with what is not seen filled in by what is likely.
 std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
@@ -414,8 +404,8 @@ std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
   }
   std::array<Extent, 3> extents;
   for (const int axis : {0, 1, 2}) {
-    const Face high = kFaces[static_cast<std::size_t>(2 * axis)];
-    const Face low = kFaces[static_cast<std::size_t>(2 * axis + 1)];
+    const Face high = high_face(axis);
+    const Face low = low_face(axis);
     const Belief size = axis == 0 ? length : axis == 1 ? width : Belief{height, 0.0};
     Extent& extent = extents[static_cast<std::size_t>(axis)];
     extent.size = size.mean;

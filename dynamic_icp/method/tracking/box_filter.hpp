@@ -63,12 +63,15 @@ class BoxFilter {
   [[nodiscard]] double signal_mps() const { return signal_mps_; }
 
  private:
+  struct EndView;
   struct AxisView;
   struct Extent;
 
   void correct_doppler(const Detection& detection, const TrackConfig& config);
   void correct_heading(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
   void correct_faces(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
+  void correct_face(Face face, const EndView& end, double span_end, const Detection& detection,
+                    const TrackConfig& config);
   void correct_middle(int axis, const AxisView& view);
   void limit_width(const TrackConfig& config);
   [[nodiscard]] double size_log_likelihood(const TrackConfig& config) const;

@@ -20,10 +20,10 @@ constexpr std::size_t kMemory = 9;      // scans
 constexpr double kCell_m = 6.0;
 constexpr int kMaxReach = 3;  // cells
 constexpr double kBin_m = 0.05;
-constexpr double kHighest_m = 1.0;          // of the lowest point that is seen of an object above the ground ...
-constexpr double kDeepest_m = 0.3;          // ... and below it
-constexpr std::size_t kMaxPoints = 16384;   // of a scan: more would not make heights better
-constexpr std::uint32_t kFewestPoints = 6;  // of the bin with most points and its neighbours
+constexpr double kHighest_m = 1.0;               // of the lowest point that is seen of an object above the ground ...
+constexpr double kDeepest_m = 0.3;               // ... and below it
+constexpr std::size_t kMaxGroundPoints = 16384;  // of a scan: more would not make heights better
+constexpr std::uint32_t kFewestPoints = 6;       // of the bin with most points and its neighbours
 
 }  // namespace
 
@@ -66,7 +66,7 @@ GroundHeights::GroundHeights(const Ground& ground, std::span<const Eigen::Vector
   }
   const Eigen::Matrix3d R_level_sensor = ground.level.transpose() * T_world_sensor.linear();
   const double plane_z = *ground.offset_m - ground.up().dot(sensor_world_);
-  const std::size_t stride = std::max<std::size_t>(1, points.size() / kMaxPoints);
+  const std::size_t stride = std::max<std::size_t>(1, points.size() / kMaxGroundPoints);
   for (std::size_t row = 0; row < points.size(); row += stride) {
     if (is_moving[row] != 0) {
       continue;

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <optional>
 #include <span>
 
@@ -18,6 +19,11 @@ inline constexpr std::array kFaces = {Face::kFront, Face::kRear, Face::kLeft, Fa
 /// or against it.
 constexpr int axis_of(Face face) { return static_cast<int>(face) / 2; }
 constexpr double side_of(Face face) { return static_cast<int>(face) % 2 == 0 ? 1.0 : -1.0; }
+
+/// The faces at either end of an axis, and the place of a face in arrays by Face.
+constexpr Face high_face(int axis) { return static_cast<Face>(2 * axis); }
+constexpr Face low_face(int axis) { return static_cast<Face>(2 * axis + 1); }
+constexpr std::size_t index_of(Face face) { return static_cast<std::size_t>(face); }
 
 /// What is known of a face of a box.
 enum class FaceView {

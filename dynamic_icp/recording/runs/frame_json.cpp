@@ -91,7 +91,7 @@ Json object_json(std::size_t id, const dynamics::ObjectEstimate& object) {
 Json box_json(const tracking::TrackedObject& object) {
   const tracking::OrientedBox& box = object.box;
   const Eigen::Quaterniond orientation(box.axes);
-  const auto face = [&](tracking::Face which) { return to_string(object.faces[static_cast<std::size_t>(which)]); };
+  const auto face = [&](tracking::Face which) { return to_string(object.faces[index_of(which)]); };
   return {{"center", vector_json(box.centre)},
           {"center_covariance", matrix_json(object.centre_covariance)},
           {"size", vector_json(box.size)},

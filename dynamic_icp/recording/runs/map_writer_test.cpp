@@ -86,6 +86,40 @@ TEST_F(MapWriterTest, EachVoxelKeepsItsFirstPoint) {
   EXPECT_EQ(points_of(map), (std::vector<Vector3d>{{0.25, 0.5, 0.5}, {-0.25, 0.5, 0.5}, {1.0, 0.5, 0.5}}));
 }
 
+/// A frame with a car whose motion is known; `centre` of its box, m.
+odometry::Frame frame_with_car(const std::vector<Vector3d>& points, const Vector3d& centre, int scans_seen) {
+  odometry::Frame frame = frame_with(points);
+  tracking::TrackedObject car;
+  car.scans_seen = scans_seen;
+  car.tangential_observed = true;
+  car.velocity_sensor = {8.0, 0.0, 0.0};
+  car.box = {centre, Eigen::Matrix3d::Identity(), {4.0, 2.0, 1.5}};
+  frame.tracked.push_back(car);
+  return frame;
+}
+
+TEST_F(MapWriterTest, WhereAnObjectDrivesNothingStands) {
+  // What the car left before it began to move goes; the road below it stays, and what is beside it.
+  const Vector3d ghost(10.0, 0.5, 1.0);
+  const Vector3d road(10.0, 0.5, 0.05);
+  const Vector3d beside(10.0, 1.5, 1.0);
+  const Vector3d ahead(14.0, 0.0, 1.0);
+  MapWriter map(0.1);
+  map.add(frame_with({ghost, road, beside, ahead}));
+  map.add(frame_with_car({}, {10.0, 0.0, 0.75}, 1));
+  EXPECT_EQ(map.size(), 4u) << "seen once, it may be no object";
+  map.add(frame_with_car({}, {10.0, 0.0, 0.75}, 3));
+  EXPECT_EQ(map.size(), 3u);
+  const std::vector<Vector3d> points = points_of(map);
+  ASSERT_EQ(points.size(), 3u);
+  EXPECT_TRUE(points[0].isApprox(road, 1e-6));
+  EXPECT_TRUE(points[1].isApprox(beside, 1e-6));
+  EXPECT_TRUE(points[2].isApprox(ahead, 1e-6));
+  // Of its own scan nothing is kept where it is.
+  map.add(frame_with_car({{13.0, 0.0, 1.0}}, {13.0, 0.0, 0.75}, 4));
+  EXPECT_EQ(map.size(), 2u) << "what stood ahead is gone, too";
+}
+
 TEST_F(MapWriterTest, EqualsTheDirectDefinitionAndDoesNotGrowInAKnownScene) {
   constexpr double kEdge_m = 0.3;
   std::mt19937 bits(3);
