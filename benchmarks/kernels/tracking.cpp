@@ -1,5 +1,9 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <optional>
+#include <vector>
+
+#include "dynamic_icp/method/ego_motion/support_plane.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/tracking/object_tracker.hpp"
 
@@ -14,15 +18,17 @@ void object_tracker(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(0)));
   const auto config = odometry::WindowOdometryConfig{}.tracking;
   std::size_t points = 0;
+  std::vector<std::optional<ego_motion::SupportPlane>> support;  // the odometry knows it before the tracker begins
   for (std::size_t i = 0; i < kScans; ++i) {
     points += known_scan(Sensor::kUsual, i).whole.size();
+    support.push_back(ego_motion::find_support_plane(known_scan(Sensor::kUsual, i).whole.points()));
   }
   std::size_t tracks = 0;
   for ([[maybe_unused]] auto _ : state) {
     tracking::ObjectTracker tracker(config);
     for (std::size_t i = 0; i < kScans; ++i) {
       const KnownScan& scan = known_scan(Sensor::kUsual, i);
-      tracks = tracker.update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, workers).size();
+      tracks = tracker.update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, support[i], workers).size();
     }
   }
   state.counters["tracks"] = static_cast<double>(tracks);

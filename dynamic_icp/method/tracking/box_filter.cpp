@@ -137,8 +137,8 @@ void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
-  const ClusterVelocity measured =
-      fit_cluster_velocity(detection.directions, detection.radial, config.doppler_sigma_mps);
+  const ClusterVelocity measured = fit_cluster_velocity(
+      detection.directions, radial_at_sensor(detection, body_.yaw_rate()), config.doppler_sigma_mps);
   spread_mps_ = measured.spread_mps;
   signal_mps_ = measured.signal_mps;
   // Roll and pitch of the body look like a vertical velocity, the more the farther it is.

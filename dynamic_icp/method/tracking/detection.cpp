@@ -23,6 +23,10 @@ Detection make_detection(const Scan& scan, std::span<const double> radial, std::
     detection.directions.push_back(sensor.direction_world(scan.directions()[row], time));
     detection.radial.push_back(radial[row]);
     detection.times.push_back(time);
+    if (scan.is_of_rig()) {
+      const Eigen::Isometry3d& mounting = scan.mountings()[scan.channels().sensor[row]];
+      detection.levers.push_back(sensor.T_world_sensor.linear() * mounting.translation());
+    }
     detection.mean_time_s += time;
   }
   detection.mean_time_s /= static_cast<double>(detection.points.size());
@@ -33,6 +37,14 @@ Detection make_detection(const Scan& scan, std::span<const double> radial, std::
       [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return heights.up().dot(a) < heights.up().dot(b); }));
   detection.view = view;
   return detection;
+}
+
+std::vector<double> radial_at_sensor(const Detection& detection, double yaw_rate_rps) {
+  std::vector<double> radial = detection.radial;
+  for (std::size_t i = 0; i < detection.levers.size(); ++i) {
+    radial[i] -= yaw_rate_rps * detection.directions[i].dot(detection.ground.up().cross(detection.levers[i]));
+  }
+  return radial;
 }
 
 std::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity) {

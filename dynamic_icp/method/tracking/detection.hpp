@@ -22,6 +22,7 @@ struct Detection {
   std::vector<Eigen::Vector3d> directions;  ///< lines of sight, unit
   std::vector<double> radial;               ///< m/s, radial velocities over ground
   std::vector<double> times;                ///< s after the stamp of the scan
+  std::vector<Eigen::Vector3d> levers;      ///< m: of a rig from `sensor` to the one that measured the point; or empty
   double mean_time_s = 0.0;
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();                  ///< where the sensor was at the mean time
   Eigen::Isometry3d T_sensor_world = Eigen::Isometry3d::Identity();  ///< at the mean time
@@ -33,6 +34,10 @@ struct Detection {
 /// better.
 Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
                          const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view);
+
+/// The radial velocities (m/s) as one sensor at `sensor` would measure them along the same lines of sight, if the body
+/// turns with `yaw_rate_rps` about the upward axis: without Omega z x l of the lever arms.
+std::vector<double> radial_at_sensor(const Detection& detection, double yaw_rate_rps);
 
 /// The points where they would be seen at the mean time if all moved with `velocity` (m/s, world).
 std::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity);

@@ -7,6 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/method/base/random_source.hpp"
+
 namespace dynamic_icp::tracking {
 namespace {
 
@@ -53,6 +55,29 @@ TEST(Detection, IsInTheWorldAndKeepsTheChosenRows) {
   EXPECT_TRUE(T_world_sensor.translation().isApprox(detection.sensor, 1e-12)) << "at the mean time";
   const Vector3d u = scan.directions()[7];
   EXPECT_TRUE((T_world_sensor.linear() * u).isApprox(sensor.direction_world(u, detection.mean_time_s), 1e-6));
+}
+
+TEST(Detection, LeverArmsOfARigDoNotLookLikeMotion) {
+  // A body that turns, seen by two sensors 4 m apart: each point has u . (v + Omega z x (x - p)). Without the lever
+  // arms all radial velocities are those of one W = v - Omega z x (p - s).
+  const Vector3d velocity(3.0, -7.0, 0.0);
+  const Vector3d reference(25.0, 6.0, 0.0);
+  const double yaw_rate = 0.6;
+  Detection detection;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const RandomSource one = RandomSource(8).fork(i);
+    const Vector3d lever(0.0, i % 2 == 0 ? 2.0 : -2.0, 0.5);
+    const Vector3d point = reference + Vector3d(one.uniform(0, -2, 2), one.uniform(1, -1, 1), one.uniform(2, -1, 1));
+    detection.levers.push_back(lever);
+    detection.directions.push_back((point - lever).normalized());
+    const Vector3d there = velocity + yaw_rate * Vector3d::UnitZ().cross(point - reference);
+    detection.radial.push_back(detection.directions.back().dot(there));
+  }
+  const std::vector<double> radial = radial_at_sensor(detection, yaw_rate);
+  const Vector3d W = velocity - yaw_rate * Vector3d::UnitZ().cross(reference);
+  for (std::size_t i = 0; i < radial.size(); ++i) {
+    EXPECT_NEAR(radial[i], detection.directions[i].dot(W), 1e-12);
+  }
 }
 
 TEST(Detection, OfManyRowsAnEvenPartFromEndToEnd) {
