@@ -150,8 +150,8 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
         ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
                                     memory_.rows);
         support_ = config_.find_support ? ego_motion::find_support_plane(whole, memory_.sort) : std::nullopt;
-        memory_.rows.on_support = support_ ? ego_motion::cells_on_support(whole, memory_.sort, *support_)
-                                           : std::vector<std::uint8_t>{};
+        memory_.rows.on_support =
+            support_ ? ego_motion::cells_on_support(whole, memory_.sort, *support_) : std::vector<std::uint8_t>{};
       });
   frame.points_used = memory_.thinned.size();
 }
@@ -320,8 +320,8 @@ void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) 
   if (config_.track_objects) {
     tracker_.clear_carrier(memory_.whole, workers_, memory_.may_be_object);
     memory_.whole = motion::deskew(std::move(memory_.whole), sweep, workers_);
-    objects = tracker_.update(memory_.whole, memory_.radial, memory_.may_be_object, frame.T_world_sensor, support_,
-                              workers_);
+    objects =
+        tracker_.update(memory_.whole, memory_.radial, memory_.may_be_object, frame.T_world_sensor, support_, workers_);
   }
   describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, std::move(objects), workers_);
 }

@@ -77,8 +77,9 @@ bool have_boxes(const std::vector<runs::ObjectsRow>& rows) {
 }
 
 TrackScores score_tracks(const fs::path& truth, const fs::path& reported) {
+  const std::vector<evaluation::ScanBodies> bodies = evaluation::read_true_bodies(truth);
   const evaluation::ObjectTracking tracking =
-      evaluation::compare_tracks(evaluation::read_true_bodies(truth), evaluation::read_reported_bodies(reported));
+      evaluation::compare_tracks(bodies, evaluation::read_reported_bodies(reported));
   TrackScores scores;
   scores.hota = tracking.score.hota;
   scores.mota = tracking.score.mota;

@@ -125,8 +125,8 @@ drawing::Svg object_figure(const BodyPair& pair, const ShownScan& scan, const dr
 std::vector<Figure> draw_worst_objects(const runs::RunFiles& run, std::size_t count, const drawing::Theme& theme) {
   const std::filesystem::path input = runs::text_of(run.run, "input.path");
   const std::vector<evaluation::ScanBodies> truth = evaluation::read_true_bodies(input / "objects.jsonl");
-  const auto pairs = evaluation::compare_tracks(truth, evaluation::read_reported_bodies(run.folder / "objects.jsonl"))
-                         .pairs;
+  const auto pairs =
+      evaluation::compare_tracks(truth, evaluation::read_reported_bodies(run.folder / "objects.jsonl")).pairs;
   std::vector<std::string> notes;
   const std::unique_ptr<datasets::Dataset> recording = open_recording(run, notes);
   if (recording == nullptr) {
