@@ -31,10 +31,12 @@ constexpr double kPivotShare = 0.15;    // ... and of the length that the point 
 constexpr double kBackwards_mps = 0.5;  // what moves backwards faster than this was taken the wrong way round
 constexpr double kLogHeading = -2.0;    // a scan without heading: more than the corrections of one cost
 constexpr double kWidthSigma_m = 0.5;
-constexpr double kSizeScatter = 0.25;  // of what is seen of sizes about the typical ones, as a share
-constexpr double kGrazing = 0.03;      // faces seen at a smaller angle show nothing
-constexpr double kFacing = 0.3;        // cosine of the line of sight to a face that looks at the sensor
-constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
+constexpr double kStump = 0.25;          // of the typical length or width
+constexpr double kVehicleWidth_m = 1.4;  // what is less wide may be short
+constexpr double kSizeScatter = 0.25;    // of what is seen of sizes about the typical ones, as a share
+constexpr double kGrazing = 0.03;        // faces seen at a smaller angle show nothing
+constexpr double kFacing = 0.3;          // cosine of the line of sight to a face that looks at the sensor
+constexpr double kSamePlace_m = 0.03;    // points nearer to an end are at the end, but for noise
 constexpr double kMaxGap_m = 0.5;
 constexpr double kUniform = 0.29;  // standard deviation of what is anywhere in a gap, as a share
 constexpr double kEndOn = 0.25;    // part of an axis across the line of sight, below which it is end-on
@@ -196,6 +198,7 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
   }
   size_log_likelihood_ = size_log_likelihood(config);  // before what is too wide is cut off
   limit_width(config);
+  forget_stumps(detection);
   if (detection.ground.offset_m) {
     const Vector3d up = detection.ground.up();
     const Vector3d on_ground = body_.position() + (*detection.ground.offset_m - up.dot(body_.position())) * up;
@@ -255,6 +258,31 @@ void BoxFilter::limit_width(const TrackConfig& config) {
     least_[index_of(face)] = reach(face) - share * excess;
     faces_[index_of(face)] = FaceView::kUnknown;
     body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);
+  }
+}
+
+/// What is a small part of the body that its other sides speak of did not end where it seemed to, away from the sensor.
+void BoxFilter::forget_stumps(const Detection& detection) {
+  if (!has_heading_ || is_person_like(std::max(span(0), span(1)), body_.velocity().norm())) {
+    return;
+  }
+  const double height = span(2);
+  const auto forget = [&](int axis) {
+    for (const Face face : {high_face(axis), low_face(axis)}) {
+      const Vector3d outward = side_of(face) * body_.axes().col(axis);
+      if (outward.dot(body_.position() + body_.distance(face) * outward - detection.sensor) > 0.0) {
+        least_[index_of(face)] = body_.distance(face);
+        faces_[index_of(face)] = FaceView::kUnknown;
+        body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);
+      }
+    }
+  };
+  if (is_whole(1) && span(1) < kStump * typical_width_by_height(height).mean) {
+    forget(1);
+  }
+  const double width = is_whole(1) ? span(1) : typical_width_by_height(height).mean;
+  if (is_whole(0) && width > kVehicleWidth_m && span(0) < kStump * typical_length(width, height).mean) {
+    forget(0);
   }
 }
 

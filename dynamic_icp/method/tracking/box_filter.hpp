@@ -74,6 +74,7 @@ class BoxFilter {
                     const TrackConfig& config);
   void correct_middle(int axis, const AxisView& view);
   void limit_width(const TrackConfig& config);
+  void forget_stumps(const Detection& detection);
   [[nodiscard]] double size_log_likelihood(const TrackConfig& config) const;
   [[nodiscard]] AxisView look_along(int axis, std::span<const Eigen::Vector3d> points) const;
   [[nodiscard]] std::array<AxisView, 3> look(std::span<const Eigen::Vector3d> points, const Detection& detection) const;
