@@ -15,7 +15,6 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kTrim = 0.01;           // of the points at either end
 constexpr double kReference_m = 0.01;    // the reference is a point of the body by definition
 constexpr double kLoose_m = 0.5;         // standard deviation of the middle of what is seen of a body, if as much
 constexpr double kUnknownFace_m = 10.0;  // standard deviation
@@ -34,17 +33,8 @@ constexpr double kWidthSigma_m = 0.5;
 constexpr double kStump = 0.25;          // of the typical length or width
 constexpr double kVehicleWidth_m = 1.4;  // what is less wide may be short
 constexpr double kSizeScatter = 0.25;    // of what is seen of sizes about the typical ones, as a share
-constexpr double kGrazing = 0.03;        // faces seen at a smaller angle show nothing
 constexpr double kFacing = 0.3;          // cosine of the line of sight to a face that looks at the sensor
-constexpr double kSamePlace_m = 0.03;    // points nearer to an end are at the end, but for noise
-constexpr double kMaxGap_m = 0.5;
-constexpr double kUniform = 0.29;  // standard deviation of what is anywhere in a gap, as a share
-constexpr double kEndOn = 0.25;    // part of an axis across the line of sight, below which it is end-on
-constexpr double kDimSpeed_mps = 0.5;
-constexpr double kDimReach_m = 1.5;  // beyond an end
-constexpr double kEndDepth_m = 0.3;  // points so near to the end of a span make the end
-constexpr double kLookBeyond_m = 0.4;
-constexpr double kClearance_m = 1.0;
+constexpr double kUniform = 0.29;        // standard deviation of what is anywhere in a gap, as a share
 constexpr double kWorstLog = -10.0;
 constexpr double kGroundSigma_m = 0.05;
 constexpr double kNoBox = 0.05;  // bodies end by this share of their size nearer or farther than boxes do
@@ -85,20 +75,6 @@ double sight_yaw(const Vector3d& point, const Detection& detection) {
 }
 
 }  // namespace
-
-/// Where the points along one axis of the box end.
-struct BoxFilter::EndView {
-  Vector3d middle = Vector3d::Zero();  ///< m, world: of the points there
-  double gap = 0.0;                    ///< m, from the end to the next points
-  bool is_true = false;                ///< whether the body ends there, too
-};
-
-/// What a detection shows along one axis of the box.
-struct BoxFilter::AxisView {
-  Interval seen;  ///< m, from the reference
-  EndView low;
-  EndView high;
-};
 
 /// The extent of the box along one axis.
 struct BoxFilter::Extent {
@@ -156,8 +132,8 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
                                 const TrackConfig& config) {
   if (const std::optional<double> fitted = fit_yaw(points, body_.level(), body_.yaw(), kYawSearch_rad)) {
     const Matrix3d axes = body_.level() * upright_axes(*fitted);
-    const double side = std::max(span_along(points, body_.position(), axes.col(0), kTrim).length(),
-                                 span_along(points, body_.position(), axes.col(1), kTrim).length());
+    const double side = std::max(span_along(points, body_.position(), axes.col(0), kViewTrim).length(),
+                                 span_along(points, body_.position(), axes.col(1), kViewTrim).length());
     if (side >= kShortestSide_m) {
       const double sigma = std::hypot(config.yaw_sigma_rad, face_sigma(body_.position(), detection, config) / side);
       log_likelihood_ += body_.correct_yaw(*fitted, sigma * sigma);
@@ -180,7 +156,8 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
 }
 
 void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection& detection, const TrackConfig& config) {
-  const std::array<AxisView, 3> views = look(points, detection);
+  const std::array<AxisView, 3> views =
+      views_along(body_.axes(), body_.position(), points, body_.doppler_velocity(detection.sensor), detection);
   const Vector3d reference = body_.position();
   for (const int axis : {0, 1, 2}) {
     const AxisView& view = views[static_cast<std::size_t>(axis)];
@@ -313,89 +290,6 @@ double BoxFilter::size_log_likelihood(const TrackConfig& config) const {
   const double of_length = surprise(0, typical_length(is_whole(1) ? span(1) : width.mean, height));
   const double too_wide = std::max(0.0, span(1) - config.largest_width_m) / kWidthSigma_m;
   return std::max(kWorstLog, -0.5 * (of_width * of_width + of_length * of_length + too_wide * too_wide));
-}
-
-/// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next.
-bool BoxFilter::is_true_end(const Vector3d& end, const Vector3d& outward, const Detection& detection) const {
-  const Vector3d to_end = end - detection.sensor;
-  const double range = to_end.norm();
-  const Vector3d sight = to_end / range;
-  const Vector3d sideways = outward - outward.dot(sight) * sight;
-  if (sideways.norm() < kEndOn) {
-    return outward.dot(sight) < 0.0;  // the near end of what is seen end-on; the body hides the far one
-  }
-  // Points of the body that hardly move along the line of sight are missing among the moving ones.
-  const Vector3d W = body_.doppler_velocity(detection.sensor);
-  const double here = sight.dot(W);
-  const double next = (to_end + kDimReach_m * outward).normalized().dot(W);
-  const bool is_dim = std::min(std::abs(here), std::abs(next)) < kDimSpeed_mps || here * next < 0.0;
-  if (detection.view == nullptr) {
-    return !is_dim;
-  }
-  const double cell = range * RangeImage::cell_width();
-  const bool is_upward = outward.dot(detection.ground.up()) > 0.5;
-  for (const double step : {cell, std::max(kLookBeyond_m, 3.0 * cell)}) {
-    const Vector3d beyond = detection.T_sensor_world * (end + step * sideways.normalized());
-    if (is_upward && detection.view->is_above_all(beyond)) {
-      return false;
-    }
-    if (detection.view->hides(beyond, is_dim ? -kClearance_m : kClearance_m)) {
-      return false;
-    }
-  }
-  return true;
-}
-
-BoxFilter::AxisView BoxFilter::look_along(int axis, std::span<const Vector3d> points) const {
-  const Vector3d direction = body_.axes().col(axis);
-  AxisView view;
-  view.seen = span_along(points, body_.position(), direction, kTrim);
-  const auto look_at = [&](EndView& end, auto&& inwards) {  // how far inwards of the end a point lies
-    double count = 0.0;
-    end.gap = kMaxGap_m;
-    for (const Vector3d& point : points) {
-      const double depth = inwards((point - body_.position()).dot(direction));
-      if (depth <= kEndDepth_m) {
-        end.middle += point;
-        count += 1.0;
-      }
-      if (depth > kSamePlace_m) {
-        end.gap = std::min(end.gap, depth);
-      }
-    }
-    end.middle /= count;
-  };
-  look_at(view.low, [&](double q) { return q - view.seen.low; });
-  look_at(view.high, [&](double q) { return view.seen.high - q; });
-  return view;
-}
-
-/// What a detection shows along each axis. How far a body reaches away from the sensor shows only a face that looks at
-/// the sensor and spans that axis.
-std::array<BoxFilter::AxisView, 3> BoxFilter::look(std::span<const Vector3d> points, const Detection& detection) const {
-  const Matrix3d axes = body_.axes();
-  std::array<AxisView, 3> views;
-  std::array<bool, 2> faces_sensor{};
-  for (const int axis : {0, 1}) {
-    AxisView& view = views[static_cast<std::size_t>(axis)] = look_along(axis, points);
-    const double sensor = axes.col(axis).dot(detection.sensor - body_.position());
-    const double grazing = kGrazing * (detection.sensor - body_.position()).norm();
-    view.high.is_true = sensor > view.seen.high && is_true_end(view.high.middle, axes.col(axis), detection);
-    view.low.is_true = sensor < view.seen.low && is_true_end(view.low.middle, -axes.col(axis), detection);
-    faces_sensor[static_cast<std::size_t>(axis)] = (view.high.is_true && sensor > view.seen.high + grazing) ||
-                                                   (view.low.is_true && sensor < view.seen.low - grazing);
-  }
-  for (const int axis : {0, 1}) {
-    AxisView& view = views[static_cast<std::size_t>(axis)];
-    if (faces_sensor[static_cast<std::size_t>(1 - axis)]) {
-      view.high.is_true = view.high.is_true || is_true_end(view.high.middle, axes.col(axis), detection);
-      view.low.is_true = view.low.is_true || is_true_end(view.low.middle, -axes.col(axis), detection);
-    }
-  }
-  // What is below bodies is hidden by them.
-  views[2] = look_along(2, points);
-  views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), detection);
-  return views;
 }
 
 bool BoxFilter::is_known(Face face) const { return body_.variance(face) < kKnownFace_m * kKnownFace_m; }

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 
 #include "dynamic_icp/method/tracking/body_filter.hpp"
+#include "dynamic_icp/method/tracking/box_view.hpp"
 #include "dynamic_icp/method/tracking/detection.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
@@ -63,8 +64,6 @@ class BoxFilter {
   [[nodiscard]] double signal_mps() const { return signal_mps_; }
 
  private:
-  struct EndView;
-  struct AxisView;
   struct Extent;
 
   void correct_doppler(const Detection& detection, const TrackConfig& config);
@@ -76,10 +75,6 @@ class BoxFilter {
   void limit_width(const TrackConfig& config);
   void forget_stumps(const Detection& detection);
   [[nodiscard]] double size_log_likelihood(const TrackConfig& config) const;
-  [[nodiscard]] AxisView look_along(int axis, std::span<const Eigen::Vector3d> points) const;
-  [[nodiscard]] std::array<AxisView, 3> look(std::span<const Eigen::Vector3d> points, const Detection& detection) const;
-  [[nodiscard]] bool is_true_end(const Eigen::Vector3d& end, const Eigen::Vector3d& outward,
-                                 const Detection& detection) const;
   [[nodiscard]] bool is_known(Face face) const;
   [[nodiscard]] double reach(Face face) const;
   [[nodiscard]] bool is_whole(int axis) const;

@@ -105,6 +105,17 @@ struct Scene {
   Scene& operator=(const Scene&) = delete;
 };
 
+/// Takes in the next scan; the first one begins the filter.
+void take_in(std::optional<BoxFilter>& filter, const Detection& detection, std::optional<double> yaw_rad,
+             const TrackConfig& config) {
+  if (filter) {
+    filter->predict(kScanPeriod_s, config);
+    filter->correct(detection, config);
+  } else {
+    filter.emplace(detection, yaw_rad, 0.0, config);
+  }
+}
+
 MovingBox moving_body(double x, double y, double yaw, double speed, const Vector3d& size) {
   const Eigen::Matrix3d axes = upright_axes(yaw);
   return {{{x, y, 0.5 * size.z() - kSensorHeight_m}, axes, size}, speed * axes.col(0), 0.0};
@@ -124,12 +135,7 @@ TEST(BoxFilter, OfALorrySeenFromBehindTheLengthIsALikelyOne) {
   for (int k = 0; k < 8; ++k) {
     const double t = k * kScanPeriod_s;
     const Scene scene({lorry(t)}, t);
-    if (filter) {
-      filter->predict(kScanPeriod_s, config);
-      filter->correct(scene.detection, config);
-    } else {
-      filter.emplace(scene.detection, 0.0, 0.0, config);
-    }
+    take_in(filter, scene.detection, 0.0, config);
     const BoxEstimate estimate = filter->estimate();
     EXPECT_EQ(view_of_face(estimate, Face::kFront), FaceView::kUnknown) << "scan " << k;
     EXPECT_EQ(view_of_face(estimate, Face::kRear), FaceView::kSeen) << "scan " << k;
@@ -161,12 +167,7 @@ TEST(BoxFilter, WhatComesIntoViewChangesTheLengthAndNotTheMotion) {
   for (int k = 0; k < 20; ++k) {
     const double t = k * kScanPeriod_s;
     const Scene scene({lorry(t), screen(-40.0, -5.0)}, t);
-    if (filter) {
-      filter->predict(kScanPeriod_s, config);
-      filter->correct(scene.detection, config);
-    } else {
-      filter.emplace(scene.detection, yaw, 0.0, config);
-    }
+    take_in(filter, scene.detection, yaw, config);
     const BoxEstimate estimate = filter->estimate();
     const OrientedBox truth = lorry(t).box;
     was_unknown = was_unknown || view_of_face(estimate, Face::kRear) == FaceView::kUnknown;
@@ -195,12 +196,7 @@ TEST(BoxFilter, WhatSomethingNearerHidesStaysAsItWas) {
   for (int k = 0; k < 14; ++k) {
     const double t = k * kScanPeriod_s;
     const Scene scene({lorry(t), screen(4.0, 45.0)}, t);
-    if (filter) {
-      filter->predict(kScanPeriod_s, config);
-      filter->correct(scene.detection, config);
-    } else {
-      filter.emplace(scene.detection, yaw, 0.0, config);
-    }
+    take_in(filter, scene.detection, yaw, config);
     const BoxEstimate estimate = filter->estimate();
     const Vector3d front = middle_of(lorry(t).box, Face::kFront);
     const bool is_behind = std::atan2(front.y(), front.x()) > 6.0 * std::numbers::pi / 180.0;
@@ -324,12 +320,7 @@ TEST(BoxFilter, APersonIsNotThoughtToBeLonger) {
     for (int k = 0; k < 8; ++k) {
       const double t = k * kScanPeriod_s;
       const Scene scene({moving_body(12 + 1.4 * t, 1 + 0.4 * t, 0.3, 1.4, {0.5, 0.6, 1.7})}, t);
-      if (filter) {
-        filter->predict(kScanPeriod_s, config);
-        filter->correct(scene.detection, config);
-      } else {
-        filter.emplace(scene.detection, yaw, 0.0, config);
-      }
+      take_in(filter, scene.detection, yaw, config);
       const BoxEstimate estimate = filter->estimate();
       EXPECT_LT(estimate.box.size.x(), 1.0) << "scan " << k;
       EXPECT_LT(estimate.box.size.y(), 1.0) << "scan " << k;

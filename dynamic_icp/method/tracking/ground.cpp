@@ -23,7 +23,7 @@ constexpr double kBin_m = 0.05;
 constexpr double kHighest_m = 1.0;               // of the lowest point that is seen of an object above the ground ...
 constexpr double kDeepest_m = 0.3;               // ... and below it
 constexpr std::size_t kMaxGroundPoints = 16384;  // of a scan: more would not make heights better
-constexpr std::uint32_t kFewestPoints = 6;       // of the bin with most points and its neighbours
+constexpr std::uint32_t kMinBinPoints = 6;       // of the bin with most points and its neighbours
 
 }  // namespace
 
@@ -116,7 +116,7 @@ Ground GroundHeights::below(const Eigen::Vector3d& lowest) const {
       count += sum[i];
       height += sum[i] * kBin_m * (static_cast<double>(i) + 0.5 - 0.5 * kBins);
     }
-    if (count >= kFewestPoints) {
+    if (count >= kMinBinPoints) {
       *result.offset_m += height / count;
       return result;
     }

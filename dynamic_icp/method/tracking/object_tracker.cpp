@@ -15,11 +15,10 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::int32_t kNobody = -1;
-constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
-constexpr double kSeeThrough_m = 1.0;  // beyond a gap
-constexpr double kSplinter = 0.1;      // a track with this share of the points of another may be a part of it
-constexpr double kPartVelocity_mps =
-    0.5;  // standard deviation of the velocity of a part of a body from that of the body
+constexpr double kMax = 2.0;               // new objects are not wider than so many vehicles
+constexpr double kSeeThrough_m = 1.0;      // beyond a gap
+constexpr double kSplinter = 0.1;          // a track with this share of the points of another may be a part of it
+constexpr double kPartVelocity_mps = 0.5;  // standard deviation between the velocities of parts of a body
 constexpr double kPartSigmas = 3.0;
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
 constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
@@ -68,10 +67,9 @@ struct ObjectTracker::Entry {
   int missed = 0;
   std::vector<std::uint32_t> members = {};
 
-  /// Takes `track` as it is, and as it will be at `stamp_s`.
-  void set_track(Track corrected, double stamp_s, const TrackConfig& config) {
-    track = corrected;
-    predicted = std::move(corrected);
+  /// The track at the stamp of a scan.
+  void predict(double stamp_s, const TrackConfig& config) {
+    predicted = track;
     predicted.predict(stamp_s, config);
     now = predicted.estimate();
   }
@@ -133,7 +131,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   place_cells(input);
   std::vector<Expectation> expected;
   for (Entry& entry : entries_) {
-    entry.set_track(entry.track, input.stamp_s, config_.track);
+    entry.predict(input.stamp_s, config_.track);
     expected.emplace_back(entry.predicted, sensor, config_);
   }
   std::vector<std::int32_t> owner(input.moving.cells.size(), kNobody);
@@ -292,7 +290,8 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
       entry.members.clear();
       return;
     }
-    entry.set_track(std::move(corrected), input.stamp_s, config_.track);
+    entry.track = std::move(corrected);
+    entry.predict(input.stamp_s, config_.track);
     entry.missed = 0;
     ++entry.seen;
     const bool seen_often =
@@ -342,7 +341,7 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
     const bool plausible = track.best().seen_box().size.y() <= kMax * config_.track.largest_width_m;
     if (plausible && spread <= config_.max_spread_mps && track.best().signal_mps() >= kMinSignal * spread) {
       newborn.push_back({0, track, track});
-      newborn.back().set_track(track, input.stamp_s, config_.track);
+      newborn.back().predict(input.stamp_s, config_.track);
       newborn.back().members = std::move(groups[i].rows);
       expectations.emplace_back(newborn.back().predicted, input.sensor, config_);
     }

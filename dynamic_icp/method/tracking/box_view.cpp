@@ -1,0 +1,105 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/box_view.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kGrazing = 0.03;  // faces seen at a smaller angle show nothing
+constexpr double kEndOn = 0.25;    // part of an axis across the line of sight, below which it is end-on
+constexpr double kDimSpeed_mps = 0.5;
+constexpr double kDimReach_m = 1.5;  // beyond an end
+constexpr double kEndDepth_m = 0.3;  // points so near to the end of a span make the end
+constexpr double kLookBeyond_m = 0.4;
+constexpr double kClearance_m = 1.0;
+constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
+constexpr double kMaxGap_m = 0.5;
+
+/// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next.
+bool is_true_end(const Vector3d& end, const Vector3d& outward, const Vector3d& W, const Detection& detection) {
+  const Vector3d to_end = end - detection.sensor;
+  const double range = to_end.norm();
+  const Vector3d sight = to_end / range;
+  const Vector3d sideways = outward - outward.dot(sight) * sight;
+  if (sideways.norm() < kEndOn) {
+    return outward.dot(sight) < 0.0;  // the near end of what is seen end-on; the body hides the far one
+  }
+  // Points of the body that hardly move along the line of sight are missing among the moving ones.
+  const double here = sight.dot(W);
+  const double next = (to_end + kDimReach_m * outward).normalized().dot(W);
+  const bool is_dim = std::min(std::abs(here), std::abs(next)) < kDimSpeed_mps || here * next < 0.0;
+  if (detection.view == nullptr) {
+    return !is_dim;
+  }
+  const double cell = range * RangeImage::cell_width();
+  const bool is_upward = outward.dot(detection.ground.up()) > 0.5;
+  for (const double step : {cell, std::max(kLookBeyond_m, 3.0 * cell)}) {
+    const Vector3d beyond = detection.T_sensor_world * (end + step * sideways.normalized());
+    if (is_upward && detection.view->is_above_all(beyond)) {
+      return false;
+    }
+    if (detection.view->hides(beyond, is_dim ? -kClearance_m : kClearance_m)) {
+      return false;
+    }
+  }
+  return true;
+}
+
+AxisView view_along(const Vector3d& direction, const Vector3d& reference, std::span<const Vector3d> points) {
+  AxisView view;
+  view.seen = span_along(points, reference, direction, kViewTrim);
+  const auto look_at = [&](EndView& end, auto&& inwards) {  // how far inwards of the end a point lies
+    double count = 0.0;
+    end.gap = kMaxGap_m;
+    for (const Vector3d& point : points) {
+      const double depth = inwards((point - reference).dot(direction));
+      if (depth <= kEndDepth_m) {
+        end.middle += point;
+        count += 1.0;
+      }
+      if (depth > kSamePlace_m) {
+        end.gap = std::min(end.gap, depth);
+      }
+    }
+    end.middle /= count;
+  };
+  look_at(view.low, [&](double q) { return q - view.seen.low; });
+  look_at(view.high, [&](double q) { return view.seen.high - q; });
+  return view;
+}
+
+}  // namespace
+
+std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& reference, std::span<const Vector3d> points,
+                                    const Vector3d& W, const Detection& detection) {
+  std::array<AxisView, 3> views;
+  std::array<bool, 2> faces_sensor{};
+  for (const int axis : {0, 1}) {
+    AxisView& view = views[static_cast<std::size_t>(axis)] = view_along(axes.col(axis), reference, points);
+    const double sensor = axes.col(axis).dot(detection.sensor - reference);
+    const double grazing = kGrazing * (detection.sensor - reference).norm();
+    view.high.is_true = sensor > view.seen.high && is_true_end(view.high.middle, axes.col(axis), W, detection);
+    view.low.is_true = sensor < view.seen.low && is_true_end(view.low.middle, -axes.col(axis), W, detection);
+    faces_sensor[static_cast<std::size_t>(axis)] = (view.high.is_true && sensor > view.seen.high + grazing) ||
+                                                   (view.low.is_true && sensor < view.seen.low - grazing);
+  }
+  for (const int axis : {0, 1}) {
+    AxisView& view = views[static_cast<std::size_t>(axis)];
+    if (faces_sensor[static_cast<std::size_t>(1 - axis)]) {
+      view.high.is_true = view.high.is_true || is_true_end(view.high.middle, axes.col(axis), W, detection);
+      view.low.is_true = view.low.is_true || is_true_end(view.low.middle, -axes.col(axis), W, detection);
+    }
+  }
+  // What is below bodies is hidden by them.
+  views[2] = view_along(axes.col(2), reference, points);
+  views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), W, detection);
+  return views;
+}
+
+}  // namespace dynamic_icp::tracking

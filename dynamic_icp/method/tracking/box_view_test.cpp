@@ -1,0 +1,64 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/box_view.hpp"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+
+constexpr double kStep_m = 0.1;
+
+/// Points `kStep_m` apart from one corner to the other of a face.
+std::vector<Vector3d> face_points(const Vector3d& low, const Vector3d& high) {
+  std::vector<Vector3d> points;
+  for (double x = low.x(); x <= high.x() + 1e-9; x += kStep_m) {
+    for (double y = low.y(); y <= high.y() + 1e-9; y += kStep_m) {
+      for (double z = low.z(); z <= high.z() + 1e-9; z += kStep_m) {
+        points.emplace_back(x, y, z);
+      }
+    }
+  }
+  return points;
+}
+
+TEST(BoxView, OfABodySeenFromBehindTheRearAndTheSidesAreSeen) {
+  // The sensor is in the origin; nothing hides anything.
+  const std::vector<Vector3d> rear = face_points({10.0, -0.9, -0.5}, {10.0, 0.9, 0.5});
+  const auto [along, left, up] = views_along(Matrix3d::Identity(), {10.0, 0.0, 0.0}, rear, {5.0, 0.0, 0.0}, {});
+  EXPECT_TRUE(along.low.is_true);
+  EXPECT_FALSE(along.high.is_true) << "how long it is the body itself hides";
+  EXPECT_TRUE(left.low.is_true);
+  EXPECT_TRUE(left.high.is_true);
+  EXPECT_NEAR(left.seen.low, -0.9, 1e-9);
+  EXPECT_NEAR(left.seen.high, 0.9, 1e-9);
+  EXPECT_NEAR(left.high.gap, kStep_m, 1e-9);
+  EXPECT_FALSE(up.low.is_true) << "what is below";
+}
+
+TEST(BoxView, OneSideDoesNotShowHowWideABodyIs) {
+  // Beside the sensor, to its right: neither front nor rear look at it.
+  const std::vector<Vector3d> side = face_points({-2.0, -5.0, -0.5}, {2.0, -5.0, 0.5});
+  const auto [along, left, up] = views_along(Matrix3d::Identity(), {0.0, -5.0, 0.0}, side, {0.0, -5.0, 0.0}, {});
+  EXPECT_TRUE(left.high.is_true) << "the side itself";
+  EXPECT_FALSE(left.low.is_true) << "the far one";
+  EXPECT_TRUE(along.low.is_true);
+  EXPECT_TRUE(along.high.is_true);
+}
+
+TEST(BoxView, EndsThatHardlyMoveAlongTheLineOfSightMayGoOn) {
+  // The same side moves along itself: its middle has no radial velocity, and points beyond its ends might be missing
+  // among the moving ones where nothing is known of what stands.
+  const std::vector<Vector3d> side = face_points({-0.2, -5.0, -0.5}, {2.0, -5.0, 0.5});
+  const auto [along, left, up] = views_along(Matrix3d::Identity(), {0.0, -5.0, 0.0}, side, {8.0, 0.0, 0.0}, {});
+  EXPECT_FALSE(along.low.is_true);
+  EXPECT_TRUE(along.high.is_true);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
