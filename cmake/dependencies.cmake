@@ -30,6 +30,20 @@ if(DYNAMIC_ICP_BUILD_IO OR DYNAMIC_ICP_NEEDS_TOOLS)
     set_target_properties(liblzf::lzf PROPERTIES IMPORTED_LOCATION ${DYNAMIC_ICP_LIBLZF_LIBRARY}
       INTERFACE_INCLUDE_DIRECTORIES ${DYNAMIC_ICP_LIBLZF_INCLUDE_DIR})
   endif()
+  # What bags are packed with, and what ROS 2 keeps them in. libzstd, liblz4 and libbz2 come without CMake files.
+  find_package(SQLite3 REQUIRED)
+  set(libraries zstd lz4 bz2)
+  set(headers zstd.h lz4frame.h bzlib.h)
+  foreach(library header IN ZIP_LISTS libraries headers)
+    if(NOT TARGET dynamic_icp::${library})
+      string(TOUPPER ${library} name)
+      find_path(DYNAMIC_ICP_${name}_INCLUDE_DIR ${header} REQUIRED)
+      find_library(DYNAMIC_ICP_${name}_LIBRARY ${library} REQUIRED)
+      add_library(dynamic_icp::${library} UNKNOWN IMPORTED GLOBAL)
+      set_target_properties(dynamic_icp::${library} PROPERTIES IMPORTED_LOCATION ${DYNAMIC_ICP_${name}_LIBRARY}
+        INTERFACE_INCLUDE_DIRECTORIES ${DYNAMIC_ICP_${name}_INCLUDE_DIR})
+    endif()
+  endforeach()
 endif()
 
 if(DYNAMIC_ICP_NEEDS_TOOLS)

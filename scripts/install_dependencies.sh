@@ -8,16 +8,17 @@ set -euo pipefail
 
 optional=()
 packages=(g++ cmake ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
-  libpng-dev libembree-dev libzip-dev liblzf-dev zlib1g-dev)
+  libpng-dev libembree-dev libzip-dev liblzf-dev zlib1g-dev
+  libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev)
 for purpose in "$@"; do
   case $purpose in
     clang)
       optional+=(clang) ;;
     tests)
       packages+=(libgtest-dev)
-      # An independent implementation to compare with, random tests, and a browser for the viewer of reports; not in
-      # every release.
-      optional+=(python3-open3d librapidcheck-dev chromium) ;;
+      # Independent implementations to compare with, random tests, and a browser for the viewer of reports; not in every
+      # release.
+      optional+=(python3-open3d python3-rosbag librapidcheck-dev chromium) ;;
     pictures)
       packages+=(librsvg2-dev pkg-config) ;;
     benchmarks)
