@@ -57,6 +57,12 @@ class Bag {
   /// The bytes of a message. Throws DataError naming file and place where they are damaged.
   [[nodiscard]] virtual std::string read(const MessageEntry& entry) const = 0;
 
+  /// At least the first `bytes` bytes of a message where it has as many: for a look at its header. Containers that need
+  /// not read the rest for that override it.
+  [[nodiscard]] virtual std::string read_front(const MessageEntry& entry, std::size_t /*bytes*/) const {
+    return read(entry);
+  }
+
   /// The file that holds a message, for messages to the user.
   [[nodiscard]] virtual std::filesystem::path file(const MessageEntry& entry) const = 0;
 

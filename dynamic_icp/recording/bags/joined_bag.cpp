@@ -57,15 +57,11 @@ class JoinedBag final : public Bag {
   }
 
   [[nodiscard]] std::string read(const MessageEntry& entry) const override {
-    MessageEntry own = entry;
-    own.file = 0;
-    const Bag& part = *parts_.at(entry.file);
-    for (std::size_t topic = 0; topic < part.topics().size(); ++topic) {
-      if (table_.topic_of.at(key(entry.file, topic)) == entry.topic) {
-        own.topic = static_cast<std::uint32_t>(topic);
-      }
-    }
-    return part.read(own);
+    return parts_.at(entry.file)->read(own(entry));
+  }
+
+  [[nodiscard]] std::string read_front(const MessageEntry& entry, std::size_t bytes) const override {
+    return parts_.at(entry.file)->read_front(own(entry), bytes);
   }
 
   [[nodiscard]] std::filesystem::path file(const MessageEntry& entry) const override {
@@ -73,6 +69,18 @@ class JoinedBag final : public Bag {
   }
 
  private:
+  /// As the part that holds it knows it.
+  [[nodiscard]] MessageEntry own(const MessageEntry& entry) const {
+    MessageEntry own = entry;
+    own.file = 0;
+    for (std::size_t topic = 0; topic < parts_[entry.file]->topics().size(); ++topic) {
+      if (table_.topic_of.at(key(entry.file, topic)) == entry.topic) {
+        own.topic = static_cast<std::uint32_t>(topic);
+      }
+    }
+    return own;
+  }
+
   static std::uint64_t key(std::size_t part, std::size_t topic) { return (std::uint64_t{part} << 32U) | topic; }
 
   std::string_view container_;

@@ -49,12 +49,14 @@ class McapFile final : public FileBag {
     return entries;
   }
 
-  [[nodiscard]] std::string read(const MessageEntry& entry) const override {
+  [[nodiscard]] std::string read(const MessageEntry& entry) const override { return read_front(entry, kMaxPieceBytes); }
+
+  [[nodiscard]] std::string read_front(const MessageEntry& entry, std::size_t bytes) const override {
     FileBytes source(file_, FileBytes::kOneRecord);
     const McapRecord outer = mcap_record(source, entry.place);
     if (outer.op == McapOp::kMessage) {  // outside of any chunk
       const McapMessage message = checked_message(source, outer, entry);
-      return file_.read(message.data_at, message.data_size);
+      return file_.read(message.data_at, std::min<std::uint64_t>(message.data_size, bytes));
     }
     if (outer.op != McapOp::kChunk) {
       throw source.damage(outer.at, "expected a chunk");
@@ -62,7 +64,7 @@ class McapFile final : public FileBag {
     const ChunkCache::Content content = cache_.get(entry.place, [&] { return unpacked(source, outer); });
     ChunkBytes inner(*content, file_, entry.place);
     const McapMessage message = checked_message(inner, mcap_record(inner, entry.offset), entry);
-    return std::string(inner.bytes(message.data_at, message.data_size));
+    return std::string(inner.bytes(message.data_at, message.data_size).substr(0, bytes));
   }
 
  private:

@@ -59,12 +59,14 @@ class Ros1Bag final : public FileBag {
     return entries;
   }
 
-  [[nodiscard]] std::string read(const MessageEntry& entry) const override {
+  [[nodiscard]] std::string read(const MessageEntry& entry) const override { return read_front(entry, kMaxPieceBytes); }
+
+  [[nodiscard]] std::string read_front(const MessageEntry& entry, std::size_t bytes) const override {
     FileBytes source(file_, FileBytes::kOneRecord);
     const Ros1Record outer = ros1_record(source, entry.place);
     if (outer.op != Ros1Op::kChunk) {  // a message outside of any chunk
       check_message(source, outer, entry);
-      return file_.read(outer.data_at, outer.data_size);
+      return file_.read(outer.data_at, std::min<std::uint64_t>(outer.data_size, bytes));
     }
     const Ros1ChunkHeader chunk = chunk_header(source, outer);
     if (chunk.compression == Compression::kNone) {
@@ -73,13 +75,13 @@ class Ros1Bag final : public FileBag {
       if (message.end() > outer.end()) {
         throw source.damage(message.at, "a message that goes beyond its chunk");
       }
-      return file_.read(message.data_at, message.data_size);
+      return file_.read(message.data_at, std::min<std::uint64_t>(message.data_size, bytes));
     }
     const ChunkCache::Content content = cache_.get(entry.place, [&] { return unpacked(chunk); });
     ChunkBytes inner(*content, file_, entry.place);
     const Ros1Record message = ros1_record(inner, entry.offset);
     check_message(inner, message, entry);
-    return std::string(inner.bytes(message.data_at, message.data_size));
+    return std::string(inner.bytes(message.data_at, message.data_size).substr(0, bytes));
   }
 
  private:

@@ -75,10 +75,29 @@ std::string sqlite_uri(const std::filesystem::path& path) {
   return uri + "?mode=ro&immutable=1";
 }
 
+/// Throws Damage where the file is shorter than its header says: SQLite takes zeros for what is missing of a page.
+void check_size(const ReadableFile& file) {
+  constexpr std::uint64_t kHeaderBytes = 100;  // sqlite.org/fileformat2.html, all numbers big-endian
+  const std::string header = file.read(0, kHeaderBytes);
+  const auto number = [&](std::size_t at, std::size_t bytes) {
+    std::uint64_t value = 0;
+    for (std::size_t k = 0; k < bytes; ++k) {
+      value = value << 8U | static_cast<unsigned char>(header[at + k]);
+    }
+    return value;
+  };
+  const std::uint64_t page = number(16, 2) == 1 ? 65536 : number(16, 2);
+  const std::uint64_t pages = number(28, 4);
+  const bool is_valid = pages > 0 && number(24, 4) == number(92, 4);  // old versions do not keep it up
+  if (is_valid && file.size() < page * pages) {
+    throw Damage(file.path(), file.size(), fmt::format("cut short: expected {} bytes", page * pages));
+  }
+}
+
 class SqliteBag final : public FileBag {
  public:
   SqliteBag(const std::filesystem::path& path, const std::filesystem::path& name) : FileBag("rosbag2", name) {
-    const ReadableFile readable(path, name);  // says why where it cannot be read
+    check_size(ReadableFile(path, name));
     open(path);
     try {
       note_journals();
@@ -110,10 +129,13 @@ class SqliteBag final : public FileBag {
     return entries;
   }
 
-  [[nodiscard]] std::string read(const MessageEntry& entry) const override {
+  [[nodiscard]] std::string read(const MessageEntry& entry) const override { return read_front(entry, kMaxPieceBytes); }
+
+  [[nodiscard]] std::string read_front(const MessageEntry& entry, std::size_t bytes) const override {
     const std::lock_guard lock(mutex_);
-    SqliteQuery row(database_, path(), "SELECT data FROM messages WHERE id = ?");
-    row.bind(1, static_cast<std::int64_t>(entry.place));
+    SqliteQuery row(database_, path(), "SELECT substr(data, 1, ?) FROM messages WHERE id = ?");
+    row.bind(1, static_cast<std::int64_t>(bytes));
+    row.bind(2, static_cast<std::int64_t>(entry.place));
     if (!row.next()) {
       throw DataError(
           fmt::format("{}: message {} of {} is missing", path().string(), entry.place, topics_[entry.topic].name));
