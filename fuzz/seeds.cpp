@@ -13,6 +13,9 @@
 #include "dynamic_icp/recording/formats/point_table.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 
+#include "testing/bags_by_hand.hpp"
+#include "testing/db3_by_hand.hpp"
+
 namespace dynamic_icp::fuzz {
 namespace {
 
@@ -100,9 +103,31 @@ class Seeds {
         R"("b","reference_frame":"a","dimensions":{"x":1,"y":2,"z":3},"pose":{"translation":{"x":1,"y":2,"z":3},)"
         R"("rotation":{"w":1,"x":0,"y":0,"z":0}},"linear_velocity":{"x":1,"y":2,"z":3},"class":"car"}]}]})");
     write_texts();
+    write_bags();
   }
 
  private:
+  void write_bags() {
+    const std::vector<by_hand::Channel> channels = {{1, "/p", "sensor_msgs/msg/PointCloud2", "", "cdr"},
+                                                    {2, "/i", "sensor_msgs/msg/Imu", "", "cdr"}};
+    const std::vector<by_hand::Message> messages = {{1, 20, "a"}, {2, 10, std::string(100, 'b')}, {1, 30, ""}};
+    for (const bool has_index : {true, false}) {
+      for (const char* const compression : {"none", "bz2", "lz4", "zstd"}) {
+        by_hand::Layout layout;
+        layout.compression = compression;
+        layout.has_index = has_index;
+        layout.has_crc = false;  // changed bytes are to go on
+        write("rosbag", by_hand::ros1_bag(channels, messages, layout));
+        write("mcap", by_hand::mcap_file(channels, messages, layout));
+      }
+    }
+    by_hand::Layout layout;
+    layout.is_chunked = false;
+    write("mcap", by_hand::mcap_file(channels, messages, layout));
+    formats::make_folder(folder_ / "db3");
+    by_hand::write_db3(folder_ / "db3" / "seed", channels, messages, "PRAGMA page_size = 512;");
+  }
+
   /// The first byte says which text it is, see texts.cpp.
   void write_texts() {
     write("texts",

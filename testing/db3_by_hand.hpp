@@ -27,9 +27,11 @@ inline void execute(const std::filesystem::path& path, const std::string& statem
   }
 }
 
+/// `before`: statements that come first.
 inline void write_db3(const std::filesystem::path& path, const std::vector<Channel>& channels,
-                      const std::vector<Message>& messages) {
+                      const std::vector<Message>& messages, const std::string& before = "") {
   std::string statements =
+      before +
       "PRAGMA synchronous = OFF; BEGIN;"
       "CREATE TABLE topics(id INTEGER PRIMARY KEY,name TEXT NOT NULL,type TEXT NOT NULL,serialization_format TEXT NOT "
       "NULL,offered_qos_profiles TEXT NOT NULL);"

@@ -53,7 +53,7 @@ constexpr std::string_view kSentences[] = {
     "is an array of NumPy (.npy)",
     "is an MCAP recording",
     "is a ROS 1 bag",
-    "is a ROS bag from before version 2.0; convert it with 'rosbag fix' first",
+    "is a ROS bag from before version 2.0; convert it first: 'rosbag fix OLD.bag NEW.bag' (python3-rosbag of Debian)",
     "is an SQLite database, as the .db3 files of ROS 2 bags are",
     "is a PLY file",
     "is a PCD file",
