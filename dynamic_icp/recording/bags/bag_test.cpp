@@ -21,8 +21,8 @@ namespace fs = std::filesystem;
 using by_hand::Channel;
 using by_hand::Message;
 
-const std::vector<Channel> kChannels = {{1, "/points", "sensor_msgs/msg/PointCloud2", "uint8[] data", "cdr"},
-                                        {2, "/tf_static", "tf2_msgs/msg/TFMessage", "x", "cdr"}};
+const std::vector<Channel> kPartChannels = {{1, "/points", "sensor_msgs/msg/PointCloud2", "uint8[] data", "cdr"},
+                                            {2, "/tf_static", "tf2_msgs/msg/TFMessage", "x", "cdr"}};
 
 class Bags : public benchmark::FolderTest {
  protected:
@@ -30,12 +30,12 @@ class Bags : public benchmark::FolderTest {
   static std::vector<Message> messages(std::int64_t from) {
     return {{1, from, "a"}, {1, from + 10, "b"}, {1, from + 20, "c"}};
   }
-  fs::path make_mcap(const std::string& name, std::int64_t from, const std::vector<Channel>& channels = kChannels) {
+  fs::path make_mcap(const std::string& name, std::int64_t from, const std::vector<Channel>& channels = kPartChannels) {
     write_file(folder_ / name, by_hand::mcap_file(channels, messages(from)));
     return folder_ / name;
   }
   fs::path make_bag(const std::string& name, std::int64_t from) {
-    write_file(folder_ / name, by_hand::ros1_bag(kChannels, messages(from)));
+    write_file(folder_ / name, by_hand::ros1_bag(kPartChannels, messages(from)));
     return folder_ / name;
   }
   static std::string content_of(const fs::path& path) {
@@ -106,7 +106,7 @@ TEST_F(Bags, PartsOfARecordingAreOneInTheOrderOfTime) {
   make_mcap("drive_0.mcap", 200);
   make_mcap("drive_1.mcap", 100);
   // Only one part of a recording has what is sent once.
-  make_mcap("drive_10.mcap", 300, {kChannels.front()});
+  make_mcap("drive_10.mcap", 300, {kPartChannels.front()});
   ASSERT_EQ(find_bag(folder_, ""), folder_);
   const std::unique_ptr<Bag> bag = open_bag(folder_);
   EXPECT_EQ(bag->container(), "mcap");
@@ -142,9 +142,9 @@ TEST_F(Bags, OfOldVersionsAreRefusedWithAWayOut) {
 }
 
 TEST_F(Bags, OfRos2HaveMetadata) {
-  by_hand::write_db3(folder_ / "drive/drive_0.db3", kChannels, messages(100));
-  by_hand::write_db3(folder_ / "drive/drive_1.db3", kChannels, messages(200));
-  by_hand::write_db3(folder_ / "drive/left_out.db3", kChannels, messages(100));
+  by_hand::write_db3(folder_ / "drive/drive_0.db3", kPartChannels, messages(100));
+  by_hand::write_db3(folder_ / "drive/drive_1.db3", kPartChannels, messages(200));
+  by_hand::write_db3(folder_ / "drive/left_out.db3", kPartChannels, messages(100));
   write_metadata("drive", "  relative_file_paths:\n    - drive/drive_0.db3\n    - drive/drive_1.db3\n");
   ASSERT_EQ(find_bag(folder_, ""), folder_ / "drive");
   ASSERT_EQ(find_bag(folder_, "rosbag2"), folder_ / "drive");
@@ -165,8 +165,8 @@ TEST_F(Bags, OfRos2MayLieInMcapFiles) {
 }
 
 TEST_F(Bags, OfRos2AreReadWithoutMetadata) {
-  by_hand::write_db3(folder_ / "a_0.db3", kChannels, messages(100));
-  by_hand::write_db3(folder_ / "a_1.db3", kChannels, messages(200));
+  by_hand::write_db3(folder_ / "a_0.db3", kPartChannels, messages(100));
+  by_hand::write_db3(folder_ / "a_1.db3", kPartChannels, messages(200));
   EXPECT_EQ(times_of(*open_bag(find_bag(folder_, ""))), (std::vector<std::int64_t>{100, 110, 120, 200, 210, 220}));
   write_metadata(".", "  relative_file_paths: 7\n");
   const std::unique_ptr<Bag> bag = open_bag(find_bag(folder_, ""));
@@ -175,9 +175,9 @@ TEST_F(Bags, OfRos2AreReadWithoutMetadata) {
 }
 
 TEST_F(Bags, OfRos2MayBePackedAsFiles) {
-  by_hand::write_db3(folder_ / "plain/a.db3", kChannels, messages(100));
+  by_hand::write_db3(folder_ / "plain/a.db3", kPartChannels, messages(100));
   write_file(folder_ / "drive/a.db3.zstd", by_hand::packed("zstd", content_of(folder_ / "plain/a.db3")));
-  write_file(folder_ / "drive/b.mcap.zstd", by_hand::packed("zstd", by_hand::mcap_file(kChannels, messages(200))));
+  write_file(folder_ / "drive/b.mcap.zstd", by_hand::packed("zstd", by_hand::mcap_file(kPartChannels, messages(200))));
   write_metadata("drive",
                  "  relative_file_paths: [a.db3.zstd, b.mcap.zstd]\n  compression_format: zstd\n"
                  "  compression_mode: FILE\n");
@@ -191,7 +191,7 @@ TEST_F(Bags, OfRos2MayBePackedAsFiles) {
 TEST_F(Bags, ThatWereUnpackedLeaveNothing) {
   ASSERT_EQ(::setenv("TMPDIR", (folder_ / "tmp").c_str(), 1), 0);
   fs::create_directories(folder_ / "tmp");
-  write_file(folder_ / "a.mcap.zstd", by_hand::packed("zstd", by_hand::mcap_file(kChannels, messages(200))));
+  write_file(folder_ / "a.mcap.zstd", by_hand::packed("zstd", by_hand::mcap_file(kPartChannels, messages(200))));
   write_file(folder_ / "b.mcap.zstd", by_hand::packed("zstd", "no bag"));
   {
     const std::unique_ptr<Bag> bag = open_bag(folder_ / "a.mcap.zstd");
@@ -202,13 +202,51 @@ TEST_F(Bags, ThatWereUnpackedLeaveNothing) {
   ::unsetenv("TMPDIR");
 }
 
+TEST_F(Bags, ThatArePackedAreReadUpToWhereTheyAreCutOrDamaged) {
+  std::vector<Message> many;
+  std::uint32_t random = 1;
+  for (int k = 0; k < 100; ++k) {
+    std::string noise(4000, '\0');
+    for (char& byte : noise) {
+      random = random * 1664525U + 1013904223U;
+      byte = static_cast<char>(random >> 24U);
+    }
+    many.push_back({1, 100 + k, noise});
+  }
+  const std::string whole = by_hand::packed("zstd", by_hand::mcap_file(kPartChannels, many));
+  std::size_t most = 0;
+  for (std::size_t part = 0; part < 50; ++part) {
+    for (const bool is_cut : {true, false}) {
+      const std::size_t at = whole.size() * part / 50;
+      std::string content = is_cut ? whole.substr(0, at) : whole;
+      if (!is_cut) {
+        content[at] = static_cast<char>(~content[at]);
+      }
+      fs::remove(folder_ / "a.mcap.zstd");
+      write_file(folder_ / "a.mcap.zstd", content);
+      try {
+        const std::unique_ptr<Bag> bag = open_bag(folder_ / "a.mcap.zstd");
+        const std::vector<SeenMessage> seen = messages_of(*bag);
+        most = std::max(most, seen.size());
+        for (std::size_t k = 0; k < seen.size(); ++k) {
+          EXPECT_TRUE(seen[k].data == many[k].data) << at;
+        }
+        EXPECT_TRUE(seen.size() == many.size() || !bag->notes().empty()) << at;
+      } catch (const DataError& error) {
+        EXPECT_NE(std::string(error.what()).find("a.mcap.zstd: "), std::string::npos) << error.what();
+      }
+    }
+  }
+  EXPECT_GT(most, many.size() / 2);
+}
+
 TEST_F(Bags, OfRos2MayBePackedMessageByMessage) {
   std::vector<Message> packed = messages(100);
   for (Message& message : packed) {
     message.data = by_hand::packed("zstd", message.data + std::string(1000, 'x'));
   }
   packed.push_back({1, 500, "not packed"});
-  by_hand::write_db3(folder_ / "drive/a.db3", kChannels, packed);
+  by_hand::write_db3(folder_ / "drive/a.db3", kPartChannels, packed);
   write_metadata("drive", "  relative_file_paths: [a.db3]\n  compression_format: zstd\n  compression_mode: MESSAGE\n");
   const std::unique_ptr<Bag> bag = open_bag(folder_ / "drive");
   const std::vector<MessageEntry> entries = bag->messages({{0}});

@@ -213,7 +213,8 @@ Unpacked unpack_zstd(std::string_view packed, std::uint64_t max_bytes) {
 
 namespace {
 
-/// Passes what comes out of a packed file on until `take` says that it is enough; what is wrong, in words.
+/// Passes what comes out of a packed file on until `take` says that it is enough; where it is cut short, says so.
+/// Throws DataError where it is damaged.
 std::string stream_zstd_file(const std::filesystem::path& packed, const std::function<bool(std::string_view)>& take) {
   const ReadableFile file(packed);
   ZstdDecoder decoder;
@@ -233,7 +234,7 @@ std::string stream_zstd_file(const std::filesystem::path& packed, const std::fun
         return {};
       }
       if (!step.fault.empty()) {
-        return fmt::format("{} before byte {}", step.fault, at);
+        throw DataError(fmt::format("{}: {} before byte {}", packed.string(), step.fault, at));
       }
     }
   }
@@ -244,10 +245,13 @@ std::string stream_zstd_file(const std::filesystem::path& packed, const std::fun
 
 std::string zstd_file_head(const std::filesystem::path& packed, std::size_t count) {
   std::string head;
-  stream_zstd_file(packed, [&](std::string_view bytes) {
-    head += bytes.substr(0, count - head.size());
-    return head.size() < count;
-  });
+  try {
+    stream_zstd_file(packed, [&](std::string_view bytes) {
+      head += bytes.substr(0, count - head.size());
+      return head.size() < count;
+    });
+  } catch (const DataError&) {  // what came before tells what it is
+  }
   return head;
 }
 

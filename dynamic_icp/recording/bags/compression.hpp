@@ -30,13 +30,13 @@ Unpacked unpack(Compression compression, std::string_view packed, std::uint64_t 
 /// Unpacks Zstandard whose size nobody states, up to `max_bytes`.
 Unpacked unpack_zstd(std::string_view packed, std::uint64_t max_bytes);
 
-/// The first bytes, at most `count`, of a file that is packed with Zstandard; fewer where it is damaged. Throws
-/// DataError where it cannot be read.
+/// The first bytes, at most `count`, of a file that is packed with Zstandard; fewer where it is damaged.
 std::string zstd_file_head(const std::filesystem::path& packed, std::size_t count);
 
-/// Unpacks a file that is packed with Zstandard into a new one, in constant memory; whether it was cut short or
-/// damaged, in words, and what came before is written all the same. Throws DataError naming file and reason where the
-/// machine fails.
+/// Unpacks a file that is packed with Zstandard into a new one, in constant memory. Where it is cut short, what is
+/// there is written, and the place of the cut returned in words; else nothing. Throws DataError naming file and reason
+/// where it is damaged (nobody knows since where: the bytes have no checksum until their end), and where the machine
+/// fails.
 std::string unpack_zstd_file(const std::filesystem::path& packed, const std::filesystem::path& unpacked);
 
 }  // namespace dynamic_icp::bags

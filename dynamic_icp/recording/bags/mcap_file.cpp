@@ -356,8 +356,8 @@ class McapFile final : public FileBag {
     for (ByteReader pairs(content.text(), source, begin); !pairs.is_done();) {
       const std::int64_t time = mcap_time(pairs);
       const auto offset = pairs.number<std::uint64_t>();
-      if (offset >= chunk.size || offset >= kMaxPieceBytes) {
-        throw source.damage(at, "the message index of a chunk names a place beyond it");
+      if (offset >= chunk.size || offset >= kMaxPieceBytes || time < chunk.first_ns || time > chunk.last_ns) {
+        throw source.damage(at, "the message index of a chunk names a place or a time beyond it");
       }
       entries.push_back({time, chunk.at, static_cast<std::uint32_t>(offset), topic, 0});
     }
@@ -392,12 +392,13 @@ class McapFile final : public FileBag {
         throw source.damage(
             record.at, fmt::format("a message of {} bytes, expected at most {}", message.data_size, kMaxPieceBytes));
       }
-      if (const auto topic = topic_of_.find(message.channel);
-          topic != topic_of_.end() && topic->second == entry.topic) {
+      const auto topic = topic_of_.find(message.channel);
+      if (topic != topic_of_.end() && topic->second == entry.topic && message.log_time_ns == entry.recorded_ns) {
         return message;
       }
     }
-    throw source.damage(record.at, fmt::format("expected a message of {}", topics_[entry.topic].name));
+    throw source.damage(record.at, fmt::format("expected a message of {}, recorded at {} ns", topics_[entry.topic].name,
+                                               entry.recorded_ns));
   }
 
   ReadableFile file_;

@@ -21,6 +21,8 @@ namespace {
 /// A chunk as the end of the file describes it.
 struct Ros1Chunk {
   std::uint64_t at = 0;
+  std::int64_t first_ns = 0;
+  std::int64_t last_ns = 0;
   std::vector<std::pair<std::uint32_t, std::uint32_t>> counts;  ///< connections and their messages
 };
 
@@ -165,8 +167,10 @@ class Ros1Bag final : public FileBag {
       }
     }
     if (!chunk.counts.empty()) {
-      see(ros1_time(ros1_number<std::uint64_t>(source, info, "start_time")));
-      see(ros1_time(ros1_number<std::uint64_t>(source, info, "end_time")));
+      chunk.first_ns = ros1_time(ros1_number<std::uint64_t>(source, info, "start_time"));
+      chunk.last_ns = ros1_time(ros1_number<std::uint64_t>(source, info, "end_time"));
+      see(chunk.first_ns);
+      see(chunk.last_ns);
     }
     chunks_.push_back(std::move(chunk));
   }
@@ -323,8 +327,8 @@ class Ros1Bag final : public FileBag {
         while (!data.is_done()) {
           const std::int64_t time = ros1_time(data.number<std::uint64_t>());
           const auto offset = data.number<std::uint32_t>();
-          if (offset >= header.size) {
-            throw source.damage(at, "the index of a chunk names a place beyond it");
+          if (offset >= header.size || time < chunk.first_ns || time > chunk.last_ns) {
+            throw source.damage(at, "the index of a chunk names a place or a time beyond it");
           }
           entries.push_back({time, chunk.at, offset, topic, 0});
         }
@@ -355,8 +359,10 @@ class Ros1Bag final : public FileBag {
     const auto topic = record.op == Ros1Op::kMessage
                            ? topic_of_.find(ros1_number<std::uint32_t>(source, record, "conn"))
                            : topic_of_.end();
-    if (topic == topic_of_.end() || topic->second != entry.topic) {
-      throw source.damage(record.at, fmt::format("expected a message of {}", topics_[entry.topic].name));
+    if (topic == topic_of_.end() || topic->second != entry.topic ||
+        ros1_time(ros1_number<std::uint64_t>(source, record, "time")) != entry.recorded_ns) {
+      throw source.damage(record.at, fmt::format("expected a message of {}, recorded at {} ns",
+                                                 topics_[entry.topic].name, entry.recorded_ns));
     }
     if (record.data_size > kMaxPieceBytes) {
       throw source.damage(record.at,

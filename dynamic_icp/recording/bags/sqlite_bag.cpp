@@ -129,13 +129,19 @@ class SqliteBag final : public FileBag {
     return entries;
   }
 
-  [[nodiscard]] std::string read(const MessageEntry& entry) const override { return read_front(entry, kMaxPieceBytes); }
+  [[nodiscard]] std::string read(const MessageEntry& entry) const override {
+    return read_by("SELECT data FROM messages WHERE id = ?", entry);
+  }
 
   [[nodiscard]] std::string read_front(const MessageEntry& entry, std::size_t bytes) const override {
+    return read_by(fmt::format("SELECT substr(data, 1, {}) FROM messages WHERE id = ?", bytes), entry);
+  }
+
+ private:
+  [[nodiscard]] std::string read_by(std::string_view query, const MessageEntry& entry) const {
     const std::lock_guard lock(mutex_);
-    SqliteQuery row(database_, path(), "SELECT substr(data, 1, ?) FROM messages WHERE id = ?");
-    row.bind(1, static_cast<std::int64_t>(bytes));
-    row.bind(2, static_cast<std::int64_t>(entry.place));
+    SqliteQuery row(database_, path(), query);
+    row.bind(1, static_cast<std::int64_t>(entry.place));
     if (!row.next()) {
       throw DataError(
           fmt::format("{}: message {} of {} is missing", path().string(), entry.place, topics_[entry.topic].name));
@@ -143,7 +149,6 @@ class SqliteBag final : public FileBag {
     return row.bytes(0);
   }
 
- private:
   void open(const std::filesystem::path& file) {
     const int code = sqlite3_open_v2(sqlite_uri(file).c_str(), &database_,
                                      SQLITE_OPEN_READONLY | SQLITE_OPEN_URI | SQLITE_OPEN_NOMUTEX, nullptr);

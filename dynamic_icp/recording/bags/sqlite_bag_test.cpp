@@ -19,14 +19,14 @@ namespace {
 namespace fs = std::filesystem;
 using by_hand::Message;
 
-const std::vector<by_hand::Channel> kChannels = {{1, "/points", "sensor_msgs/msg/PointCloud2", "", "cdr"},
-                                                 {2, "/imu", "sensor_msgs/msg/Imu", "", "cdr"}};
-const std::vector<Message> kMessages = {
+const std::vector<by_hand::Channel> kDb3Channels = {{1, "/points", "sensor_msgs/msg/PointCloud2", "", "cdr"},
+                                                    {2, "/imu", "sensor_msgs/msg/Imu", "", "cdr"}};
+const std::vector<Message> kDb3Messages = {
     {1, 400, std::string(30000, 'p')}, {2, 200, "i2"}, {2, 100, std::string("\0\1", 2)}, {1, 300, ""}};
-const std::vector<SeenMessage> kExpected = {{"/imu", 100, std::string("\0\1", 2)},
-                                            {"/imu", 200, "i2"},
-                                            {"/points", 300, ""},
-                                            {"/points", 400, std::string(30000, 'p')}};
+const std::vector<SeenMessage> kDb3Expected = {{"/imu", 100, std::string("\0\1", 2)},
+                                               {"/imu", 200, "i2"},
+                                               {"/points", 300, ""},
+                                               {"/points", 400, std::string(30000, 'p')}};
 
 class SqliteBag : public benchmark::FolderTest {
  protected:
@@ -47,7 +47,7 @@ class SqliteBag : public benchmark::FolderTest {
 
 TEST_F(SqliteBag, HoldsTopicsAndMessages) {
   const fs::path path = folder_ / "100% odd?name#.db3";
-  by_hand::write_db3(path, kChannels, kMessages);
+  by_hand::write_db3(path, kDb3Channels, kDb3Messages);
   const std::string before = content_of(path);
   {
     const std::unique_ptr<Bag> bag = open_bag(path);
@@ -57,7 +57,7 @@ TEST_F(SqliteBag, HoldsTopicsAndMessages) {
     EXPECT_EQ(bag->topics()[1].type, "sensor_msgs/PointCloud2");
     EXPECT_EQ(bag->topics()[1].encoding, Encoding::kCdr);
     EXPECT_EQ(bag->topics()[1].messages, 2U);
-    EXPECT_EQ(messages_of(*bag), kExpected);
+    EXPECT_EQ(messages_of(*bag), kDb3Expected);
     EXPECT_TRUE(bag->notes().empty());
   }
   EXPECT_EQ(content_of(path), before);
@@ -65,14 +65,14 @@ TEST_F(SqliteBag, HoldsTopicsAndMessages) {
 }
 
 TEST_F(SqliteBag, IsReadWhereNobodyMayWrite) {
-  by_hand::write_db3(folder_ / "locked/a.db3", kChannels, kMessages);
+  by_hand::write_db3(folder_ / "locked/a.db3", kDb3Channels, kDb3Messages);
   fs::permissions(folder_ / "locked", fs::perms::owner_read | fs::perms::owner_exec);
-  EXPECT_EQ(messages_of(*open_bag(folder_ / "locked/a.db3")), kExpected);
+  EXPECT_EQ(messages_of(*open_bag(folder_ / "locked/a.db3")), kDb3Expected);
   fs::permissions(folder_ / "locked", fs::perms::owner_all);
 }
 
 TEST_F(SqliteBag, SaysWhatARecorderThatWasEndedLeft) {
-  by_hand::write_db3(folder_ / "a.db3", kChannels, kMessages);
+  by_hand::write_db3(folder_ / "a.db3", kDb3Channels, kDb3Messages);
   write_file(folder_ / "a.db3-wal", "not empty");
   const std::unique_ptr<Bag> bag = open_bag(folder_ / "a.db3");
   ASSERT_EQ(bag->notes().size(), 1U);
@@ -93,7 +93,7 @@ TEST_F(SqliteBag, MayBeNoBag) {
 }
 
 TEST_F(SqliteBag, IsReadOrRefusedWhereItIsCutOrDamaged) {
-  by_hand::write_db3(folder_ / "a.db3", kChannels, kMessages);
+  by_hand::write_db3(folder_ / "a.db3", kDb3Channels, kDb3Messages);
   const std::string whole = content_of(folder_ / "a.db3");
   const auto check = [&](const std::string& content) {
     fs::remove(folder_ / "damaged.db3");
