@@ -233,7 +233,7 @@ TEST_P(Containers, AreReadOrRefusedWhereTheyAreDamaged) {
 }
 
 INSTANTIATE_TEST_SUITE_P(All, Containers, ::testing::ValuesIn(all_cases()),
-                         [](const auto& info) { return info.param.name; });
+                         [](const auto& tested) { return tested.param.name; });
 
 }  // namespace
 }  // namespace dynamic_icp::bags
