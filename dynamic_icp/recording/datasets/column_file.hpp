@@ -8,6 +8,7 @@
 #include <variant>
 #include <vector>
 
+#include "dynamic_icp/recording/datasets/column_scan.hpp"
 #include "dynamic_icp/recording/formats/npy.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/pcd_read.hpp"
@@ -24,22 +25,22 @@ enum class ColumnFileKind : std::uint8_t {
 };
 
 /// One scan in such a file: arrays of numbers by name.
-class ColumnFile {
+class ColumnFile final : public NamedColumns {
  public:
   /// Opens a file. Throws DataError naming file, place and what was expected.
   ColumnFile(ColumnFileKind kind, const std::filesystem::path& path);
 
   /// The names of the arrays of numbers, in the order of the file.
-  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  [[nodiscard]] const std::vector<std::string>& names() const override { return names_; }
 
   /// Of arrays of the file that hold no numbers, why, in sentences: they are not among the names.
   [[nodiscard]] const std::vector<std::string>& unusable() const { return unusable_; }
 
   /// The array of that name. Throws DataError where there is none or it is damaged.
-  [[nodiscard]] formats::NpyArray read(const std::string& name) const;
+  [[nodiscard]] formats::NpyArray read(const std::string& name) const override;
 
   /// What was odd but could be lived with; empty: nothing.
-  [[nodiscard]] std::string warning() const;
+  [[nodiscard]] std::string warning() const override;
 
   /// The Doppler file of a pair.
   static std::filesystem::path doppler_file(const std::filesystem::path& points);

@@ -1,7 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 #include <algorithm>
-#include <map>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -9,12 +8,10 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/column_file.hpp"
-#include "dynamic_icp/recording/datasets/field_names.hpp"
+#include "dynamic_icp/recording/datasets/column_scan.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
-#include "dynamic_icp/recording/datasets/foreign_numbers.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
-#include "dynamic_icp/recording/datasets/point_times.hpp"
 #include "dynamic_icp/recording/datasets/scan_stamps.hpp"
 #include "dynamic_icp/recording/datasets/truth_search.hpp"
 
@@ -24,7 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kDopplerEnding = "_dop.npy";
-constexpr std::size_t kScansSearched = 20;  // for points, to tell by them what columns mean
 
 std::string_view extension(ColumnFileKind kind) {
   switch (kind) {
@@ -50,49 +46,6 @@ bool is_npy_pair(const fs::path& points) {
          fs::is_regular_file(ColumnFile::doppler_file(points));
 }
 
-/// The arrays of one file, each read once.
-class Arrays {
- public:
-  Arrays(const ColumnFile& file, const fs::path& path) : file_(file), path_(path) {}
-
-  const formats::NpyArray& get(const FieldColumn& field) {
-    auto found = arrays_.find(field.array);
-    if (found == arrays_.end()) {
-      found = arrays_.emplace(field.array, file_.read(field.array)).first;
-    }
-    const formats::NpyArray& array = found->second;
-    if (field.whole && formats::columns_of(array) != 1) {
-      throw DataError(fmt::format("{}: has {} columns, expected one", array.origin, formats::columns_of(array)));
-    }
-    rows_ = arrays_.size() == 1 ? formats::rows_of(array) : rows_;
-    if (formats::rows_of(array) != rows_) {
-      throw DataError(fmt::format("{}: array '{}' of shape ({}) has {} rows, expected {} as in the others",
-                                  path_.string(), field.array, fmt::join(array.shape, ", "), formats::rows_of(array),
-                                  rows_));
-    }
-    return array;
-  }
-
-  std::vector<double> values(const FieldColumn& field) { return formats::column_as_doubles(get(field), field.column); }
-
-  std::vector<Eigen::Vector3d> vectors(const std::array<FieldColumn, 3>& fields) {
-    const std::vector<double> x = values(fields[0]);
-    const std::vector<double> y = values(fields[1]);
-    const std::vector<double> z = values(fields[2]);
-    std::vector<Eigen::Vector3d> vectors(x.size());
-    for (std::size_t i = 0; i < x.size(); ++i) {
-      vectors[i] = {x[i], y[i], z[i]};
-    }
-    return vectors;
-  }
-
- private:
-  const ColumnFile& file_;
-  const fs::path& path_;
-  std::map<std::string, formats::NpyArray> arrays_;
-  std::size_t rows_ = 0;
-};
-
 class ColumnDataset final : public Dataset {
  public:
   ColumnDataset(ColumnFileKind kind, const fs::path& found, const OpenOptions& options) : kind_(kind) {
@@ -108,10 +61,12 @@ class ColumnDataset final : public Dataset {
     }
     find_stamps(folder, options.period_s);
     const ColumnFile first(kind_, files_.front());
-    fields_ = map_fields(first.names(), options.fields, files_.front().string(), first.unusable());
-    assumptions_.insert(assumptions_.end(), fields_.assumptions.begin(), fields_.assumptions.end());
-    find_time_unit(options.period_s);
-    check_channels();
+    meaning_ = find_meaning(
+        map_fields(first.names(), options.fields, files_.front().string(), first.unusable()), files_.size(),
+        [&](std::size_t i) {
+          return ColumnsOfScan{std::make_unique<ColumnFile>(kind_, files_[i]), files_[i]};
+        },
+        options.period_s, assumptions_);
     take_calibration(folder);
     if (folder.filename().string().find("compensated") != std::string::npos) {
       doppler_kind_ = DopplerKind::kCompensated;
@@ -134,43 +89,15 @@ class ColumnDataset final : public Dataset {
 
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     const fs::path& path = files_.at(index);
-    const ColumnFile file(kind_, path);
-    Arrays arrays(file, path);
-    RawScan raw;
-    raw.stamp = stamps_[index];
+    RawScan raw = read_scan(ColumnFile(kind_, path), meaning_, stamps_[index], path);
     raw.doppler_kind = doppler_kind_;
-    raw.warning = file.warning();
-    raw.points = arrays.vectors(fields_.point);
-    raw.doppler = arrays.values(fields_.doppler);
-    refuse_foreign_numbers(raw, path);
-    set_channels(file, path, raw);
-    if (fields_.time) {
-      raw.times = times_after(raw.stamp, arrays.get(*fields_.time), time_unit_);
-    }
-    if (fields_.line_of_sight) {
-      raw.directions = arrays.vectors(*fields_.line_of_sight);
-    }
+    set_mountings(path, raw);
     return raw;
   }
 
   [[nodiscard]] std::vector<PointColumn> columns(std::size_t index) const override {
     const fs::path& path = files_.at(index);
-    const ColumnFile file(kind_, path);
-    Arrays arrays(file, path);
-    const std::size_t points = formats::rows_of(arrays.get(fields_.doppler));
-    std::vector<PointColumn> columns;
-    for (const std::string& name : file.names()) {
-      if (fields_.uses(name)) {
-        continue;
-      }
-      const formats::NpyArray array = file.read(name);
-      const bool of_points = (array.shape.size() == 1 || array.shape.size() == 2) && array.shape.front() == points;
-      for (std::size_t k = 0; of_points && k < formats::columns_of(array); ++k) {
-        columns.push_back({formats::columns_of(array) == 1 ? name : fmt::format("{}[{}]", name, k),
-                           formats::column_as_doubles(array, k), !formats::is_float(array.type)});
-      }
-    }
-    return columns;
+    return other_columns(ColumnFile(kind_, path), meaning_.fields, path);
   }
 
  private:
@@ -219,22 +146,7 @@ class ColumnDataset final : public Dataset {
     assumptions_.insert(assumptions_.end(), said.begin(), said.end());
   }
 
-  /// Puts a column into the scan; why it is none of the channel where it is not, else empty.
-  static std::string set_channel(const ColumnFile& file, const ChannelColumn& column, RawScan& raw) {
-    if (std::find(file.names().begin(), file.names().end(), column.array) == file.names().end()) {
-      return "is missing";
-    }
-    const formats::NpyArray array = file.read(column.array);
-    const bool is_column = array.shape.size() == 1 || (array.shape.size() == 2 && array.shape[1] == 1);
-    return is_column
-               ? formats::set_channel(raw, column.channel, formats::column_as_doubles(array))
-               : fmt::format("has the shape ({}), expected one number for each point", fmt::join(array.shape, ", "));
-  }
-
-  void set_channels(const ColumnFile& file, const fs::path& path, RawScan& raw) const {
-    for (const ChannelColumn& column : fields_.channels) {
-      formats::warn_of_column(raw, path, column.array, set_channel(file, column, raw));
-    }
+  void set_mountings(const fs::path& path, RawScan& raw) const {
     const std::vector<std::uint8_t>& sensor = raw.channels.sensor;
     const std::size_t sensors = calibration_.mountings.size();
     const auto unknown = std::find_if(sensor.begin(), sensor.end(), [&](std::size_t k) { return k >= sensors; });
@@ -248,30 +160,11 @@ class ColumnDataset final : public Dataset {
     raw.mountings = calibration_.mountings;
   }
 
-  /// What the first scan with points contradicts is no channel of the recording.
-  void check_channels() {
-    RawScan raw;
-    for (std::size_t i = 0;
-         !fields_.channels.empty() && raw.points.empty() && i < std::min(files_.size(), kScansSearched); ++i) {
-      const ColumnFile file(kind_, files_[i]);
-      Arrays arrays(file, files_[i]);
-      raw.points = arrays.vectors(fields_.point);
-      raw.doppler = arrays.values(fields_.doppler);
-      std::erase_if(fields_.channels, [&](const ChannelColumn& column) {
-        const std::string reason = set_channel(file, column, raw);
-        if (!reason.empty()) {
-          assumptions_.push_back(
-              fmt::format("{}: column '{}' is not used: it {}", files_[i].string(), column.array, reason));
-        }
-        return !reason.empty();
-      });
-    }
-  }
-
   void take_calibration(const fs::path& folder) {
     calibration_ = find_calibration(folder, assumptions_).value_or(Calibration{});
     const auto is_sensor = [](const ChannelColumn& column) { return column.channel == formats::Channel::kSensor; };
-    if (!calibration_.mountings.empty() && std::none_of(fields_.channels.begin(), fields_.channels.end(), is_sensor)) {
+    if (!calibration_.mountings.empty() &&
+        std::none_of(meaning_.fields.channels.begin(), meaning_.fields.channels.end(), is_sensor)) {
       assumptions_.push_back(
           fmt::format("{}: the mountings of its {} sensors are not used: no column says which of them measured a point",
                       (folder / kCalibrationFile).string(), calibration_.mountings.size()));
@@ -279,31 +172,10 @@ class ColumnDataset final : public Dataset {
     }
   }
 
-  /// The first scans may be empty.
-  void find_time_unit(double period_s) {
-    if (!fields_.time) {
-      return;
-    }
-    const std::size_t most = std::min(files_.size(), kScansSearched);
-    for (std::size_t i = 0; i < most; ++i) {
-      const ColumnFile file(kind_, files_[i]);
-      Arrays arrays(file, files_[i]);
-      const formats::NpyArray& column = arrays.get(*fields_.time);
-      time_unit_ = time_unit(fields_.time->array, column, period_s);
-      if (formats::rows_of(column) > 0) {
-        break;
-      }
-    }
-    if (!time_unit_.assumption.empty()) {
-      assumptions_.push_back(time_unit_.assumption);
-    }
-  }
-
   ColumnFileKind kind_;
   std::vector<fs::path> files_;
   std::vector<Stamp> stamps_;
-  FieldMap fields_;
-  TimeUnit time_unit_;
+  ColumnMeaning meaning_;
   Calibration calibration_;
   DopplerKind doppler_kind_ = DopplerKind::kRelative;
   Truth truth_;
