@@ -63,6 +63,11 @@ void add_input_options(CLI::App& command, datasets::InputSettings& settings) {
   add_repeatable(command, "--lidar", "NAME",
                  "Sensor to take of a recording with several; repeatable (default: the layout's choice)",
                  [&settings](const std::string& text) { datasets::set(settings, "lidar.", text); });
+  add_repeatable(command, "--topic", "NAME",
+                 "Topic of a bag to read; repeatable for the sensors of a rig (default: the one with a Doppler)",
+                 [&settings](const std::string& text) { datasets::set(settings, "topic.", text); });
+  add(command, settings, "truth-topic", "NAME",
+      "Topic of a bag whose poses are ground truth, or PARENT>CHILD of its transforms (default: one named so)");
   add(command, settings, "period", "S",
       fmt::format("Time from scan to scan where the recording has no times (default {} s)", settings.open.period_s));
   add(command, settings, "time-scale", "F",

@@ -14,8 +14,8 @@ class App;
 
 namespace dynamic_icp::apps {
 
-/// --format, --field, --lidar, --period and --time-scale, and those of `add_correction_options`: what a user may say
-/// about a recording.
+/// --format, --field, --lidar, --topic, --truth-topic, --period and --time-scale, and those of
+/// `add_correction_options`: what a user may say about a recording.
 void add_input_options(CLI::App& command, datasets::InputSettings& settings);
 
 /// --doppler-sign, --doppler-kind, --doppler-scale, --point-scale, --columns: how numbers of a scan are corrected.

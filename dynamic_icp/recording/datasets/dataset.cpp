@@ -22,6 +22,7 @@ struct Layout {
   std::unique_ptr<Dataset> (*open)(const fs::path& folder, const OpenOptions& options);
   fs::path (*find_named)(const fs::path& input) = nullptr;  ///< instead of `find` when the user names the layout
   bool has_choices = false;                                 ///< it looks at fields and sensors of the options itself
+  bool has_topics = false;                                  ///< the same of topics
 };
 
 // The first that finds something is taken.
@@ -34,6 +35,9 @@ constexpr Layout kLayouts[] = {
      open_boreas, find_boreas_scans},
     {"aevascenes", "sequence.json beside pointcloud_compensated/ or pointcloud_raw/", find_aevascenes, open_aevascenes,
      nullptr, true},
+    {"rosbag", "*.bag of ROS 1", find_rosbag, open_bag, nullptr, true, true},
+    {"rosbag2", "a folder with metadata.yaml, or *.db3, of ROS 2", find_rosbag2, open_bag, nullptr, true, true},
+    {"mcap", "*.mcap", find_mcap, open_bag, nullptr, true, true},
     // What any data set may hold comes last.
     {"npz", "*.npz, or <name>.npy with <name>_dop.npy", find_npz, open_npz, nullptr, true},
     {"pcd", "*.pcd", find_pcd, open_pcd, nullptr, true},
@@ -54,6 +58,10 @@ std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& folder, c
     throw UsageError(
         fmt::format("{} has neither columns with names nor several sensors to choose from; '{}' was asked for",
                     layout.name, options.fields.empty() ? options.sensors.front() : options.fields.begin()->first));
+  }
+  if (!layout.has_topics && !(options.topics.empty() && options.truth_topic.empty())) {
+    throw UsageError(fmt::format("{} has no topics to choose from, as bags have; '{}' was asked for", layout.name,
+                                 options.topics.empty() ? options.truth_topic : options.topics.front()));
   }
   return layout.open(folder, options);
 }
@@ -118,17 +126,8 @@ Match match_named(const fs::path& input, const std::string& format) {
   throw UsageError(fmt::format("unknown format '{}'; known are: auto{}", format, looked_for()));
 }
 
-}  // namespace
-
-std::vector<std::string> known_formats() {
-  std::vector<std::string> names;
-  for (const Layout& layout : kLayouts) {
-    names.emplace_back(layout.name);
-  }
-  return names;
-}
-
-std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& options) {
+/// The layout of the input and what to open. Throws NotARecording where it is of none.
+Match match_of(const fs::path& input, const OpenOptions& options) {
   std::error_code fault;
   const fs::file_status status = fs::status(input, fault);
   if (status.type() == fs::file_type::not_found) {
@@ -140,13 +139,33 @@ std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& 
   formats::refuse_irregular(input);
   const Match match = options.format == "auto" ? match_any(input) : match_named(input, options.format);
   if (match.layout != nullptr) {
-    return open_as(*match.layout, match.folder, options);
+    return match;
   }
   if (const std::string obstacle = known_obstacle(input); !obstacle.empty()) {
     throw NotARecording(obstacle);
   }
   throw NotARecording(
       fmt::format("{}: not a recording of a known layout. Looked for:{}", input.string(), looked_for()));
+}
+
+}  // namespace
+
+FoundDataset find_dataset(const fs::path& input, const OpenOptions& options) {
+  Match match = match_of(input, options);
+  return {std::string(match.layout->name), std::move(match.folder)};
+}
+
+std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& options) {
+  const Match match = match_of(input, options);
+  return open_as(*match.layout, match.folder, options);
+}
+
+std::vector<std::string> known_formats() {
+  std::vector<std::string> names;
+  for (const Layout& layout : kLayouts) {
+    names.emplace_back(layout.name);
+  }
+  return names;
 }
 
 }  // namespace dynamic_icp::datasets

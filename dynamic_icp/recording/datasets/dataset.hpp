@@ -84,6 +84,18 @@ class Dataset {
 /// several recordings; UsageError for an unknown format or options that the format does not have.
 std::unique_ptr<Dataset> open_dataset(const std::filesystem::path& input, const OpenOptions& options = {});
 
+/// Where a recording was found, and of which layout it is.
+struct FoundDataset {
+  std::string format;  ///< as `--format` takes it
+  std::filesystem::path path;
+
+  /// Whether it is one of messages in topics.
+  [[nodiscard]] bool is_bag() const { return format == "rosbag" || format == "rosbag2" || format == "mcap"; }
+};
+
+/// What `open_dataset` would open. Throws as it does, but for what only opening shows.
+FoundDataset find_dataset(const std::filesystem::path& input, const OpenOptions& options = {});
+
 /// The layouts that can be read, for `--format` and its help.
 std::vector<std::string> known_formats();
 

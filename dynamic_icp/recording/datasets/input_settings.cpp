@@ -76,6 +76,10 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
     settings.open.fields[name.substr(6)] = text;
   } else if (name.starts_with("lidar.")) {
     settings.open.sensors.push_back(text);
+  } else if (name.starts_with("topic.")) {
+    settings.open.topics.push_back(text);
+  } else if (name == "truth-topic") {
+    settings.open.truth_topic = text;
   } else if (name == "period") {
     settings.open.period_s = number(name, text, kMinPeriod_s, kMaxPeriod_s, " s");
   } else if (name == "doppler-sign") {
@@ -108,6 +112,12 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
   }
   for (std::size_t k = 0; k < settings.open.sensors.size(); ++k) {
     all.emplace_back(fmt::format("lidar.{}", k + 1), settings.open.sensors[k]);
+  }
+  for (std::size_t k = 0; k < settings.open.topics.size(); ++k) {
+    all.emplace_back(fmt::format("topic.{}", k + 1), settings.open.topics[k]);
+  }
+  if (!settings.open.truth_topic.empty()) {
+    all.emplace_back("truth-topic", settings.open.truth_topic);
   }
   if (settings.open.period_s != OpenOptions{}.period_s) {
     add_number("period", settings.open.period_s);

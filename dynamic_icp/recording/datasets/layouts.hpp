@@ -120,6 +120,18 @@ std::unique_ptr<Dataset> open_npz(const std::filesystem::path& found, const Open
 std::unique_ptr<Dataset> open_pcd(const std::filesystem::path& found, const OpenOptions& options = {});
 std::unique_ptr<Dataset> open_ply(const std::filesystem::path& found, const OpenOptions& options = {});
 
+// Recordings of messages, whatever their container: a bag of ROS 1, one of ROS 2 (a folder with metadata.yaml, or a
+// *.db3 file), an MCAP file alone. bag_dataset.hpp says how clouds become scans.
+
+/// The bag of that container that the input is, or that lies up to three levels below it; else empty. Throws DataError
+/// that lists them when there are several.
+std::filesystem::path find_rosbag(const std::filesystem::path& input);
+std::filesystem::path find_rosbag2(const std::filesystem::path& input);
+std::filesystem::path find_mcap(const std::filesystem::path& input);
+
+/// Opens any of them.
+std::unique_ptr<Dataset> open_bag(const std::filesystem::path& found, const OpenOptions& options = {});
+
 /// A folder of *.bin files that nothing else was recognised by: `input` itself, or one named velodyne up to three
 /// levels below it; empty when there is none.
 std::filesystem::path find_bin_folder(const std::filesystem::path& input);

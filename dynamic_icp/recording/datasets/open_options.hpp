@@ -13,12 +13,20 @@ namespace dynamic_icp::datasets {
 struct OpenOptions {
   std::string format = "auto";  ///< or one of known_formats()
 
-  /// Of layouts whose columns have names (npz, pcd, ply): the column that holds x, y, z, doppler or time, where it is
-  /// not to be guessed from the names in the wild (field_names.hpp).
+  /// Of layouts whose columns have names (npz, pcd, ply, bags): the column that holds x, y, z, doppler or time, where
+  /// it is not to be guessed from the names in the wild (field_names.hpp).
   std::map<std::string, std::string> fields = {};
 
   /// Of recordings with several sensors: those to be merged, by their names there. Empty: the layout's own choice.
   std::vector<std::string> sensors = {};
+
+  /// Of bags: the topics of clouds to read; several are the sensors of a rig, the first of which gives frame and times.
+  /// Empty: the only one whose points have a Doppler.
+  std::vector<std::string> topics = {};
+
+  /// Of bags: the topic whose poses are ground truth, or "parent>child", a pair of frames of transforms. Empty: one
+  /// whose name says so.
+  std::string truth_topic = {};
 
   /// Time from scan to scan where the recording has no times, s.
   double period_s = 0.1;
