@@ -19,6 +19,7 @@
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
+#include "apps/bag_info.hpp"
 #include "apps/calibration_info.hpp"
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
@@ -272,8 +273,12 @@ Json points_json(const PointsSeen& seen) {
 }
 
 void print_json(const InfoOptions& options, const datasets::Dataset& dataset, const TimesSeen& times,
-                const PointsSeen& seen, const diagnosis::Diagnosis& diagnosis) {
+                const PointsSeen& seen, const diagnosis::Diagnosis& diagnosis,
+                const std::optional<datasets::BagSummary>& bag) {
   Json json = {{"input", options.input}, {"format", dataset.format()}, {"scans", dataset.size()}};
+  if (bag) {
+    json["topics"] = topics_json(*bag);
+  }
   if (dataset.size() > 0) {
     json["first_timestamp"] = format_seconds(dataset.stamp(0));
     json["last_timestamp"] = format_seconds(dataset.stamp(dataset.size() - 1));
@@ -300,6 +305,26 @@ void print_json(const InfoOptions& options, const datasets::Dataset& dataset, co
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
 }
 
+/// A bag of other messages: its topics are all that there is to say.
+void print_without_scans(const InfoOptions& options, const datasets::BagSummary& bag) {
+  if (options.json) {
+    const Json json = {{"input", options.input},
+                       {"format", bag.container},
+                       {"scans", 0},
+                       {"topics", topics_json(bag)},
+                       {"assumptions", bag.notes}};
+    fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
+    return;
+  }
+  fmt::print("input        {}\n", options.input);
+  fmt::print("format       {}\n", bag.container);
+  print_topics(bag);
+  fmt::print("scans        none: no topic holds clouds of points that are read\n");
+  for (const std::string& note : bag.notes) {
+    fmt::print("assumed      {}\n", note);
+  }
+}
+
 /// A calibration has been read as it is: nothing of how recordings are read has an effect on it.
 void refuse_input_options(const InfoOptions& options) {
   const auto stated = datasets::texts(options.settings);
@@ -315,17 +340,25 @@ int info(const InfoOptions& options) {
     fmt::print("{}", options.json ? calibration_json(options.input) : calibration_info(options.input));
     return 0;
   }
+  const std::optional<datasets::BagSummary> bag = bag_of(options.input, options.settings);
+  if (bag && !has_clouds(*bag)) {
+    print_without_scans(options, *bag);
+    return 0;
+  }
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(options.input, options.settings);
   const TimesSeen times = look_at_times(*dataset);
   const PointsSeen seen = look_at_points(*dataset);
   const diagnosis::Diagnosis diagnosis =
       diagnosis::diagnose(*dataset, {.applied = options.settings.correction}, Workers());
   if (options.json) {
-    print_json(options, *dataset, times, seen, diagnosis);
+    print_json(options, *dataset, times, seen, diagnosis, bag);
     return 0;
   }
   fmt::print("input        {}\n", options.input);
   fmt::print("format       {}\n", dataset->format());
+  if (bag) {
+    print_topics(*bag);
+  }
   fmt::print("scans        {}\n", dataset->size());
   print_time(*dataset, times);
   print_points(seen);

@@ -19,9 +19,7 @@ double distance_s(Stamp header, std::int64_t recorded_ns) {
   return 1e-9 * (static_cast<double>(header.ns) - static_cast<double>(recorded_ns));
 }
 
-bool is_sane(Stamp header, std::int64_t recorded_ns) {
-  return header.ns != 0 && std::abs(distance_s(header, recorded_ns)) <= kFar_s;
-}
+bool is_sane(Stamp header, std::int64_t recorded_ns) { return std::abs(distance_s(header, recorded_ns)) <= kFar_s; }
 
 /// Of messages with some stamps, those in order.
 ChosenStamps in_order(std::vector<std::size_t> messages, const std::vector<Stamp>& stamps, const std::string& topic) {
@@ -39,12 +37,15 @@ ChosenStamps in_order(std::vector<std::size_t> messages, const std::vector<Stamp
   return chosen;
 }
 
-/// Why the headers are not taken.
-std::string what_is_wrong(std::span<const std::int64_t> recorded_ns, std::span<const Stamp> headers) {
+/// Why the headers are not taken, of which so many are sane.
+std::string what_is_wrong(std::span<const std::int64_t> recorded_ns, std::span<const Stamp> headers, std::size_t sane) {
   const auto zeros =
       static_cast<std::size_t>(std::count_if(headers.begin(), headers.end(), [](Stamp h) { return h.ns == 0; }));
   if (zeros == headers.size()) {
     return "are 0";
+  }
+  if (2 * sane > headers.size()) {
+    return "are not in order";
   }
   std::vector<double> distances_s;
   for (std::size_t i = 0; i < headers.size(); ++i) {
@@ -113,7 +114,7 @@ ChosenStamps choose_stamps(std::span<const std::int64_t> recorded_ns, std::span<
     recorded.assumptions.insert(
         recorded.assumptions.begin(),
         fmt::format("topic '{}': the timestamps in its headers {}: the times of recording are taken", topic,
-                    2 * sane <= headers.size() ? what_is_wrong(recorded_ns, headers) : "are not in order"));
+                    what_is_wrong(recorded_ns, headers, sane)));
     return recorded;
   }
   if (sane < headers.size()) {

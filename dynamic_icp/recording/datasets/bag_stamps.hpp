@@ -23,9 +23,10 @@ struct ChosenStamps {
 /// Decides between the stamps in the headers of messages and the times at which they were recorded. `headers` and
 /// `recorded_ns` are as long as each other, in the order of recording; `topic` is named in sentences.
 ///
-/// A header is sane when it is not 0 and at most an hour away from the time of recording. Where most are, headers are
-/// taken and the other messages left out; else the times of recording. Of what is not in order as few as possible are
-/// left out, which is said: a stamp from the far future costs one message, not all that follow.
+/// A header is sane when it is at most an hour away from the time of recording, which a 0 is in simulated time only.
+/// Where most are, headers are taken and the other messages left out; else the times of recording. Of what is not in
+/// order as few as possible are left out, which is said: a stamp from the far future costs one message, not all that
+/// follow.
 ChosenStamps choose_stamps(std::span<const std::int64_t> recorded_ns, std::span<const Stamp> headers,
                            const std::string& topic);
 

@@ -42,6 +42,15 @@ TEST(BagStamps, ZerosGiveWayToTheTimesOfRecording) {
   EXPECT_EQ(chosen.assumptions[0], "topic '/p': the timestamps in its headers are 0: the times of recording are taken");
 }
 
+TEST(BagStamps, SimulatedTimeBeginsAtZero) {
+  const std::vector<std::int64_t> times = {0, 100'000'000, 200'000'000};
+  const std::vector<Stamp> stamps = {{0}, {100'000'000}, {200'000'000}};
+  EXPECT_EQ(choose_stamps(times, stamps, "/p").stamps, stamps);
+  const ChosenStamps zeros = choose_stamps(times, std::vector<Stamp>(3), "/p");
+  EXPECT_TRUE(zeros.are_recorded);
+  EXPECT_NE(zeros.assumptions.at(0).find("headers are 0"), std::string::npos) << zeros.assumptions[0];
+}
+
 TEST(BagStamps, SoDoHeadersOfAnotherClock) {
   const ChosenStamps before = choose_stamps(recorded(10), headers(10, 335'000 * kSecond_ns), "/p");
   EXPECT_TRUE(before.are_recorded);

@@ -72,6 +72,8 @@ TEST_F(OpenDataset, ChoicesThatALayoutDoesNotHaveAreRefused) {
   std::ofstream(folder_ / "point_clouds" / "1.bin", std::ios::binary) << std::string(16, '\0');
   EXPECT_THROW(open_dataset(folder_, {.fields = {{"doppler", "v"}}}), UsageError);
   EXPECT_THROW(open_dataset(folder_, {.sensors = {"front"}}), UsageError);
+  EXPECT_THROW(open_dataset(folder_, {.topics = {"/points"}}), UsageError);
+  EXPECT_THROW(open_dataset(folder_, {.truth_topic = "/pose"}), UsageError);
 }
 
 TEST_F(OpenDataset, ArchivesAndTheLikeAreNamed) {
@@ -90,7 +92,9 @@ TEST_F(OpenDataset, ArchivesAndTheLikeAreNamed) {
   EXPECT_EQ(fault(folder_), (folder_ / "a.zip").string() + ": is a zip archive; unpack it first");
   EXPECT_EQ(fault(folder_ / "a.zip"), fault(folder_));
   std::ofstream(folder_ / "drive.mcap", std::ios::binary) << "\x89MCAP0\r\n";
-  EXPECT_EQ(fault(folder_ / "drive.mcap"), (folder_ / "drive.mcap").string() + ": is an MCAP recording");
+  EXPECT_EQ(fault(folder_ / "drive.mcap").find((folder_ / "drive.mcap").string()), 0U);  // damaged, but a recording
+  std::ofstream(folder_ / "old.bag", std::ios::binary) << "#ROSBAG V1.2\n";
+  EXPECT_NE(fault(folder_ / "old.bag").find("is a ROS bag from before version 2.0"), std::string::npos);
   std::ofstream(folder_ / "notes.txt") << "nothing";
   EXPECT_NE(fault(folder_ / "notes.txt").find("not a recording of a known layout"), std::string::npos);
 }
@@ -98,7 +102,8 @@ TEST_F(OpenDataset, ArchivesAndTheLikeAreNamed) {
 TEST_F(OpenDataset, AnUnknownFormatNameIsWrongUse) {
   EXPECT_THROW(open_dataset(folder_, {.format = "vhs"}), UsageError);
   const std::vector<std::string> known = known_formats();
-  for (const char* format : {"dicp", "hercules", "helipr", "boreas", "aevascenes", "npz", "pcd", "ply", "bin"}) {
+  for (const char* format : {"dicp", "hercules", "helipr", "boreas", "aevascenes", "rosbag", "rosbag2", "mcap", "npz",
+                             "pcd", "ply", "bin"}) {
     EXPECT_NE(std::find(known.begin(), known.end(), format), known.end()) << format;
   }
 }
