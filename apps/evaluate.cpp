@@ -17,6 +17,7 @@
 #include "dynamic_icp/recording/evaluation/evaluation.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation_report.hpp"
 #include "dynamic_icp/recording/evaluation/object_tracking_report.hpp"
+#include "dynamic_icp/recording/formats/kitti_write.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/runs/frame_rows.hpp"
 #include "dynamic_icp/recording/runs/object_comparison.hpp"
@@ -36,6 +37,8 @@ struct Options {
   std::optional<double> gap_seconds;
   std::optional<double> gap_meters;
   evaluation::AssociationConfig association;
+  std::optional<std::filesystem::path> kitti;
+  std::optional<std::filesystem::path> kitti_reference;
   bool objects = false;
   bool json = false;
 };
@@ -100,6 +103,21 @@ void write_out(const std::string& text) {
   }
 }
 
+/// The poses that were compared, row by row the same scans, for the tools of KITTI.
+void write_kitti_files(const Options& options, const formats::TumFile& estimate, const formats::TumFile& reference) {
+  if (!options.kitti && !options.kitti_reference) {
+    return;
+  }
+  const evaluation::Association matched =
+      evaluation::associate(estimate.trajectory, reference.trajectory, options.association);
+  if (options.kitti) {
+    formats::write_kitti(*options.kitti, matched.estimate);
+  }
+  if (options.kitti_reference) {
+    formats::write_kitti(*options.kitti_reference, matched.reference);
+  }
+}
+
 int evaluate_objects(const Options& options) {
   const evaluation::ObjectTracking tracking = runs::compare_run_objects(options.estimate, options.reference);
   write_out(options.json ? evaluation::tracking_json(tracking) : evaluation::tracking_table(tracking));
@@ -118,6 +136,7 @@ int run_evaluate(const Options& options) {
                                                reference.repeated_lines};
   const std::string text =
       options.json ? evaluation::evaluation_json(evaluation, source) : evaluation::evaluation_table(evaluation, source);
+  write_kitti_files(options, estimate, reference);
   write_out(text);
   return 0;
 }
@@ -140,6 +159,11 @@ void add_error_options(CLI::App& command, Options& options) {
   add_option(command, "--max-gap", options.association.max_gap_s, "S",
              fmt::format("the reference is interpolated between poses at most so many seconds apart; default {:g}",
                          options.association.max_gap_s));
+  add_option(command, "--save-kitti", options.kitti, "FILE",
+             "write the poses of the estimate that have a reference as KITTI has them: 12 numbers a line, "
+             "T_world_sensor row by row");
+  add_option(command, "--save-kitti-reference", options.kitti_reference, "FILE",
+             "the same of the reference, line by line at the same times");
 }
 
 }  // namespace
@@ -162,7 +186,8 @@ void add_evaluate_command(CLI::App& app, std::function<int()>& selected) {
                                            "compare the moving objects instead (objects.jsonl of both): HOTA, MOTA, "
                                            "IDF1, errors of velocity, box, heading and prediction; what labels say of "
                                            "points where there are any");
-  for (const char* of_poses : {"--align", "--gap-frames", "--gap-seconds", "--gap-meters", "--max-gap"}) {
+  for (const char* of_poses : {"--align", "--gap-frames", "--gap-seconds", "--gap-meters", "--max-gap", "--save-kitti",
+                               "--save-kitti-reference"}) {
     objects->excludes(of_poses);
   }
   command->add_flag("--json", options->json, "print one JSON object with all numbers instead of the table");

@@ -24,7 +24,7 @@ json content_of(const fs::path& marker) {
 
 std::vector<std::string> conversion_files(const fs::path& /*folder*/) {
   return {"conversion.json", "ref_poses.txt", "calibration.json", "point_clouds/#.bin", "times/#.bin", "#.npz",
-          "#.pcd",           "#.ply"};
+          "#.pcd",           "#.ply",         "recording.mcap"};
 }
 
 /// The files of one sensor, below the folder that holds them.

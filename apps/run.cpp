@@ -8,6 +8,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/runs/map_writer.hpp"
+#include "dynamic_icp/recording/runs/mcap_recorder.hpp"
 #include "dynamic_icp/recording/runs/run_recording.hpp"
 
 #include "apps/command_line.hpp"
@@ -116,6 +117,13 @@ void print_summary(const runs::RunResult& result, const runs::RunSettings& setti
   if (result.map_points) {
     fmt::print("map          {} points in {}\n", *result.map_points, settings.map_file->string());
   }
+  if (result.has_mcap) {
+    fmt::print("mcap         {} (Foxglove, Lichtblick; layout {})\n", settings.mcap_file->string(),
+               (settings.mcap_file->parent_path() / runs::kFoxgloveLayoutFile).string());
+  }
+  if (result.has_kitti) {
+    fmt::print("KITTI poses  {}\n", settings.kitti_file->string());
+  }
   fmt::print("written to   {}\n", settings.output.string());
   if (reported) {
     fmt::print("report       {}\n", (settings.output / "report.html").string());
@@ -191,6 +199,12 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
       fmt::format("Edge of the voxels of which the map keeps the first point, {} to {} m (default {} m)",
                   runs::MapWriter::kMinVoxelSize_m, runs::MapWriter::kMaxVoxelSize_m, options->settings.map_voxel_m))
       ->needs(save_map);
+  add_option(
+      *command, "--mcap", options->settings.mcap_file, "FILE",
+      "Write FILE.mcap for Foxglove and Lichtblick: scans with Doppler and labels, poses, paths, objects, status "
+      "and deviations over time; foxglove_layout.json beside it arranges them");
+  add_option(*command, "--save-kitti", options->settings.kitti_file, "FILE",
+             "Write the poses as KITTI has them, FILE.txt: 12 numbers a scan, T_world_sensor row by row");
   add_option(*command, "--calibration", options->settings.calibration, "FILE",
              "What was learned of this sensor in another run with --preset default: its calibration.yaml");
   command->add_flag("--report", options->report,

@@ -11,6 +11,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/conversion/column_types.hpp"
+#include "dynamic_icp/recording/conversion/mcap_target.hpp"
 #include "dynamic_icp/recording/conversion/targets.hpp"
 #include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/evaluation/association.hpp"
@@ -27,21 +28,23 @@ constexpr std::int64_t kDicpPeriod_ns = 100'000'000;  // what its reader assumes
 struct Layout {
   std::string_view name;
   Target target;
+  /// Nothing for a layout of one file.
   void (*write_scan)(const fs::path& folder, const std::string& stem, const ScanToWrite& scan, Notes& notes);
 };
 
-constexpr std::array<Layout, 4> kLayouts = {{{"dicp", Target::kDicp, write_dicp_scan},
+constexpr std::array<Layout, 5> kLayouts = {{{"dicp", Target::kDicp, write_dicp_scan},
                                              {"npz", Target::kNpz, write_npz_scan},
                                              {"pcd", Target::kPcd, write_pcd_scan},
-                                             {"ply", Target::kPly, write_ply_scan}}};
+                                             {"ply", Target::kPly, write_ply_scan},
+                                             {"mcap", Target::kMcap, nullptr}}};
 
 const Layout& layout_of(Target target) { return kLayouts[static_cast<std::size_t>(target)]; }
 
 class Converter {
  public:
-  Converter(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target, const fs::path& folder,
+  Converter(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target, const fs::path& path,
             const std::function<void()>& progress)
-      : dataset_(dataset), range_(range), target_(target), folder_(folder), progress_(progress) {
+      : dataset_(dataset), range_(range), target_(target), path_(path), progress_(progress) {
     calibration_.T_vehicle_sensor = dataset.T_vehicle_sensor();
   }
 
@@ -55,17 +58,16 @@ class Converter {
       add_mountings(scan);
       advance();
     }
-    for (std::size_t i = range_.begin; i < range_.end; ++i) {
-      const RawScan scan = dataset_.scan(i);
-      const std::vector<datasets::PointColumn> columns = dataset_.columns(i);
-      layout_of(target_).write_scan(folder_, stem(i), {scan, columns, types_}, notes_);
-      if (!scan.warning.empty()) {
-        notes_.add(scan.warning);
-      }
-      advance();
+    if (target_ == Target::kMcap) {
+      McapTarget file(path_, dataset_, calibration_);
+      for_each_scan([&](std::size_t i, const ScanToWrite& scan) { file.add(dataset_.stamp(i), scan, notes_); });
+      file.finish(notes_);
+      return notes_.sentences();
     }
+    for_each_scan(
+        [&](std::size_t i, const ScanToWrite& scan) { layout_of(target_).write_scan(path_, stem(i), scan, notes_); });
     if (calibration_.T_vehicle_sensor || !calibration_.mountings.empty()) {
-      formats::write_bytes(folder_ / datasets::kCalibrationFile, datasets::calibration_text(calibration_));
+      formats::write_bytes(path_ / datasets::kCalibrationFile, datasets::calibration_text(calibration_));
     }
     if (target_ == Target::kDicp) {
       write_dicp_poses();
@@ -76,6 +78,19 @@ class Converter {
   }
 
  private:
+  /// Reads and writes.
+  void for_each_scan(const std::function<void(std::size_t index, const ScanToWrite& scan)>& write) {
+    for (std::size_t i = range_.begin; i < range_.end; ++i) {
+      const RawScan scan = dataset_.scan(i);
+      const std::vector<datasets::PointColumn> columns = dataset_.columns(i);
+      write(i, {scan, columns, types_});
+      if (!scan.warning.empty()) {
+        notes_.add(scan.warning);
+      }
+      advance();
+    }
+  }
+
   void advance() const {
     if (progress_) {
       progress_();
@@ -117,7 +132,7 @@ class Converter {
   }
 
   void write_poses(const formats::Trajectory& poses) const {
-    const fs::path path = folder_ / "ref_poses.txt";
+    const fs::path path = path_ / "ref_poses.txt";
     formats::write_bytes(path, formats::format_tum(poses, path.string()));
   }
 
@@ -175,7 +190,7 @@ class Converter {
   const datasets::Dataset& dataset_;
   const datasets::ScanRange range_;
   const Target target_;
-  const fs::path& folder_;
+  const fs::path& path_;  ///< the folder, or the file of a layout of one
   const std::function<void()>& progress_;
   ColumnTypes types_;
   datasets::Calibration calibration_;
@@ -197,7 +212,13 @@ Target find_target(std::string_view name) {
 
 std::vector<std::string> convert(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target,
                                  const fs::path& folder, const std::function<void()>& progress) {
-  return Converter(dataset, range, target, folder, progress).convert();
+  const fs::path path = target == Target::kMcap ? folder / "recording.mcap" : folder;
+  return Converter(dataset, range, target, path, progress).convert();
+}
+
+std::vector<std::string> convert_to_mcap(const datasets::Dataset& dataset, const datasets::ScanRange& range,
+                                         const fs::path& file, const std::function<void()>& progress) {
+  return Converter(dataset, range, Target::kMcap, file, progress).convert();
 }
 
 }  // namespace dynamic_icp::conversion

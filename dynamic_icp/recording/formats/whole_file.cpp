@@ -13,7 +13,6 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
-#include "dynamic_icp/recording/formats/unfinished.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -105,33 +104,44 @@ void OutputFile::close() {
   }
 }
 
-void write_whole_file(const std::filesystem::path& path, std::string_view content) {
+StagedFile::StagedFile(const std::filesystem::path& path) : path_(path) {
   std::error_code unreadable;
   if (std::filesystem::is_other(path, unreadable)) {
-    OutputFile device(path);  // or a pipe: a file in its place would take it from everybody
-    device.write(content);
-    device.close();
+    file_.emplace(path);  // a device or pipe: a file in its place would take it from everybody
     return;
   }
-  std::filesystem::path partial = path;
-  partial += fmt::format(".partial-{}", ::getpid());
-  const Unfinished unfinished(partial);
-  try {
-    OutputFile file(partial, path);
-    file.write(content);
-    file.close();
-  } catch (const DataError&) {
+  partial_ = path;
+  partial_ += fmt::format(".partial-{}", ::getpid());
+  unfinished_.emplace(partial_);
+  file_.emplace(partial_, path);
+}
+
+StagedFile::~StagedFile() {
+  file_.reset();
+  if (!partial_.empty()) {
     std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
-    throw;
+    std::filesystem::remove(partial_, ignored);
+  }
+}
+
+void StagedFile::commit() {
+  file_->close();
+  if (partial_.empty()) {
+    return;
   }
   std::error_code fault;
-  std::filesystem::rename(partial, path, fault);
+  std::filesystem::rename(partial_, path_, fault);
   if (fault) {
-    std::error_code ignored;
-    std::filesystem::remove(partial, ignored);
-    throw DataError(fmt::format("{}: cannot create: {}", path.string(), fault.message()));
+    throw DataError(fmt::format("{}: cannot create: {}", path_.string(), fault.message()));
   }
+  partial_.clear();
+  unfinished_.reset();
+}
+
+void write_whole_file(const std::filesystem::path& path, std::string_view content) {
+  StagedFile file(path);
+  file.write(content);
+  file.commit();
 }
 
 std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {

@@ -5,8 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <limits>
+#include <optional>
 #include <string>
 #include <string_view>
+
+#include "dynamic_icp/recording/formats/unfinished.hpp"
 
 namespace dynamic_icp::formats {
 
@@ -31,6 +34,28 @@ class OutputFile {
 
   std::filesystem::path final_name_;
   int descriptor_ = -1;
+};
+
+/// A file written piece by piece that appears whole or not at all: under a temporary name beside `path` until commit().
+/// Without that nothing is left, and an earlier file of that name stays untouched. A device or pipe of that name is
+/// written into. Every failure of the machine is a DataError that names `path`.
+class StagedFile {
+ public:
+  explicit StagedFile(const std::filesystem::path& path);
+  ~StagedFile();
+  StagedFile(const StagedFile&) = delete;
+  StagedFile& operator=(const StagedFile&) = delete;
+
+  void write(std::string_view bytes) { file_->write(bytes); }
+
+  /// Waits until the bytes are on the device and gives the file its name; nothing can be written after it.
+  void commit();
+
+ private:
+  std::filesystem::path path_;
+  std::filesystem::path partial_;  ///< empty: written into what there is, or committed
+  std::optional<Unfinished> unfinished_;
+  std::optional<OutputFile> file_;
 };
 
 /// Writes a file whole or not at all: under a temporary name beside `path`, then renamed. An earlier file of that

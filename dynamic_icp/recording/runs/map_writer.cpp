@@ -55,10 +55,11 @@ void check_map_file(const fs::path& path) {
   }
 }
 
-fs::path map_destination(const fs::path& path, const fs::path& output, const fs::path& staging) {
+fs::path map_destination(const fs::path& path, const fs::path& output, const fs::path& staging, const char* what) {
   const fs::path within = resolved(path).lexically_relative(resolved(output));
   if (within == ".") {
-    throw UsageError(fmt::format("'{}' is to be the folder of the run and its map, expected two names", path.string()));
+    throw UsageError(
+        fmt::format("'{}' is to be the folder of the run and its {}, expected two names", path.string(), what));
   }
   if (!within.empty() && *within.begin() != "..") {
     formats::make_folder((staging / within).parent_path());

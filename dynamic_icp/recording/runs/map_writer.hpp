@@ -18,12 +18,12 @@ namespace dynamic_icp::runs {
 /// Throws UsageError unless the file's name ends in .ply or .pcd: a map is written as one of them.
 void check_map_file(const std::filesystem::path& path);
 
-/// Where to write the map at `path` of a run whose folder `output` is put together in `staging` (see
-/// formats/output_folder): a map within `output` goes to its place in `staging`, any other one to `path`. Throws
-/// UsageError when both are the same, and DataError when the map's folder is not there and is no part of the run's, or
-/// there is a folder of the map's name.
+/// Where to write a file at `path`, the run's `what`, of a run whose folder `output` is put together in `staging` (see
+/// formats/output_folder): one within `output` goes to its place in `staging`, any other one to `path`. Throws
+/// UsageError when both are the same, and DataError when the file's folder is not there and is no part of the run's, or
+/// there is a folder of the file's name.
 std::filesystem::path map_destination(const std::filesystem::path& path, const std::filesystem::path& output,
-                                      const std::filesystem::path& staging);
+                                      const std::filesystem::path& staging, const char* what = "map");
 
 /// Collects the static points of a run in world axes: of each voxel the first point that falls into it. Where a tracked
 /// object drives nothing static can stand: points that it leaves there, or left before it began to move, are taken out

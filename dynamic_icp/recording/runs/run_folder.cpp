@@ -32,13 +32,21 @@ void check_count(const fs::path& file, const char* what, std::size_t count, std:
 constexpr const char* kPictures[] = {"convergence", "doppler_error", "dynamics", "errors",    "scan",
                                      "speed",       "steps",         "timing",   "trajectory"};
 
-/// The map that lies in the folder of a run; empty when there is none, or when its run.json cannot be read.
-std::string map_in(const fs::path& run_json) {
+/// The files that were asked for beside the results and lie in the folder of the run; none when its run.json cannot be
+/// read.
+std::vector<std::string> files_asked_for(const fs::path& run_json) {
+  std::vector<std::string> files;
   try {
-    return text_of(read_run_json(run_json).about, "map.file_in_run");
+    const Settings about = read_run_json(run_json).about;
+    for (const char* key : {"map.file_in_run", "mcap.file_in_run", "mcap.layout_in_run", "kitti.file_in_run"}) {
+      if (std::string file = text_of(about, key); !file.empty()) {
+        files.push_back(std::move(file));
+      }
+    }
   } catch (const std::exception&) {
-    return {};
+    files.clear();
   }
+  return files;
 }
 
 std::vector<std::string> run_files(const fs::path& folder) {
@@ -49,8 +57,8 @@ std::vector<std::string> run_files(const fs::path& folder) {
     files.push_back("plots/" + picture + ".png");
   }
   files.insert(files.end(), {"plots/worst_object_#.svg", "plots/worst_object_#.png"});
-  if (const std::string map = map_in(folder / "run.json"); !map.empty()) {
-    files.push_back(map);
+  for (std::string& file : files_asked_for(folder / "run.json")) {
+    files.push_back(std::move(file));
   }
   return files;
 }

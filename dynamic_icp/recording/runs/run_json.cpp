@@ -49,6 +49,26 @@ Json map_json(const RunSettings& settings, const RunResult& result, const fs::pa
   return json;
 }
 
+/// A file beside the results of a run; null when it is not there.
+Json file_json(bool is_there, const std::optional<fs::path>& path, const fs::path& in_run) {
+  if (!is_there) {
+    return nullptr;
+  }
+  Json json = {{"path", fs::absolute(*path).string()}, {"file_in_run", nullptr}};
+  if (!in_run.empty()) {
+    json["file_in_run"] = in_run.generic_string();
+  }
+  return json;
+}
+
+Json mcap_json(const RunSettings& settings, const RunResult& result, const FilesInRun& in_run) {
+  Json json = file_json(result.has_mcap, settings.mcap_file, in_run.mcap);
+  if (result.has_mcap && !in_run.layout.empty()) {
+    json["layout_in_run"] = in_run.layout.generic_string();
+  }
+  return json;
+}
+
 Json input_json(const datasets::InputSettings& settings) {
   Json json = Json::object();
   for (const auto& [name, text] : datasets::texts(settings)) {
@@ -68,7 +88,7 @@ Json configuration_json(odometry::Config config) {
 }  // namespace
 
 std::string run_json(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
-                     const fs::path& ground_truth, const RunResult& result, const fs::path& map_in_run) {
+                     const fs::path& ground_truth, const RunResult& result, const FilesInRun& in_run) {
   Json json = {{"version", version()},
                {"command", settings.command},
                {"input",
@@ -95,7 +115,9 @@ std::string run_json(const Recording& recording, const RunSettings& settings, co
   }
   json["sweep"] = sweep_json(result.sweep);
   json["doppler"] = result.doppler;
-  json["map"] = map_json(settings, result, map_in_run);
+  json["map"] = map_json(settings, result, in_run.map);
+  json["mcap"] = mcap_json(settings, result, in_run);
+  json["kitti"] = file_json(result.has_kitti, settings.kitti_file, in_run.kitti);
   json["assumptions"] = result.summary.assumptions;
   json["warnings"] = result.warnings;
   json["configuration"] = configuration_json(settings.config);

@@ -9,10 +9,16 @@
 
 namespace dynamic_icp::runs {
 
-/// The content of run.json; `read_run_json` reads it. `map_in_run`: the map's name in the folder of the run, empty
-/// where it lies elsewhere.
+/// The names, in the folder of the run, of files that may lie there or elsewhere; empty where they do.
+struct FilesInRun {
+  std::filesystem::path map;
+  std::filesystem::path mcap;
+  std::filesystem::path layout;  ///< beside the MCAP file
+  std::filesystem::path kitti;
+};
+
+/// The content of run.json; `read_run_json` reads it.
 std::string run_json(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
-                     const std::filesystem::path& ground_truth, const RunResult& result,
-                     const std::filesystem::path& map_in_run);
+                     const std::filesystem::path& ground_truth, const RunResult& result, const FilesInRun& in_run);
 
 }  // namespace dynamic_icp::runs

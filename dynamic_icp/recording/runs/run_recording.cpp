@@ -10,11 +10,13 @@
 #include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/recording/datasets/read_ahead.hpp"
 #include "dynamic_icp/recording/datasets/scan_range.hpp"
+#include "dynamic_icp/recording/formats/kitti_write.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
 #include "dynamic_icp/recording/runs/map_writer.hpp"
+#include "dynamic_icp/recording/runs/mcap_recorder.hpp"
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 #include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/recording/runs/run_json.hpp"
@@ -36,6 +38,14 @@ std::optional<MapWriter> make_map(const RunSettings& settings) {
                                  settings.method));
   }
   return MapWriter(settings.map_voxel_m);
+}
+
+/// Files of other kinds would be taken for what they are not, and must not have the name of a result.
+void check_ending(const std::optional<fs::path>& file, const char* ending, const char* what) {
+  if (file && file->extension() != ending) {
+    throw UsageError(
+        fmt::format("'{}' cannot be {}: expected a file name that ends in {}", file->string(), what, ending));
+  }
 }
 
 std::optional<window::SensorCalibration> calibration_of(const RunSettings& settings) {
@@ -101,6 +111,8 @@ class Run {
                                              : formats::read_tum(settings.ground_truth).trajectory),
         check_(check_recording(*dataset_, recording.settings, {scans_.begin, scans_.end, settings.threads},
                                needs_of(settings), callbacks.fix_in_words)) {
+    check_ending(settings.mcap_file, ".mcap", "an MCAP file");
+    check_ending(settings.kitti_file, ".txt", "a file of KITTI poses");
     result_.period_s = check_.period_s;
     result_.doppler = check_.doppler;
     result_.sweep.search = check_.sweep;
@@ -116,6 +128,7 @@ class Run {
       inputs.push_back(*settings_.calibration);
     }
     inputs.insert(inputs.end(), settings_.inputs.begin(), settings_.inputs.end());
+    refuse_inputs(inputs);
     formats::OutputFolder output(settings_.output, run_result(), settings_.replace, inputs);
     if (!output.fill([&] { return write_files(output); })) {
       return false;
@@ -140,11 +153,36 @@ class Run {
     result_.warnings.push_back(text);
   }
 
+  /// What a run reads is not written over by what is asked for beside it.
+  void refuse_inputs(const std::vector<fs::path>& inputs) const {
+    for (const std::optional<fs::path>* file : {&settings_.mcap_file, &settings_.kitti_file}) {
+      for (const fs::path& input : inputs) {
+        std::error_code missing;
+        if (*file && !input.empty() && fs::equivalent(**file, input, missing)) {
+          throw UsageError(fmt::format("'{}' is an input of the run; choose another name", (*file)->string()));
+        }
+      }
+    }
+  }
+
+  /// Where to put a file that is asked for beside the results; empty when it is not.
+  [[nodiscard]] fs::path destination(const std::optional<fs::path>& file, const formats::OutputFolder& output,
+                                     const char* what) const {
+    return file ? map_destination(*file, settings_.output, output.path(), what) : fs::path();
+  }
+
   /// All files of the run into the folder where it is put together; false when cancelled.
   bool write_files(const formats::OutputFolder& output) {
-    const fs::path map_file = map_ ? map_destination(*settings_.map_file, settings_.output, output.path()) : fs::path();
-    const fs::path map_in_run =
-        formats::lies_in(map_file, output.path()) ? map_file.lexically_relative(output.path()) : "";
+    const fs::path map_file = map_ ? destination(settings_.map_file, output, "map") : fs::path();
+    const fs::path mcap_file = destination(settings_.mcap_file, output, "MCAP file");
+    const fs::path kitti_file = destination(settings_.kitti_file, output, "file of KITTI poses");
+    const auto in_run = [&](const fs::path& file) {
+      return formats::lies_in(file, output.path()) ? file.lexically_relative(output.path()) : fs::path();
+    };
+    const FilesInRun files{.map = in_run(map_file),
+                           .mcap = in_run(mcap_file),
+                           .layout = in_run(layout_beside(mcap_file)),
+                           .kitti = in_run(kitti_file)};
     const std::unique_ptr<odometry::Odometry> odometry = odometry::make_odometry(
         settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind(), calibration_}, settings_.threads);
     std::vector<std::string> assumptions = dataset_->assumptions();
@@ -160,6 +198,9 @@ class Run {
       }
     }
     RunWriter writer(output.path(), settings_.save_labels);
+    if (!mcap_file.empty()) {
+      make_recorder(mcap_file);
+    }
     if (!process_scans(*odometry, writer)) {
       return false;
     }
@@ -170,11 +211,17 @@ class Run {
     result_.summary = writer.finish(settings_.method, truth_, assumptions);
     const auto write_run_json = [&] {
       formats::write_whole_file(output.path() / "run.json",
-                                run_json(recording_, settings_, *dataset_, truth_file_, result_, map_in_run));
+                                run_json(recording_, settings_, *dataset_, truth_file_, result_, files));
     };
+    result_.has_mcap = recorder_.has_value();
+    result_.has_kitti = !kitti_file.empty();
     write_run_json();
-    // Last, for an earlier map is only replaced by that of a run that is whole.
-    if (!try_to_write_map(map_file, output)) {
+    // Last, for an earlier file is only replaced by that of a run that is whole.
+    const std::size_t failures = result_.failures.size();
+    try_to_write_map(map_file, output);
+    try_to_write_mcap(mcap_file, output);
+    try_to_write_kitti(kitti_file, writer.trajectory(), output);
+    if (result_.failures.size() > failures) {
       write_run_json();
     }
     try_to_add_files(output);
@@ -198,6 +245,7 @@ class Run {
       usability.add(frame);
       result_.sweep.add(frame, scan);
       add_to_map(frame);
+      record(scan, frame);
       report_progress(i + 1 - scans_.begin);
     }
     refuse_without_points(usability, recording_.path);
@@ -223,16 +271,72 @@ class Run {
     }
   }
 
-  bool try_to_write_map(const fs::path& path, const formats::OutputFolder& output) {
+  /// The layout that goes with an MCAP file, unless there is one, which its owner may have changed.
+  static fs::path layout_beside(const fs::path& mcap_file) {
+    const fs::path layout = mcap_file.parent_path() / kFoxgloveLayoutFile;
+    std::error_code ignored;
+    return mcap_file.empty() || fs::exists(layout, ignored) ? fs::path() : layout;
+  }
+
+  /// A path that cannot be written to is an error before the first scan.
+  void make_recorder(const fs::path& path) {
+    const motion::SweepConfig* sweep = sweep_config(settings_.config);
+    McapRecorderSettings recorder;
+    recorder.sweep = sweep != nullptr ? *sweep : motion::SweepConfig{};
+    recorder.tells_moving = settings_.method == "dynamic-icp";
+    recorder.period_s = check_.period_s;
+    recorder.threads = settings_.threads;
+    recorder_.emplace(path, truth_, recorder);
+  }
+
+  /// A file for a viewer that cannot be is no reason to lose the run.
+  void record(const RawScan& scan, const odometry::Frame& frame) {
+    if (!recorder_) {
+      return;
+    }
+    try {
+      recorder_->add(scan, frame);
+    } catch (const std::exception& error) {
+      fail(fmt::format("no MCAP file: {}", error.what()));
+      recorder_.reset();
+    }
+  }
+
+  void try_to_write_map(const fs::path& path, const formats::OutputFolder& output) {
     try {
       if (map_) {
         map_->write(path);
       }
-      return true;
     } catch (const std::exception& error) {
       fail("no map: " + output.in_final_names(error.what()));
       result_.map_points.reset();
-      return false;
+    }
+  }
+
+  void try_to_write_mcap(const fs::path& path, const formats::OutputFolder& output) {
+    try {
+      if (recorder_) {
+        recorder_->commit();
+        if (const fs::path layout = layout_beside(path); !layout.empty()) {
+          formats::write_whole_file(layout, foxglove_layout());
+        }
+      }
+    } catch (const std::exception& error) {
+      fail("no MCAP file: " + output.in_final_names(error.what()));
+      result_.has_mcap = false;
+    }
+    recorder_.reset();
+  }
+
+  void try_to_write_kitti(const fs::path& path, const formats::Trajectory& trajectory,
+                          const formats::OutputFolder& output) {
+    try {
+      if (!path.empty()) {
+        formats::write_kitti(path, trajectory);
+      }
+    } catch (const std::exception& error) {
+      fail("no KITTI poses: " + output.in_final_names(error.what()));
+      result_.has_kitti = false;
     }
   }
 
@@ -257,6 +361,7 @@ class Run {
   fs::path truth_file_;
   formats::Trajectory truth_;
   RecordingCheck check_;
+  std::optional<McapRecorder> recorder_;
   RunResult result_;
 };
 

@@ -37,6 +37,8 @@ struct RunSettings {
   bool save_labels = false;
   std::optional<std::filesystem::path> map_file;  ///< static points of all scans, .ply or .pcd; dynamic-icp only
   double map_voxel_m = 0.1;
+  std::optional<std::filesystem::path> mcap_file;    ///< scans and results for Foxglove, .mcap (mcap_recorder.hpp)
+  std::optional<std::filesystem::path> kitti_file;   ///< poses as KITTI has them, .txt
   std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of another run with this sensor
   std::vector<std::filesystem::path> inputs;         ///< further files that were read and must not be replaced
   std::string command;                               ///< how the run was asked for, for run.json
@@ -66,6 +68,8 @@ struct RunResult {
   SweepRecord sweep;
   std::vector<std::string> warnings;
   std::optional<std::size_t> map_points;  ///< empty without a map
+  bool has_mcap = false;                  ///< whether the file that was asked for is there
+  bool has_kitti = false;                 ///< likewise
   std::vector<std::string> failures;      ///< what was asked for beside the run and could not be made, and why
 };
 

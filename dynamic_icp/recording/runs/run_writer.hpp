@@ -23,6 +23,9 @@ class RunWriter {
 
   void add(std::size_t index, const odometry::Frame& frame);
 
+  /// One pose for each scan until now.
+  [[nodiscard]] const formats::Trajectory& trajectory() const { return trajectory_; }
+
   /// Writes what is left. `ground_truth` may be empty.
   RunSummary finish(const std::string& method, const formats::Trajectory& ground_truth,
                     const std::vector<std::string>& assumptions);
