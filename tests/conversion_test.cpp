@@ -59,13 +59,13 @@ TEST_F(Conversion, TheSameTrajectoryInEveryLayout) {
   ASSERT_GE(expected.size(), 5u);
   const double path_m = std::hypot(std::stod(expected.back()[1]), std::stod(expected.back()[2]));
   EXPECT_GT(path_m, 3.0) << "nothing is shown by a sensor that stands still";
-  for (const std::string to : {"npz", "pcd", "ply", "dicp"}) {
+  for (const std::string to : {"npz", "pcd", "ply", "mcap", "dicp"}) {
     const Outcome outcome = convert(street(), to);
     ASSERT_EQ(outcome.status, 0) << outcome.text;
     EXPECT_EQ(outcome.text.find("left out"), std::string::npos) << outcome.text;
     expect_same(trajectory(folder_ / to), expected, 0.0, true);
     EXPECT_EQ(run_["input"]["format"], to);
-    EXPECT_EQ(run_["ground_truth"], (folder_ / to / "ref_poses.txt").string());
+    EXPECT_EQ(run_["ground_truth"], (folder_ / to / (to == "mcap" ? "recording.mcap" : "ref_poses.txt")).string());
   }
   // Back again, bit by bit.
   fs::rename(folder_ / "dicp", folder_ / "first");

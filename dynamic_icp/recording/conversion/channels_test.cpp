@@ -58,7 +58,8 @@ class Channels : public datasets::RecordingByHand {
     const std::unique_ptr<Dataset> dataset = open_dataset(folder_);
     RawScan original = dataset->scan(0);
     EXPECT_FALSE(is_silent(original));
-    for (const auto& [name, target] : {std::pair("npz", Target::kNpz), {"pcd", Target::kPcd}, {"ply", Target::kPly}}) {
+    for (const auto& [name, target] :
+         {std::pair("npz", Target::kNpz), {"pcd", Target::kPcd}, {"ply", Target::kPly}, {"mcap", Target::kMcap}}) {
       SCOPED_TRACE(name);
       const fs::path out = above_ / name;
       fs::create_directories(out);
@@ -176,7 +177,8 @@ TEST_F(Channels, OfARig) {
   // A point of the second LiDAR by its mounting.
   EXPECT_TRUE(scan.points[2].isApprox(scan.mountings[1] * Eigen::Vector3d(3, 4, 0), 1e-12));
   EXPECT_TRUE(scan.directions[2].isApprox(scan.mountings[1].linear() * Eigen::Vector3d(0.6, 0.8, 0), 1e-12));
-  for (const auto& [name, target] : {std::pair("npz", Target::kNpz), {"pcd", Target::kPcd}, {"ply", Target::kPly}}) {
+  for (const auto& [name, target] :
+       {std::pair("npz", Target::kNpz), {"pcd", Target::kPcd}, {"ply", Target::kPly}, {"mcap", Target::kMcap}}) {
     SCOPED_TRACE(name);
     fs::create_directories(above_ / name);
     convert(*dataset, {0, 1}, target, above_ / name);

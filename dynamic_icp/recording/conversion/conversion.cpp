@@ -111,7 +111,7 @@ class Converter {
 
   void note_what_is_not_of_points() {
     const std::string_view name = layout_of(target_).name;
-    if (dataset_.doppler_kind() == DopplerKind::kCompensated) {
+    if (dataset_.doppler_kind() == DopplerKind::kCompensated && target_ != Target::kMcap) {
       notes_.add(fmt::format("that the Doppler is compensated is left out: {} does not say it, the reader must be told",
                              name));
     }

@@ -153,7 +153,7 @@ class Conversion : public ::testing::Test {
 
 TEST_F(Conversion, WhatHasNamesComesBackBitByBit) {
   std::uint64_t seed = 0;
-  for (const Target target : {Target::kNpz, Target::kPcd, Target::kPly}) {
+  for (const Target target : {Target::kNpz, Target::kPcd, Target::kPly, Target::kMcap}) {
     for (const Kinds kinds : {Kinds{}, Kinds{false, true, true, true}, Kinds{true, true, false, true},
                               Kinds{true, true, true, false}, Kinds{false, true, false, false}}) {
       const Recording recording = random_recording(++seed, kinds);
@@ -172,6 +172,45 @@ TEST_F(Conversion, WhatHasNamesComesBackBitByBit) {
       EXPECT_EQ(notes_, std::vector<std::string>{"column 'Some Colour' is called 'Some_Colour'"});
     }
   }
+}
+
+TEST_F(Conversion, McapKeepsMountingsAndTheKindOfDoppler) {
+  Recording recording = random_recording(11, {true, true, false, false});
+  recording.mounting = Eigen::Translation3d(1.5, 0, 2) * Eigen::AngleAxisd(0.5, Eigen::Vector3d(1, 2, 3).normalized());
+  recording.kind = DopplerKind::kCompensated;
+  for (std::size_t k = 0; k < recording.size(); ++k) {
+    RawScan& scan = recording.scans[k];
+    scan.mountings = {Eigen::Isometry3d::Identity(),
+                      Eigen::Translation3d(0.1, 0.2, 0.3) * Eigen::AngleAxisd(1.0, Eigen::Vector3d::UnitY())};
+    PointColumn sensor{"sensor", std::vector<double>(scan.points.size(), 1.0), true};
+    recording.others[k].push_back(sensor);
+  }
+  const std::unique_ptr<Dataset> dataset = converted(recording, Target::kMcap);
+  const std::unique_ptr<Dataset> by_npz = converted(recording, Target::kNpz);
+  EXPECT_EQ(dataset->format(), "mcap");
+  EXPECT_EQ(dataset->doppler_kind(), DopplerKind::kCompensated);
+  ASSERT_TRUE(dataset->T_vehicle_sensor());
+  EXPECT_EQ(dataset->T_vehicle_sensor()->matrix(), by_npz->T_vehicle_sensor()->matrix()) << "bit by bit";
+  const RawScan scan = dataset->scan(2);
+  const RawScan expected = by_npz->scan(2);
+  ASSERT_EQ(scan.mountings.size(), 2U);
+  EXPECT_EQ(scan.mountings[1].matrix(), expected.mountings[1].matrix());
+  EXPECT_TRUE(scan.mountings[1].isApprox(recording.scans[2].mountings[1], 1e-14));
+  EXPECT_EQ(scan.channels.sensor, expected.channels.sensor);
+  ASSERT_EQ(dataset->ground_truth().size(), by_npz->ground_truth().size());
+  for (std::size_t k = 0; k < recording.truth.size(); ++k) {
+    EXPECT_EQ(dataset->ground_truth()[k].stamp, by_npz->ground_truth()[k].stamp);
+    EXPECT_TRUE(dataset->ground_truth()[k].T_world_sensor.isApprox(by_npz->ground_truth()[k].T_world_sensor, 1e-15));
+  }
+}
+
+TEST_F(Conversion, McapHasNoTimesBefore1970) {
+  Recording recording = random_recording(12, {});
+  recording.truth.front().stamp.ns = -5;
+  EXPECT_EQ(converted(recording, Target::kMcap)->ground_truth().size(), recording.truth.size() - 1);
+  EXPECT_TRUE(noted("before 1970 are left out"));
+  recording.scans.front().stamp.ns = -5;
+  EXPECT_THROW(converted(recording, Target::kMcap), DataError);
 }
 
 TEST_F(Conversion, DicpHoldsFloat32) {
@@ -277,6 +316,7 @@ TEST_F(Conversion, PlyKeepsLargeIntegersAsDoubles) {
 
 TEST(ConversionTarget, UnknownOnesAreWrongUse) {
   EXPECT_EQ(find_target("ply"), Target::kPly);
+  EXPECT_EQ(find_target("mcap"), Target::kMcap);
   EXPECT_THROW(find_target("hercules"), UsageError);
 }
 

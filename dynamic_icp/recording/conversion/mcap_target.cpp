@@ -43,7 +43,8 @@ McapTarget::McapTarget(const std::filesystem::path& file, const datasets::Datase
       writer_([this](std::string_view bytes) { file_.write(bytes); }, mcap_settings()),
       truth_(dataset.ground_truth()),
       calibration_(calibration) {
-  points_ = add_mcap_channel(writer_, kMcapPoints, messages::kPointCloudType);
+  const bool is_compensated = dataset.doppler_kind() == DopplerKind::kCompensated;
+  points_ = add_mcap_channel(writer_, is_compensated ? kMcapCompensatedPoints : kMcapPoints, messages::kPointCloudType);
   const bool has_mounting = calibration.T_vehicle_sensor || !calibration.mountings.empty();
   if (!truth_.empty()) {
     truth_pose_ = add_mcap_channel(writer_, kMcapTruthPose, messages::kPoseInFrameType);

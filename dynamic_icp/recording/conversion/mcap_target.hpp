@@ -18,6 +18,7 @@ namespace dynamic_icp::conversion {
 
 /// The names in a converted recording; docs/formats.md describes them.
 inline constexpr const char* kMcapPoints = "/points";
+inline constexpr const char* kMcapCompensatedPoints = "/points_compensated";  ///< by this the reader knows it
 inline constexpr const char* kMcapTruthPose = "/ground_truth/pose";
 inline constexpr const char* kMcapTruthPath = "/ground_truth/path";
 inline constexpr const char* kMcapTransforms = "/tf";

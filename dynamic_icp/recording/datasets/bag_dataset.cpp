@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/datasets/bag_dataset.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <utility>
@@ -14,6 +15,7 @@
 #include "dynamic_icp/recording/datasets/bag_stamps.hpp"
 #include "dynamic_icp/recording/datasets/bag_topics.hpp"
 #include "dynamic_icp/recording/datasets/bag_truth.hpp"
+#include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/column_scan.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/messages/cloud_columns.hpp"
@@ -172,6 +174,7 @@ class BagDataset final : public Dataset {
     }
     const StaticFrames frames = read_frames();
     place_sensors(frames);
+    take_calibration();
     group_scans();
     const CloudTopic& first = topics_.front();
     truth_ =
@@ -194,6 +197,9 @@ class BagDataset final : public Dataset {
 
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     RawScan raw = is_rig() ? rig_scan(index) : scan_of(topics_.front(), index);
+    if (!is_rig()) {
+      set_mountings(topics_.front(), index, raw);
+    }
     raw.doppler_kind = doppler_kind_;
     return raw;
   }
@@ -370,6 +376,41 @@ class BagDataset final : public Dataset {
     }
   }
 
+  /// What a converted recording says of its mountings, exactly: transforms may say it too.
+  void take_calibration() {
+    for (std::size_t k = 0; k < bag_->topics().size(); ++k) {
+      const bags::Topic& topic = bag_->topics()[k];
+      if (topic.type != "dynamic_icp.Calibration" || topic.encoding != bags::Encoding::kJson) {
+        continue;
+      }
+      const std::vector<bags::MessageEntry> entries = bag_->messages(std::array{k});
+      if (entries.empty() || is_rig()) {
+        return;
+      }
+      Calibration calibration =
+          parse_calibration(bag_->read(entries.front()), message_origin(*bag_, entries.front(), 0));
+      T_vehicle_sensor_ = calibration.T_vehicle_sensor ? calibration.T_vehicle_sensor : T_vehicle_sensor_;
+      mountings_ = std::move(calibration.mountings);
+      return;
+    }
+  }
+
+  /// Of one topic whose points name their sensors.
+  void set_mountings(const CloudTopic& topic, std::size_t message, RawScan& raw) const {
+    const std::vector<std::uint8_t>& sensor = raw.channels.sensor;
+    if (mountings_.empty() || (sensor.empty() && !raw.points.empty())) {
+      return;
+    }
+    const auto unknown =
+        std::find_if(sensor.begin(), sensor.end(), [&](std::size_t k) { return k >= mountings_.size(); });
+    if (unknown != sensor.end()) {
+      throw DataError(fmt::format("{}: point {} is of sensor {}, but the calibration has {} sensors, counted from 0",
+                                  message_origin(*bag_, topic.entries.at(message), topic.numbers[message]),
+                                  unknown - sensor.begin(), *unknown, mountings_.size()));
+    }
+    raw.mountings = mountings_;
+  }
+
   /// For each cloud of the first topic the nearest of the others.
   void group_scans() {
     stamps_ = topics_.front().stamps;
@@ -495,6 +536,7 @@ class BagDataset final : public Dataset {
   std::vector<std::vector<std::size_t>> groups_;  ///< of a rig: the clouds of each scan, by topic
   bool has_times_ = false;                        ///< a rig with times of points
   std::optional<Eigen::Isometry3d> T_vehicle_sensor_;
+  std::vector<Eigen::Isometry3d> mountings_;  ///< of one topic whose points name their sensors
   DopplerKind doppler_kind_ = DopplerKind::kRelative;
   Truth truth_;
 };

@@ -27,6 +27,9 @@ struct Calibration {
 /// missing. Throws DataError naming the file and what was expected.
 Calibration read_calibration(const std::filesystem::path& path);
 
+/// The same of a text that stands elsewhere; `origin` is what messages name.
+Calibration parse_calibration(const std::string& text, const std::string& origin);
+
 /// The same where there is such a file in a folder that may hold one of another kind and name: nothing where there is
 /// none, or where it has neither key, which is said in `assumptions`.
 std::optional<Calibration> find_calibration(const std::filesystem::path& folder, std::vector<std::string>& assumptions);
