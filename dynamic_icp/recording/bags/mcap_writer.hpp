@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "dynamic_icp/method/base/stamp.hpp"
-#include "dynamic_icp/recording/bags/checksum.hpp"
 
 namespace dynamic_icp::bags {
 
@@ -91,8 +90,8 @@ class McapWriter {
 
   Sink sink_;
   McapSettings settings_;
-  std::uint64_t position_ = 0;  ///< bytes written
-  Crc32 data_crc_;
+  std::uint64_t position_ = 0;        ///< bytes written
+  std::uint32_t data_crc_ = 0;        ///< of these
   std::vector<std::string> schemas_;  ///< records, for the summary
   std::vector<ChannelState> channels_;
   std::string chunk_;  ///< records of the open chunk

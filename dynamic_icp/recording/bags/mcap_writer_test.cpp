@@ -116,22 +116,6 @@ std::vector<WrittenRecord> with_opcode(const std::vector<WrittenRecord>& records
   return found;
 }
 
-TEST(Checksum, IsTheOneOfTheStandard) {
-  EXPECT_EQ(crc32("123456789"), 0xCBF43926U);
-  EXPECT_EQ(crc32(""), 0U);
-  std::string bytes;
-  for (int k = 0; k < 1000; ++k) {
-    bytes += static_cast<char>(k * k);
-  }
-  for (const std::size_t size : {1U, 7U, 8U, 9U, 63U, 1000U}) {
-    EXPECT_EQ(crc32(bytes.substr(0, size)), slow_crc(bytes.substr(0, size)));
-  }
-  Crc32 pieces;
-  pieces.update(bytes.substr(0, 13));
-  pieces.update(bytes.substr(13));
-  EXPECT_EQ(pieces.value(), slow_crc(bytes));
-}
-
 TEST(McapWriter, AnEmptyFileByHand) {
   std::string file;
   McapWriter writer([&](std::string_view bytes) { file += bytes; }, small_chunks(1));
