@@ -42,4 +42,11 @@ std::string_view nearest_key(std::string_view typed, std::span<const std::string
   return nearest == keys.end() ? std::string_view() : std::string_view(*nearest);
 }
 
+std::string_view close_key(std::string_view typed, std::span<const std::string> keys) {
+  const std::string_view nearest = nearest_key(typed, keys);
+  return !nearest.empty() && key_distance(typed, nearest) <= std::max<std::size_t>(1, nearest.size() / 3)
+             ? nearest
+             : std::string_view();
+}
+
 }  // namespace dynamic_icp

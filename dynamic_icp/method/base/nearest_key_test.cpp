@@ -32,5 +32,14 @@ TEST(ParseNumber, TakesWholeTextsOnly) {
   EXPECT_FALSE(parse_number<double>("1e999"));
 }
 
+TEST(CloseKey, IsSilentWhereAWordIsFarFromAll) {
+  const std::vector<std::string> commands = {"run", "evaluate", "benchmark", "info"};
+  EXPECT_EQ(close_key("evalute", commands), "evaluate");
+  EXPECT_EQ(close_key("benchmrak", commands), "benchmark");
+  EXPECT_EQ(close_key("rum", commands), "run");
+  EXPECT_EQ(close_key("fly", commands), "");
+  EXPECT_EQ(close_key("fly", {}), "");
+}
+
 }  // namespace
 }  // namespace dynamic_icp

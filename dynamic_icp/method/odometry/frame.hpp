@@ -39,7 +39,10 @@ enum class FrameStatus {
 
 std::string_view to_string(FrameStatus status);
 
-/// The same in one word: "ok", "degenerate" or "lost". A frame is lost when its pose is only predicted.
+/// The words for how far the pose of a frame can be relied on, best first. FrameStatus is the reason.
+inline constexpr std::array<std::string_view, 3> kVerdicts = {"ok", "degenerate", "lost"};
+
+/// The status in one of these words. A frame is lost when its pose is only predicted.
 std::string_view verdict(FrameStatus status);
 
 /// Whether the pose comes from an alignment that met its stopping rule.

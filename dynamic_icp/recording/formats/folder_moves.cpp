@@ -12,6 +12,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/folder_lock.hpp"
 #include "dynamic_icp/recording/formats/staged_names.hpp"
 
@@ -224,6 +225,19 @@ void move_within(const fs::path& target, const std::string& number, const std::s
   move_entries(arriving, target, "", marker);
   clear_away(arriving);
   clear_away(replaced);
+}
+
+void remove_abandoned(const fs::path& folder, const ResultKind& kind) {
+  for (const fs::path& left : partial_folders(folder)) {
+    const FolderLock lock(left);
+    try {
+      if (lock.is_of(left) && !foreign_entry(left, kind)) {
+        clear_away(left);
+      }
+    } catch (const DataError&) {
+      // Whose content cannot be read is not ours.
+    }
+  }
 }
 
 void remove_leftovers(const fs::path& target) {

@@ -6,6 +6,8 @@
 #include <functional>
 #include <string>
 
+#include "dynamic_icp/recording/formats/result_kind.hpp"
+
 // How a whole folder takes the place of another one, for output_folder.hpp. Whatever ends the process on the way,
 // remove_leftovers() of the next one brings either result into place.
 namespace dynamic_icp::formats {
@@ -34,5 +36,9 @@ void move_within(const std::filesystem::path& target, const std::string& number,
 
 /// Ends what killed processes have left beside and within the folder of a result; what a running one holds stays.
 void remove_leftovers(const std::filesystem::path& target);
+
+/// Removes what killed processes have left of other results of this kind in a folder: partial folders that nobody
+/// holds and in which every file is one of such a result. Nothing else is ever removed.
+void remove_abandoned(const std::filesystem::path& folder, const ResultKind& kind);
 
 }  // namespace dynamic_icp::formats

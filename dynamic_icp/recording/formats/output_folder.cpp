@@ -76,6 +76,9 @@ OutputFolder::OutputFolder(const fs::path& path, const ResultKind& kind, bool re
                            const std::vector<fs::path>& inputs)
     : named_(named(path)), final_(resolved(path)), kind_(kind), replace_(replace), within_(must_stay(final_)) {
   remove_leftovers(final_);
+  if (!within_) {
+    remove_abandoned(final_.parent_path(), kind_);
+  }
   refuse_if_within(inputs);
   check_final();
   make_staging();

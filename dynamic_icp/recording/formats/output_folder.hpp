@@ -30,7 +30,8 @@ class EarlierResult : public DataError {
 /// object is destroyed before that, the staging folder is removed and an earlier result is untouched. A folder that no
 /// other one can be renamed to (a mount point, the working directory) is staged within: its files come into place one
 /// by one then, the marker last. What a killed process left behind is removed by the next one that writes to the same
-/// place, or brought to its end when it was about to come into place.
+/// place, or brought to its end when it was about to come into place; of another place in the same folder it is removed
+/// when it is of the same kind.
 class OutputFolder {
  public:
   /// A link is followed. An existing folder that is not empty is refused with a DataError, EarlierResult where

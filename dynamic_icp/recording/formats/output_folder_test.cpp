@@ -134,6 +134,30 @@ TEST_F(OutputFolderTest, RemovesWhatAKilledProcessLeftButNotWhatOneStillWrites) 
   EXPECT_TRUE(fs::exists(running.path()));
 }
 
+/// Starts a result there in a process that is killed then; `name` is a file in it.
+void leave_behind(const fs::path& place, const char* name) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    const OutputFolder killed(place, kRun, false);
+    std::ofstream(killed.path() / name) << "half";
+    ::raise(SIGKILL);
+  }
+  ::waitpid(child, nullptr, 0);
+}
+
+TEST_F(OutputFolderTest, RemovesWhatKilledProcessesLeftOfOtherResultsBesideIt) {
+  leave_behind(parent_ / "first", "run.json");
+  leave_behind(parent_ / "second", "frames.txt");  // no file of such a result
+  fs::create_directories(parent_ / ".partial-7");  // of no name
+  fs::create_directories(parent_ / ".x.partial-7a");
+  write(parent_ / ".y.partial-7", "a file");
+  const OutputFolder running(parent_ / "running", kRun, false);
+  EXPECT_EQ(entries(), 5u) << "that of `first` is gone already";
+  put(out_, "new");
+  EXPECT_TRUE(fs::exists(running.path()));
+  EXPECT_EQ(entries(), 6u) << "second, the three of the user, running, out";
+}
+
 TEST_F(OutputFolderTest, AFolderThatCannotBeCreatedIsAnError) {
   write(parent_ / "file", "");
   EXPECT_THROW(OutputFolder(parent_ / "file" / "out", kRun, false), DataError);

@@ -61,6 +61,22 @@ std::vector<StagedNames::Found> StagedNames::found() const {
   return result;
 }
 
+std::vector<fs::path> partial_folders(const fs::path& folder) {
+  std::vector<fs::path> result;
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
+       entry.increment(fault)) {
+    const std::string name = entry->path().filename().string();
+    const std::size_t word = name.rfind(".partial-");
+    std::error_code ignored;
+    if (name.starts_with('.') && word != std::string::npos && word > 1 && parse(name, name.substr(0, word)) &&
+        entry->symlink_status(ignored).type() == fs::file_type::directory) {
+      result.push_back(entry->path());
+    }
+  }
+  return result;
+}
+
 bool is_staged_within(std::string_view name) { return parse(name, kPrefixWithin).has_value(); }
 
 }  // namespace dynamic_icp::formats

@@ -41,6 +41,9 @@ class StagedNames {
   std::string prefix_;
 };
 
+/// The folders in this one that have the name of a partial result beside its folder, whatever the name of that is.
+std::vector<std::filesystem::path> partial_folders(const std::filesystem::path& folder);
+
 /// Whether an entry of a folder is one of its temporary folders within.
 bool is_staged_within(std::string_view name);
 

@@ -14,6 +14,81 @@ namespace {
 // long the run is.
 constexpr std::size_t kProbes = 4;
 
+using datasets::Correction;
+using diagnosis::Question;
+
+/// What the numbers of a recording are taken for where nobody states anything: who states the same knows better than
+/// the diagnosis. Empty where a question is not about what can be stated.
+Correction as_it_is(Question question, const datasets::Dataset& dataset) {
+  switch (question) {
+    case Question::kDopplerSign:
+      return {.doppler_sign = datasets::DopplerSign::kAway};
+    case Question::kDopplerKind:
+      return {.doppler_kind = dataset.doppler_kind()};
+    case Question::kDopplerUnits:
+      return {.doppler_scale = 1.0};
+    case Question::kPointUnits:
+      return {.point_scale = 1.0};
+    case Question::kColumns:
+      return {.columns = Correction::kInOrder};
+    case Question::kTimeScale:
+      return {.time_scale = 1.0};
+    default:
+      return {};
+  }
+}
+
+/// Whether the user stated what the question asks.
+bool is_stated(Question question, const Correction& correction) {
+  switch (question) {
+    case Question::kDopplerSign:
+      return correction.doppler_sign.has_value();
+    case Question::kDopplerKind:
+      return correction.doppler_kind.has_value();
+    case Question::kDopplerUnits:
+      return correction.doppler_scale.has_value();
+    case Question::kPointUnits:
+      return correction.point_scale.has_value();
+    case Question::kColumns:
+      return correction.columns.has_value();
+    case Question::kTimeScale:
+      return correction.time_scale.has_value();
+    default:
+      return true;
+  }
+}
+
+/// Whether every result would be wrong, there is a way out, and the user has not stated that it is right.
+bool stops(const diagnosis::Finding& finding, const Correction& stated, bool has_doppler, const Needs& needs) {
+  if (finding.verdict != diagnosis::Verdict::kWrong || finding.fix == Correction{} ||
+      is_stated(finding.question, stated)) {
+    return false;
+  }
+  const bool is_of_speed = finding.question == Question::kDopplerUnits || finding.question == Question::kTimeScale;
+  return finding.question == Question::kDopplerKind ? has_doppler : needs.doppler || !is_of_speed;
+}
+
+/// What is wrong, what fixes all of it, and how to state that it is right.
+std::string refusal(const std::vector<const diagnosis::Finding*>& findings, const datasets::Dataset& dataset,
+                    const FixInWords& fix_in_words) {
+  std::string text;
+  diagnosis::Finding fixes;
+  diagnosis::Finding is_right;
+  for (const diagnosis::Finding* finding : findings) {
+    const bool is_of_doppler =
+        finding->question == Question::kDopplerSign || finding->question == Question::kDopplerKind;
+    text +=
+        fmt::format("{}{}{}", text.empty() ? "" : "; and ", is_of_doppler ? "the Doppler is " : "", finding->sentence);
+    fixes.fix.apply(finding->fix);
+    is_right.fix.apply(as_it_is(finding->question, dataset));
+  }
+  if (!fix_in_words) {
+    return text;
+  }
+  return fmt::format("{}. Run with {}; or state that it is not so with {}", text, fix_in_words(fixes),
+                     fix_in_words(is_right));
+}
+
 }  // namespace
 
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
@@ -44,26 +119,19 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
         dataset.scan_file(scans.begin).string(), diagnosis.of(diagnosis::Question::kDopplerKind).sentence,
         with_kind(DopplerKind::kCompensated), with_kind(DopplerKind::kRelative)));
   }
+  std::vector<const diagnosis::Finding*> stopping;
   for (const diagnosis::Finding& finding : diagnosis.findings) {
-    const bool is_sign = finding.question == diagnosis::Question::kDopplerSign;
-    const bool is_kind = finding.question == diagnosis::Question::kDopplerKind;
-    const bool is_stated = (is_sign && settings.correction.doppler_sign) ||
-                           (is_kind && (settings.correction.doppler_kind || !diagnosis.has_doppler));
-    if (finding.verdict == diagnosis::Verdict::kWrong && (is_sign || is_kind) && !is_stated) {
-      diagnosis::Finding as_it_is;
-      as_it_is.fix = is_sign ? datasets::Correction{.doppler_sign = datasets::DopplerSign::kAway}
-                             : datasets::Correction{.doppler_kind = dataset.doppler_kind()};
-      const std::string hint = fix_in_words ? fmt::format(". Run with {}; or state that it is not so with {}",
-                                                          fix_of(finding), fix_of(as_it_is))
-                                            : "";
-      throw DataError(
-          fmt::format("{}: the Doppler is {}{}", dataset.scan_file(scans.begin).string(), finding.sentence, hint));
-    }
-    if (finding.verdict == diagnosis::Verdict::kWrong || finding.verdict == diagnosis::Verdict::kSuspicious) {
+    if (stops(finding, settings.correction, diagnosis.has_doppler, needs)) {
+      stopping.push_back(&finding);
+    } else if (finding.verdict == diagnosis::Verdict::kWrong || finding.verdict == diagnosis::Verdict::kSuspicious) {
       const std::string fix = fix_of(finding);
       check.warnings.push_back(fmt::format("{}: {}{}", diagnosis::to_string(finding.question), finding.sentence,
                                            fix.empty() ? "" : "; fix with " + fix));
     }
+  }
+  if (!stopping.empty()) {
+    throw DataError(
+        fmt::format("{}: {}", dataset.scan_file(scans.begin).string(), refusal(stopping, dataset, fix_in_words)));
   }
   if (needs.sweep) {
     check.sweep = diagnosis::search_sweep(dataset, {scans.begin, scans.end}, check.period_s, workers);

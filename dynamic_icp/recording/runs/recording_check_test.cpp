@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <gtest/gtest.h>
@@ -15,6 +16,9 @@ namespace {
 /// A radar that rounds its Doppler to whole dm/s and stays where it is before it moves along x, s = -u.v.
 class LateStart final : public datasets::Dataset {
  public:
+  /// `unit`: as many units of its Doppler are 1 m/s.
+  explicit LateStart(double unit = 1.0, formats::Trajectory truth = {}) : truth_(std::move(truth)), unit_(unit) {}
+
   static constexpr std::size_t kScans = 120;
   static constexpr std::size_t kFirstMoving = 70;
 
@@ -39,13 +43,14 @@ class LateStart final : public datasets::Dataset {
       const Eigen::Vector3d point(80.0 * source.uniform(3 * k) - 10.0 - x_m, 40.0 * source.uniform(3 * k + 1) - 20.0,
                                   6.0 * source.uniform(3 * k + 2) - 2.0);
       raw.points.push_back(point);
-      raw.doppler.push_back(moves ? 0.1 * std::round(-10.0 * kSpeed_mps * point.normalized().x()) : 0.0);
+      raw.doppler.push_back(moves ? unit_ * 0.1 * std::round(-10.0 * kSpeed_mps * point.normalized().x()) : 0.0);
     }
     return raw;
   }
 
  private:
   formats::Trajectory truth_;
+  double unit_;
   std::vector<std::string> none_;
 };
 
@@ -60,6 +65,58 @@ TEST(RecordingCheck, ThatOfASensorThatNeverMovesIs) {
   const LateStart recording;
   EXPECT_THROW(check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, {true}), DataError);
   EXPECT_NO_THROW(check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, {false}));
+}
+
+/// The ground truth of LateStart while it moves.
+formats::Trajectory moving_truth() {
+  formats::Trajectory truth;
+  for (std::size_t i = LateStart::kFirstMoving; i < LateStart::kScans; ++i) {
+    Eigen::Isometry3d pose = Eigen::Isometry3d::Identity();
+    pose.translation().x() = 0.5 * static_cast<double>(i - LateStart::kFirstMoving);
+    truth.push_back({Stamp{static_cast<std::int64_t>(i) * 100'000'000}, pose});
+  }
+  return truth;
+}
+
+std::string refusal(const LateStart& recording, const datasets::InputSettings& settings, const Needs& needs) {
+  const FixInWords in_words = [](const diagnosis::Finding& finding) {
+    std::string text;
+    for (const auto& [name, value] : datasets::texts({.open = {}, .correction = finding.fix})) {
+      text += name + "=" + value + " ";
+    }
+    return text;
+  };
+  try {
+    check_recording(recording, settings, {LateStart::kFirstMoving, LateStart::kScans, 1}, needs, in_words);
+    return "none";
+  } catch (const DataError& error) {
+    return error.what();
+  }
+}
+
+// 3.6 km/h are 1 m/s.
+TEST(RecordingCheck, DopplerInAnotherUnitIsRefusedWithWhatFixesIt) {
+  const LateStart recording(3.6, moving_truth());
+  const std::string text = refusal(recording, {}, {true});
+  EXPECT_NE(text.find("km/h"), std::string::npos) << text;
+  EXPECT_NE(text.find("Run with doppler-scale=0.277778"), std::string::npos) << text;
+  EXPECT_NE(text.find("state that it is not so with doppler-scale=1 "), std::string::npos) << text;
+}
+
+TEST(RecordingCheck, AUnitThatTheUserStatesIsBelieved) {
+  const LateStart recording(3.6, moving_truth());
+  datasets::InputSettings settings;
+  settings.correction.doppler_scale = 1.0;
+  EXPECT_EQ(refusal(recording, settings, {true}), "none");
+  const RecordingCheck check =
+      check_recording(recording, settings, {LateStart::kFirstMoving, LateStart::kScans, 1}, {true});
+  EXPECT_TRUE(std::ranges::any_of(check.warnings, [](const std::string& text) {
+    return text.starts_with("doppler_units");
+  })) << "it is still said";
+}
+
+TEST(RecordingCheck, AMethodWithoutDopplerDoesNotMindItsUnit) {
+  EXPECT_EQ(refusal(LateStart(3.6, moving_truth()), {}, {false}), "none");
 }
 
 }  // namespace

@@ -101,6 +101,7 @@ std::string run_json(const Recording& recording, const RunSettings& settings, co
                {"ablation", settings.ablation},
                {"start", settings.start},
                {"threads", settings.threads}};
+  json["stopped"] = result.summary.stopped;
   json["max_frames"] = nullptr;
   if (settings.max_frames) {
     json["max_frames"] = *settings.max_frames;

@@ -12,7 +12,6 @@
 #include "dynamic_icp/recording/datasets/scan_range.hpp"
 #include "dynamic_icp/recording/formats/kitti_write.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
-#include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
 #include "dynamic_icp/recording/runs/map_writer.hpp"
@@ -20,6 +19,7 @@
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 #include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/recording/runs/run_json.hpp"
+#include "dynamic_icp/recording/runs/run_truth.hpp"
 #include "dynamic_icp/recording/runs/run_writer.hpp"
 
 namespace dynamic_icp::runs {
@@ -106,15 +106,14 @@ class Run {
         calibration_(calibration_of(settings)),
         dataset_(datasets::open_input(recording.path, recording.settings)),
         scans_(datasets::select_scans(*dataset_, settings.start, settings.max_frames)),
-        truth_file_(settings.ground_truth.empty() ? dataset_->ground_truth_file() : settings.ground_truth),
-        truth_(settings.ground_truth.empty() ? dataset_->ground_truth()
-                                             : formats::read_tum(settings.ground_truth).trajectory),
+        truth_(truth_for_run(*dataset_, scans_, settings.ground_truth)),
         check_(check_recording(*dataset_, recording.settings, {scans_.begin, scans_.end, settings.threads},
                                needs_of(settings), callbacks.fix_in_words)) {
     check_ending(settings.mcap_file, ".mcap", "an MCAP file");
     check_ending(settings.kitti_file, ".txt", "a file of KITTI poses");
     result_.period_s = check_.period_s;
     result_.doppler = check_.doppler;
+    result_.scans_selected = scans_.size();
     result_.sweep.search = check_.sweep;
     if (check_.sweep && check_.sweep->found_sweep()) {
       diagnosis::declare(*check_.sweep, *sweep_config(settings_.config));
@@ -123,7 +122,7 @@ class Run {
 
   /// Whether it came to its end.
   bool write() {
-    std::vector<fs::path> inputs = {recording_.path, dataset_->scan_file(scans_.begin), truth_file_};
+    std::vector<fs::path> inputs = {recording_.path, dataset_->scan_file(scans_.begin), truth_.file};
     if (settings_.calibration) {
       inputs.push_back(*settings_.calibration);
     }
@@ -197,6 +196,9 @@ class Run {
         warn(text);
       }
     }
+    if (!truth_.warning.empty()) {
+      warn(truth_.warning);
+    }
     RunWriter writer(output.path(), settings_.save_labels);
     if (!mcap_file.empty()) {
       make_recorder(mcap_file);
@@ -208,10 +210,16 @@ class Run {
       formats::write_whole_file(output.path() / "calibration.yaml", calibration_text(*learned));
     }
     result_.map_points = map_ ? std::optional(map_->size()) : std::nullopt;
-    result_.summary = writer.finish(settings_.method, truth_, assumptions);
+    result_.summary = writer.finish(settings_.method, truth_.trajectory, assumptions, stopped_);
+    if (!result_.summary.failure.empty()) {  // the caller tells it at the end
+      result_.warnings.insert(result_.warnings.begin(), result_.summary.failure);
+    }
+    if (!result_.summary.no_accuracy.empty()) {
+      warn(fmt::format("no accuracy: {}: {}", truth_.file.string(), result_.summary.no_accuracy));
+    }
     const auto write_run_json = [&] {
       formats::write_whole_file(output.path() / "run.json",
-                                run_json(recording_, settings_, *dataset_, truth_file_, result_, files));
+                                run_json(recording_, settings_, *dataset_, truth_.file, result_, files));
     };
     result_.has_mcap = recorder_.has_value();
     result_.has_kitti = !kitti_file.empty();
@@ -247,6 +255,10 @@ class Run {
       add_to_map(frame);
       record(scan, frame);
       report_progress(i + 1 - scans_.begin);
+      if (i + 1 < scans_.end && callbacks_.stop && callbacks_.stop()) {
+        stopped_ = true;
+        break;
+      }
     }
     refuse_without_points(usability, recording_.path);
     return true;
@@ -358,10 +370,10 @@ class Run {
   std::optional<window::SensorCalibration> calibration_;
   std::unique_ptr<datasets::Dataset> dataset_;
   datasets::ScanRange scans_;
-  fs::path truth_file_;
-  formats::Trajectory truth_;
+  RunTruth truth_;
   RecordingCheck check_;
   std::optional<McapRecorder> recorder_;
+  bool stopped_ = false;
   RunResult result_;
 };
 

@@ -33,7 +33,7 @@ struct RunSettings {
   int threads = 0;                        ///< 0: as many as the machine has; results do not depend on it
   std::size_t start = 0;                  ///< first scan, counted from 0
   std::optional<std::size_t> max_frames;  ///< most scans to process; all where empty
-  std::filesystem::path ground_truth;     ///< TUM file to compare with; empty: what the recording brings along
+  std::filesystem::path ground_truth;     ///< file to compare with; empty: what the recording brings along
   bool save_labels = false;
   std::optional<std::filesystem::path> map_file;  ///< static points of all scans, .ply or .pcd; dynamic-icp only
   double map_voxel_m = 0.1;
@@ -55,6 +55,8 @@ struct RunCallbacks {
   FixInWords fix_in_words;
   /// Asked before each scan whether the run is to be given up.
   std::function<bool()> cancelled;
+  /// Asked after each scan but the last whether the run is to end there, with the results so far.
+  std::function<bool()> stop;
   /// Adds files to a run whose own files are written, before its folder appears. What it throws is one of the run's
   /// failures.
   std::function<void(const std::filesystem::path& folder)> add_files;
@@ -63,8 +65,9 @@ struct RunCallbacks {
 /// What came of a run beside its files.
 struct RunResult {
   RunSummary summary;
-  double period_s = 0.0;  ///< from scan to scan, median; 0 of one scan
-  std::string doppler;    ///< kind and sign, in words
+  std::size_t scans_selected = 0;  ///< more than the summary has where the run was stopped
+  double period_s = 0.0;           ///< from scan to scan, median; 0 of one scan
+  std::string doppler;             ///< kind and sign, in words
   SweepRecord sweep;
   std::vector<std::string> warnings;
   std::optional<std::size_t> map_points;  ///< empty without a map
@@ -78,7 +81,8 @@ struct RunResult {
 /// when it was cancelled: then nothing is written, and an earlier run in the folder stays as it was.
 ///
 /// Throws UsageError when the settings cannot be meant, DataError when the recording cannot be read, is wrong beyond
-/// doubt (check_recording) or has no scan with enough points, or when the machine fails.
+/// doubt (check_recording) or has no scan with enough points, when the ground truth of the settings fits no scan, or
+/// when the machine fails. A run in which most scans are lost is written all the same: see RunSummary::failure.
 std::optional<RunResult> run_recording(const Recording& recording, const RunSettings& settings,
                                        const RunCallbacks& callbacks = {});
 

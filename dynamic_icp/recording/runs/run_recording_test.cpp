@@ -87,6 +87,49 @@ TEST_F(RunRecording, CancelledKeepsTheEarlierRun) {
   EXPECT_EQ(entries(), 2U);
 }
 
+TEST_F(RunRecording, StoppedKeepsTheResultsSoFar) {
+  std::size_t asked = 0;
+  RunCallbacks callbacks;
+  callbacks.stop = [&] { return ++asked == 3; };
+  const std::optional<RunResult> result = run_recording(recording(), settings_, callbacks);
+  ASSERT_TRUE(result);
+  EXPECT_TRUE(result->summary.stopped);
+  EXPECT_EQ(result->summary.frames, 3U);
+  EXPECT_EQ(result->scans_selected, 6U);
+  const RunFiles files = read_run(settings_.output);
+  EXPECT_EQ(files.frames.size(), 3U);
+  EXPECT_NE(folder_.read("out/summary.json").find("\"stopped\": true"), std::string::npos);
+  EXPECT_NE(folder_.read("out/run.json").find("\"stopped\": true"), std::string::npos);
+}
+
+TEST_F(RunRecording, IsNotAskedToStopAfterItsLastScan) {
+  std::size_t asked = 0;
+  RunCallbacks callbacks;
+  callbacks.stop = [&] { return ++asked == 6; };
+  const std::optional<RunResult> result = run_recording(recording(), settings_, callbacks);
+  ASSERT_TRUE(result);
+  EXPECT_EQ(asked, 5U);
+  EXPECT_FALSE(result->summary.stopped);
+  EXPECT_NE(folder_.read("out/summary.json").find("\"stopped\": false"), std::string::npos);
+}
+
+// By the clock of another drive.
+constexpr const char* kOtherTruth = "5000.0 0 0 0 0 0 0 1\n5000.1 1 0 0 0 0 0 1\n5000.2 2 0 0 0 0 0 1\n";
+
+TEST_F(RunRecording, RefusesGroundTruthOfAnotherDriveBeforeTheFirstScan) {
+  folder_.write("other.tum", kOtherTruth);
+  settings_.ground_truth = folder_.path() / "other.tum";
+  RunCallbacks callbacks;
+  callbacks.progress = [](std::size_t, std::size_t) { FAIL() << "a scan was processed"; };
+  try {
+    run_recording(recording(), settings_, callbacks);
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("other.tum: does not fit the scans"), std::string::npos) << error.what();
+  }
+  EXPECT_FALSE(fs::exists(settings_.output));
+}
+
 TEST_F(RunRecording, AddsFilesOfTheCaller) {
   RunCallbacks callbacks;
   callbacks.add_files = [&](const fs::path& folder) {

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/recording/evaluation/run_accuracy.hpp"
 
 namespace dynamic_icp::runs {
@@ -28,7 +30,11 @@ struct RunSummary {
   std::optional<double> clustered_ratio_mean;  ///< clustered over dynamic candidates
   std::optional<double> refined_ratio_mean;    ///< in an accepted object over clustered, as the paper tabulates it
   std::vector<std::string> assumptions;        ///< what had to be taken for granted about recording and method
-  std::vector<std::pair<std::string, std::size_t>> status_counts;  ///< frames per status, as they first occurred
+  std::array<std::size_t, odometry::kVerdicts.size()> verdicts{};  ///< frames per word of odometry::kVerdicts
+  std::vector<std::pair<std::string, std::size_t>> reasons;        ///< frames per reason, as they first occurred
+  std::string failure;      ///< "ODOMETRY FAILED on ...: cause" where most scans are lost, else empty
+  bool stopped = false;     ///< asked to, before its last scan
+  std::string no_accuracy;  ///< why there is none where the ground truth does not fit, else empty
 };
 
 /// The content of summary.json.

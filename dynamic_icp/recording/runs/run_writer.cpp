@@ -23,10 +23,10 @@ std::optional<double> mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-void count_status(std::vector<std::pair<std::string, std::size_t>>& counts, std::string_view status) {
-  const auto known = std::find_if(counts.begin(), counts.end(), [&](const auto& row) { return row.first == status; });
+void count_reason(std::vector<std::pair<std::string, std::size_t>>& counts, std::string_view reason) {
+  const auto known = std::find_if(counts.begin(), counts.end(), [&](const auto& row) { return row.first == reason; });
   if (known == counts.end()) {
-    counts.emplace_back(status, 1);
+    counts.emplace_back(reason, 1);
   } else {
     ++known->second;
   }
@@ -53,7 +53,10 @@ void RunWriter::add(std::size_t index, const odometry::Frame& frame) {
   trajectory_.push_back({frame.stamp, frame.T_world_sensor});
   stated_.push_back({frame.alignment.covariance, verdict(frame.status) == "ok", odometry::is_skipped(frame.status)});
   total_ms_.push_back(frame.times.total_ms);
-  count_status(status_counts_, to_string(frame.status));
+  const auto word = std::ranges::find(odometry::kVerdicts, verdict(frame.status));
+  ++verdicts_.at(static_cast<std::size_t>(word - odometry::kVerdicts.begin()));
+  count_reason(reasons_, to_string(frame.status));
+  lost_.add(frame);
   if (trajectory_.size() > 1) {
     ++pairs_;
     converged_ += odometry::converged(frame.status) ? 1 : 0;
@@ -72,13 +75,18 @@ void RunWriter::add(std::size_t index, const odometry::Frame& frame) {
 }
 
 RunSummary RunWriter::finish(const std::string& method, const formats::Trajectory& ground_truth,
-                             const std::vector<std::string>& assumptions) {
+                             const std::vector<std::string>& assumptions, bool stopped) {
   RunSummary summary;
+  summary.stopped = stopped;
   summary.assumptions = assumptions;
   summary.method = method;
   summary.frames = trajectory_.size();
   if (!ground_truth.empty() && !trajectory_.empty()) {
-    summary.accuracy = evaluation::evaluate_run(trajectory_, ground_truth, stated_);
+    try {
+      summary.accuracy = evaluation::evaluate_run(trajectory_, ground_truth, stated_);
+    } catch (const DataError& error) {  // a comparison that fails is no reason to lose what was computed
+      summary.no_accuracy = error.what();
+    }
   }
   summary.mean_iterations = mean(iterations_);
   if (pairs_ > 0) {
@@ -98,7 +106,9 @@ RunSummary RunWriter::finish(const std::string& method, const formats::Trajector
   }
   summary.clustered_ratio_mean = mean(clustered_ratio_);
   summary.refined_ratio_mean = mean(refined_ratio_);
-  summary.status_counts = status_counts_;
+  summary.verdicts = verdicts_;
+  summary.reasons = reasons_;
+  summary.failure = lost_.failure().value_or("");
 
   frames_file_.close();
   objects_file_.close();

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <filesystem>
 #include <string>
@@ -10,6 +11,7 @@
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/recording/formats/trajectory.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/runs/lost_scans.hpp"
 #include "dynamic_icp/recording/runs/run_summary.hpp"
 
 namespace dynamic_icp::runs {
@@ -26,9 +28,10 @@ class RunWriter {
   /// One pose for each scan until now.
   [[nodiscard]] const formats::Trajectory& trajectory() const { return trajectory_; }
 
-  /// Writes what is left. `ground_truth` may be empty.
+  /// Writes what is left. `ground_truth` may be empty, and may not fit: then there is no accuracy, and the summary says
+  /// why. `stopped`: before the last scan, because someone asked to.
   RunSummary finish(const std::string& method, const formats::Trajectory& ground_truth,
-                    const std::vector<std::string>& assumptions);
+                    const std::vector<std::string>& assumptions, bool stopped = false);
 
  private:
   std::filesystem::path folder_;
@@ -44,7 +47,9 @@ class RunWriter {
   std::vector<double> refined_ratio_;
   std::size_t pairs_ = 0;
   std::size_t converged_ = 0;
-  std::vector<std::pair<std::string, std::size_t>> status_counts_;
+  std::array<std::size_t, odometry::kVerdicts.size()> verdicts_{};
+  std::vector<std::pair<std::string, std::size_t>> reasons_;
+  LostScans lost_;
 };
 
 }  // namespace dynamic_icp::runs

@@ -99,7 +99,23 @@ TEST_F(RunWriterTest, WritesTheFilesOfTheContract) {
             std::string("\xff\xff\xff\xff\0\0\0\0\0\0\0\0\1\0\0\0", 16));
   const json stored = json::parse(formats::read_whole_file(folder_ / "summary.json"));
   EXPECT_EQ(stored["frames"], 2);
-  EXPECT_EQ(stored["statuses"]["first"], 1);
+  EXPECT_EQ(stored["statuses"], json({{"ok", 2}, {"degenerate", 0}, {"lost", 0}}));
+  EXPECT_EQ(stored["reasons"], json({{"first", 1}, {"converged", 1}}));
+  EXPECT_TRUE(stored["failure"].is_null());
+  EXPECT_EQ(stored["stopped"], false);
+}
+
+TEST_F(RunWriterTest, GroundTruthThatDoesNotFitCostsNoResult) {
+  RunWriter writer(folder_, false);
+  writer.add(0, frame_at(0, 0.0, odometry::FrameStatus::kFirst));
+  writer.add(1, frame_at(100'000'000, 1.0, odometry::FrameStatus::kLost));
+  const formats::Trajectory other_clock = {{Stamp{5'000'000'000'000}, Eigen::Isometry3d::Identity()}};
+  const RunSummary summary = writer.finish("dynamic-icp", other_clock, {});
+  EXPECT_NE(summary.no_accuracy.find("matches"), std::string::npos) << summary.no_accuracy;
+  const json stored = json::parse(formats::read_whole_file(folder_ / "summary.json"));
+  EXPECT_TRUE(stored["rte_rmse_m"].is_null());
+  EXPECT_EQ(stored["statuses"], json({{"ok", 1}, {"degenerate", 0}, {"lost", 1}}));
+  EXPECT_TRUE(fs::exists(folder_ / "trajectory.tum"));
 }
 
 TEST_F(RunWriterTest, ConsistencyIsThatOfTheFramesReadAgain) {
