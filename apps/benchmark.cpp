@@ -221,7 +221,7 @@ void add_benchmark_command(CLI::App& app, std::function<int()>& selected) {
       "Ended at any time, the same command goes on where it was: finished runs whose program, configuration and "
       "recording are unchanged are not run again; failed ones are.");
   command->add_option("INPUT", options->inputs, "Recordings, or folders whose sub-folders are recordings");
-  add_option(*command, "--output", options->output, "DIR",
+  add_option(*command, "-o,--output", options->output, "DIR",
              "Folder for runs, results.json and tables; new, or that of a benchmark");
   add_option(*command, "--manifest", options->manifest, "FILE",
              "Take the recordings that this list names (manifests/paper-*.yaml: those of the paper), as many of "

@@ -136,7 +136,7 @@ void add_convert_command(CLI::App& app, std::function<int()>& selected) {
       ->required()
       ->type_name("NAME");
   command
-      ->add_option("--output", options->output,
+      ->add_option("-o,--output", options->output,
                    "Folder for the result, which must be new or empty; with --to mcap also a new file FILE.mcap")
       ->required()
       ->type_name("DIR");

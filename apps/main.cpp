@@ -1,8 +1,10 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <cstdio>
 #include <functional>
 #include <iostream>
+#include <memory>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -11,15 +13,18 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/method/base/nearest_key.hpp"
 #include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
+#include "apps/exit_status.hpp"
+#include "apps/help_format.hpp"
 #include "apps/keep_memory.hpp"
 #include "apps/messages.hpp"
 #include "apps/process.hpp"
+#include "apps/terminal.hpp"
+#include "apps/wrong_words.hpp"
 
 namespace {
 
@@ -28,8 +33,8 @@ using dynamic_icp::DataError;
 using dynamic_icp::UsageError;
 using dynamic_icp::version;
 
-constexpr int kDataOrMachineFailed = 1;
-constexpr int kWrongUsage = 2;
+using apps::kDataOrMachineFailed;
+using apps::kWrongUsage;
 
 constexpr const char* kNotPrinted = "standard output: not all could be written";
 
@@ -39,37 +44,6 @@ int with_output_written(int status) {
     throw DataError(kNotPrinted);
   }
   return status;
-}
-
-/// A first word that is no command deserves better than "a subcommand is required".
-void refuse_unknown_command(const CLI::App& app, int argc, char** argv) {
-  if (argc < 2 || argv[1][0] == '-') {
-    return;
-  }
-  std::string known;
-  for (const CLI::App* command : app.get_subcommands(nullptr)) {
-    if (command->get_name() == argv[1]) {
-      return;
-    }
-    known += " " + command->get_name();
-  }
-  throw UsageError(fmt::format("unknown command '{}'; known are:{}", argv[1], known));
-}
-
-/// An unknown option is said before a missing one: mistyped, it is both.
-void refuse_unknown_option(const CLI::App& command) {
-  std::vector<std::string> known;
-  for (const CLI::Option* option : command.get_options()) {
-    for (const std::string& name : option->get_lnames()) {
-      known.push_back("--" + name);
-    }
-  }
-  for (const std::string& word : command.remaining()) {
-    if (word.starts_with("--")) {
-      throw UsageError(fmt::format("'{}' has no option '{}'; did you mean '{}'?", command.get_name(), word,
-                                   dynamic_icp::nearest_key(word, known)));
-    }
-  }
 }
 
 int report(const std::string& message, int status) {
@@ -83,10 +57,26 @@ std::string what_failed(const std::system_error& error) {
   return fmt::format("{}{}", no_thread ? "cannot start another thread (--threads N takes fewer): " : "", error.what());
 }
 
+/// The command line without the program, `help` and `version` as the options that they mean.
+std::vector<std::string> words_of(int argc, char** argv) {
+  std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
+  if (!words.empty() && words.front() == "help") {
+    words.erase(words.begin());
+    words.resize(std::min<std::size_t>(words.size(), 1));
+    words.emplace_back("--help");
+  } else if (!words.empty() && words.front() == "version") {
+    words.front() = "--version";
+  }
+  return words;
+}
+
 /// Carries out what the command line says.
 int run(int argc, char** argv) {
-  CLI::App app{"Registration and odometry for FMCW LiDAR in scenes full of moving things", "dynamic-icp"};
-  app.set_version_flag("--version", std::string(version()));
+  const std::vector<std::string> words = words_of(argc, argv);
+  CLI::App app{"Registration and odometry for FMCW LiDAR in highly dynamic scenes", "dynamic-icp"};
+  app.formatter(std::make_shared<apps::HelpFormat>(apps::terminal_width(words.empty() ? stderr : stdout)));
+  app.set_version_flag("-v,--version", std::string(version()));
+  app.footer("'dynamic-icp COMMAND --help' and 'dynamic-icp help COMMAND' explain a command and its options.");
   app.require_subcommand(1);
   std::function<int()> selected;
   for (const auto add :
@@ -95,16 +85,17 @@ int run(int argc, char** argv) {
         apps::add_info_command, apps::add_config_command}) {
     add(app, selected);
   }
-  refuse_unknown_command(app, argc, argv);
+  if (words.empty()) {
+    std::fputs(app.help().c_str(), stderr);
+    return kWrongUsage;
+  }
+  apps::refuse_unknown_command(app, words);
   try {
-    app.parse(argc, argv);
+    app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as it takes them: the last word first
   } catch (const CLI::Success& help_or_version) {
     return with_output_written(app.exit(help_or_version));
-  } catch (const CLI::ParseError&) {
-    for (const CLI::App* command : app.get_subcommands()) {
-      refuse_unknown_option(*command);
-    }
-    throw;
+  } catch (const CLI::ParseError& error) {
+    throw UsageError(apps::explanation(app, error));
   }
   return with_output_written(selected());
 }
@@ -118,9 +109,6 @@ int main(int argc, char** argv) {
   apps::remember_command_line(argc, argv);
   try {
     return run(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    return report(fmt::format("{}\nRun 'dynamic-icp --help' or 'dynamic-icp COMMAND --help'.", error.what()),
-                  kWrongUsage);
   } catch (const UsageError& error) {
     return report(error.what(), kWrongUsage);
   } catch (const dynamic_icp::formats::EarlierResult& error) {

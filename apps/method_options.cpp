@@ -94,7 +94,7 @@ std::vector<std::string> read_settings(const MethodOptions& options, odometry::C
   }
   apply_settings(all, options.settings);
   for (const std::string& setting : options.settings) {
-    given.push_back(setting.substr(0, setting.find('=')));
+    given.push_back(split_setting(setting).first);
   }
   for (std::string& key : given) {
     const auto renamed =
@@ -153,7 +153,7 @@ ResolvedConfig resolve_config(const MethodOptions& options) {
 
 void note_renamed_keys(const MethodOptions& options) {
   for (const std::string& setting : options.settings) {
-    const std::string key = setting.substr(0, setting.find('='));
+    const std::string key = split_setting(setting).first;
     for (const auto& [former, now] : odometry::renamed_keys()) {
       if (key == former) {
         tell("dynamic-icp: note: configuration key '{}' is now '{}'; the former name goes with the next release\n",

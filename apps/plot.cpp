@@ -170,7 +170,7 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
                    "Folder of a run; of several over the same recording: trajectories, errors, iterations and times in "
                    "common pictures")
       ->required();
-  add_option(*command, "--output", options->output, "DIR2",
+  add_option(*command, "-o,--output", options->output, "DIR2",
              "Folder for the pictures (default: plots in the first DIR)");
   add_option(*command, "--frame", options->frame, "N",
              "Which scan to draw: line of frames.jsonl, counted from 0 (default: the one with most points on "

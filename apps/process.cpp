@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "apps/process.hpp"
 
+#include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstring>
 
 #include <fcntl.h>
 #include <pthread.h>
@@ -18,7 +20,31 @@ constexpr int kAskingToEnd[] = {SIGINT, SIGTERM, SIGHUP, SIGPIPE};
 
 pthread_t main_thread;
 
+// Of StopOnSignal. Handlers of these signals do not interrupt each other, see clean_up_on_signals.
+std::atomic<const char*> stop_notice = nullptr;  // set: the next signal is noted only
+std::atomic<int> noted_signal = 0;
+static_assert(std::atomic<const char*>::is_always_lock_free && std::atomic<int>::is_always_lock_free);
+
+/// Whether the signal was noted, and is to do no more.
+bool note(int signal) {
+  if (signal != SIGINT && signal != SIGTERM) {
+    return false;
+  }
+  const char* const notice = stop_notice.exchange(nullptr);
+  if (notice == nullptr) {
+    return false;
+  }
+  noted_signal = signal;
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, notice, std::strlen(notice));
+  return true;
+}
+
 extern "C" void clean_up_and_end(int signal) {
+  const int before = errno;
+  if (note(signal)) {
+    errno = before;
+    return;
+  }
   if (::pthread_equal(::pthread_self(), main_thread) == 0) {
     ::pthread_kill(main_thread, signal);  // it must write no more
     while (true) {
@@ -62,5 +88,14 @@ void clean_up_on_signals() {
     }
   }
 }
+
+StopOnSignal::StopOnSignal(const char* notice) {
+  noted_signal = 0;
+  stop_notice = notice;
+}
+
+StopOnSignal::~StopOnSignal() { stop_notice = nullptr; }
+
+int StopOnSignal::signal() { return noted_signal; }
 
 }  // namespace dynamic_icp::apps

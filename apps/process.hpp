@@ -13,4 +13,18 @@ void open_standard_streams();
 /// folders before they end it. Those that are ignored stay so. To be called by the main thread, the one that writes.
 void clean_up_on_signals();
 
+/// As long as this object lives, the first interrupt or terminate ends nothing: it is only noted, for work that can
+/// stop between two steps and keep what it has. A second one cleans up and ends the program. One object at a time.
+class StopOnSignal {
+ public:
+  /// Writes `notice` to standard error when the first signal comes; it must live as long.
+  explicit StopOnSignal(const char* notice);
+  ~StopOnSignal();
+  StopOnSignal(const StopOnSignal&) = delete;
+  StopOnSignal& operator=(const StopOnSignal&) = delete;
+
+  /// The signal that came, 0 where none has.
+  [[nodiscard]] static int signal();
+};
+
 }  // namespace dynamic_icp::apps

@@ -127,7 +127,7 @@ void add_report_command(CLI::App& app, std::function<int()>& selected) {
       ->add_option("DIR", options->folders,
                    "Folder of a run; several are compared; or the one of a benchmark, with its tables and all its runs")
       ->required();
-  add_option(*command, "--output", options->output, "FILE",
+  add_option(*command, "-o,--output", options->output, "FILE",
              "File to write (default: DIR/report.html; of several runs comparison.html beside the first one)");
   add_option(*command, "--budget-mb", options->budget_mb, "MB",
              fmt::format("Size that scans and map may have in the page, 0.1 to 2000 MB (default {} MB); scans are "

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <cstdio>
 #include <memory>
 #include <optional>
 
@@ -13,12 +14,16 @@
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
+#include "apps/exit_status.hpp"
 #include "apps/input_options.hpp"
 #include "apps/messages.hpp"
 #include "apps/method_options.hpp"
 #include "apps/options.hpp"
+#include "apps/process.hpp"
 #include "apps/progress.hpp"
+#include "apps/run_summary_text.hpp"
 #include "apps/scan_selection.hpp"
+#include "apps/terminal.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -26,6 +31,8 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kWarningsShown = 5;
+constexpr const char* kStopNotice =
+    "\ndynamic-icp: stopping after this scan, with the results so far; a second time: at once, without them\n";
 
 struct RunOptions {
   runs::Recording recording;
@@ -70,63 +77,22 @@ bool make_report(const fs::path& folder, int threads) {
   }
 }
 
-std::string cell(const std::optional<double>& value, int decimals) {
-  return value ? fmt::format("{:.{}f}", *value, decimals) : "-";
-}
-
-std::string percent(const std::optional<double>& share) {
-  return share ? fmt::format("{:.1f} %", 100.0 * *share) : "-";
-}
-
-std::string sweep_text(const runs::SweepRecord& sweep) {
-  if (sweep.times() == "none") {
-    return sweep.search ? sweep.search->sentence : "none: the points have no times";
-  }
-  return fmt::format("{}, {} s, times {}", sweep.deskewed() ? "deskewed" : "not deskewed", cell(sweep.duration_s(), 3),
-                     sweep.times());
-}
-
 /// What the user is told at the end.
 void print_summary(const runs::RunResult& result, const runs::RunSettings& settings, bool reported) {
-  const runs::RunSummary& summary = result.summary;
-  const evaluation::RunAccuracy& accuracy = summary.accuracy;
-  fmt::print("scans        {}\n", summary.frames);
-  if (result.period_s > 0.0) {
-    fmt::print("rate         {:.2f} Hz\n", 1.0 / result.period_s);
-  }
-  fmt::print("Doppler      {}\n", result.doppler);
-  fmt::print("sweep        {}\n", sweep_text(result.sweep));
-  fmt::print("converged    {}   iterations {}\n", percent(summary.convergence_rate), cell(summary.mean_iterations, 1));
-  fmt::print("time         {} ms a scan (median {}, p95 {})\n", cell(summary.ms_mean, 1), cell(summary.ms_median, 1),
-             cell(summary.ms_p95, 1));
-  fmt::print("dynamic      {} of the points, {} of them clustered\n", percent(summary.dynamic_ratio_mean),
-             percent(summary.clustered_ratio_mean));
-  if (accuracy.matched > 0) {
-    fmt::print("RTE          {} m RMSE, {} m median (frame to frame)\n", cell(accuracy.rte_rmse_m, 4),
-               cell(accuracy.rte_median_m, 4));
-    fmt::print("RRE          {} deg RMSE, {} deg median\n", cell(accuracy.rre_rmse_deg, 4),
-               cell(accuracy.rre_median_deg, 4));
-    fmt::print("ATE          {} m RMSE over {} m (SE(3) aligned, {} of {} poses matched)\n",
-               cell(accuracy.ate_rmse_m, 3), cell(accuracy.path_length_m, 1), accuracy.matched, summary.frames);
-  }
-  for (const auto& [status, count] : summary.status_counts) {
-    if (status != "first" && status != "converged") {
-      fmt::print("note         {} scan{} with status {}\n", count, count == 1 ? "" : "s", status);
-    }
-  }
+  print_row("{}", summary_text(result));
   if (result.map_points) {
-    fmt::print("map          {} points in {}\n", *result.map_points, settings.map_file->string());
+    print_row("map          {} points in {}\n", *result.map_points, settings.map_file->string());
   }
   if (result.has_mcap) {
-    fmt::print("mcap         {} (Foxglove, Lichtblick; layout {})\n", settings.mcap_file->string(),
-               (settings.mcap_file->parent_path() / runs::kFoxgloveLayoutFile).string());
+    print_row("mcap         {} (Foxglove, Lichtblick; layout {})\n", settings.mcap_file->string(),
+              (settings.mcap_file->parent_path() / runs::kFoxgloveLayoutFile).string());
   }
   if (result.has_kitti) {
-    fmt::print("KITTI poses  {}\n", settings.kitti_file->string());
+    print_row("KITTI poses  {}\n", settings.kitti_file->string());
   }
-  fmt::print("written to   {}\n", settings.output.string());
+  print_row("written to   {}\n", settings.output.string());
   if (reported) {
-    fmt::print("report       {}\n", (settings.output / "report.html").string());
+    print_row("report       {}\n", (settings.output / "report.html").string());
   }
 }
 
@@ -144,11 +110,31 @@ runs::RunSettings settings_of(const RunOptions& options) {
   return settings;
 }
 
+/// What went wrong, the worst first, and the exit status.
+int tell_failures(const runs::RunResult& result, const fs::path& output) {
+  int status = 0;
+  for (const std::string& failure : result.failures) {
+    tell("dynamic-icp: {}: the run is there, but {}\n", output.string(), failure);
+    status = kDataOrMachineFailed;
+  }
+  if (!result.summary.failure.empty()) {
+    status = kMostScansLost;
+  }
+  const int signal = StopOnSignal::signal();
+  if (signal != 0) {
+    tell("dynamic-icp: stopped after {} of {} scans; results so far in {}\n", result.summary.frames,
+         result.scans_selected, output.string());
+    status = kEndedBySignal + signal;
+  }
+  return status;
+}
+
 int run(const RunOptions& options) {
   const runs::RunSettings settings = settings_of(options);
   Warnings warnings(options.quiet);
   std::optional<Progress> progress;
   bool reported = false;
+  const StopOnSignal stopping(kStopNotice);
   runs::RunCallbacks callbacks;
   callbacks.fix_in_words = fixing_options;
   callbacks.warning = [&](const std::string& text) { warnings.show(text); };
@@ -162,17 +148,33 @@ int run(const RunOptions& options) {
       progress.reset();
     }
   };
+  callbacks.stop = [&] {
+    if (StopOnSignal::signal() != 0) {
+      progress.reset();
+    }
+    return StopOnSignal::signal() != 0;
+  };
   if (options.report) {
-    callbacks.add_files = [&](const fs::path& folder) { reported = make_report(folder, settings.threads); };
+    callbacks.add_files = [&](const fs::path& folder) {
+      if (StopOnSignal::signal() != 0) {  // whoever waits for the end does not want to wait for a page
+        tell("dynamic-icp: no report.html; 'dynamic-icp report {}' makes it\n", settings.output.string());
+        return;
+      }
+      if (!options.quiet) {
+        tell("writing report.html ...\n");
+      }
+      reported = make_report(folder, settings.threads);
+    };
   }
   const runs::RunResult result = runs::run_recording(options.recording, settings, callbacks).value();
+  if (!result.summary.failure.empty()) {
+    tell("dynamic-icp: {}\n", result.summary.failure);
+  }
   if (!options.quiet) {
     print_summary(result, settings, reported);
+    std::fflush(stdout);
   }
-  for (const std::string& failure : result.failures) {
-    tell("dynamic-icp: {}: the run is there, but {}\n", settings.output.string(), failure);
-  }
-  return result.failures.empty() ? 0 : 1;
+  return tell_failures(result, settings.output);
 }
 
 }  // namespace
@@ -181,7 +183,11 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Odometry over a recording: trajectory, objects, statistics");
   command->add_option("INPUT", options->recording.path, "Folder of the recording")->required();
-  command->add_option("--output", options->settings.output, "Folder for the results; must be new or empty")
+  command->footer(
+      "Exit status: 0 done; 1 the data or the machine failed; 2 wrong usage; 3 most scans are lost: there are results, "
+      "but the trajectory is a guess; 130 (interrupt) and 143 (terminate): stopped after a scan, with the results so "
+      "far. A second signal ends it at once, without results.");
+  command->add_option("-o,--output", options->settings.output, "Folder for the results; must be new or empty")
       ->required()
       ->type_name("DIR");
   add_input_options(*command, options->recording.settings);

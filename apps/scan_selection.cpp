@@ -31,7 +31,8 @@ void add_selection_options(CLI::App& command, const char* what, std::size_t& sta
       ->type_name("N");
   command
       .add_option_function<std::string>(
-          "--max-frames", [&max_frames](const std::string& text) { max_frames = count_of("--max-frames", text, 1); },
+          "--max-frames,--max-scans,--frames",
+          [&max_frames](const std::string& text) { max_frames = count_of("--max-frames", text, 1); },
           fmt::format("Maximum number of scans to {} (default: all)", what))
       ->type_name("N");
 }

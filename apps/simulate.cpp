@@ -256,7 +256,7 @@ void add_simulate_command(CLI::App& app, std::function<int()>& selected) {
   add_option(*command, "scene", options->scene, "SCENE",
              "Name of a scene (--list shows them) or a scene file (*.yaml)");
   command->add_flag("--list", options->list, "List scenes and sensors and end");
-  add_option(*command, "--output", options->output, "DIR", "Folder to write; must be new or empty");
+  add_option(*command, "-o,--output", options->output, "DIR", "Folder to write; must be new or empty");
   add_option(
       *command, "--sensor", options->sensor, "NAME",
       fmt::format("Sensors of the vehicle, by name or as a file (*.yaml) (default {})", simulation::kDefaultRig));

@@ -6,6 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include <fmt/format.h>
+
 namespace dynamic_icp {
 namespace {
 
@@ -47,6 +49,11 @@ std::string_view close_key(std::string_view typed, std::span<const std::string> 
   return !nearest.empty() && key_distance(typed, nearest) <= std::max<std::size_t>(1, nearest.size() / 3)
              ? nearest
              : std::string_view();
+}
+
+std::string did_you_mean(std::string_view typed, std::span<const std::string> keys) {
+  const std::string_view key = close_key(typed, keys);
+  return key.empty() ? "" : fmt::format("; did you mean '{}'?", key);
 }
 
 }  // namespace dynamic_icp

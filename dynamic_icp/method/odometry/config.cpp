@@ -9,6 +9,7 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/nearest_key.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
@@ -17,7 +18,9 @@ namespace {
 constexpr double kMaxVoxels = 1 << 20;
 
 [[noreturn]] void throw_unknown(const char* what, std::string_view name, const std::vector<std::string_view>& known) {
-  throw UsageError(fmt::format("unknown {} '{}'; known are: {}", what, name, fmt::join(known, ", ")));
+  throw UsageError(fmt::format("unknown {} '{}'{}; known are: {}", what, name,
+                               did_you_mean(name, std::vector<std::string>(known.begin(), known.end())),
+                               fmt::join(known, ", ")));
 }
 
 /// `low` must be less than `high`, both in m.

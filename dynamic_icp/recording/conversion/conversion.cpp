@@ -8,8 +8,10 @@
 #include <span>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/nearest_key.hpp"
 #include "dynamic_icp/recording/conversion/column_types.hpp"
 #include "dynamic_icp/recording/conversion/mcap_target.hpp"
 #include "dynamic_icp/recording/conversion/targets.hpp"
@@ -200,14 +202,15 @@ class Converter {
 }  // namespace
 
 Target find_target(std::string_view name) {
-  std::string known;
+  std::vector<std::string> known;
   for (const Layout& layout : kLayouts) {
     if (layout.name == name) {
       return layout.target;
     }
-    known += fmt::format(" {}", layout.name);
+    known.emplace_back(layout.name);
   }
-  throw UsageError(fmt::format("cannot convert to '{}'; known are:{}", name, known));
+  throw UsageError(
+      fmt::format("cannot convert to '{}'{}; known are: {}", name, did_you_mean(name, known), fmt::join(known, ", ")));
 }
 
 std::vector<std::string> convert(const datasets::Dataset& dataset, const datasets::ScanRange& range, Target target,

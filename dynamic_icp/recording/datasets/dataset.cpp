@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/nearest_key.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/not_a_recording.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
@@ -123,7 +124,12 @@ Match match_named(const fs::path& input, const std::string& format) {
       return found.empty() ? Match{} : Match{&layout, std::move(found)};
     }
   }
-  throw UsageError(fmt::format("unknown format '{}'; known are: auto{}", format, looked_for()));
+  std::vector<std::string> known = {"auto"};
+  for (const Layout& layout : kLayouts) {
+    known.emplace_back(layout.name);
+  }
+  throw UsageError(
+      fmt::format("unknown format '{}'{}; known are: auto{}", format, did_you_mean(format, known), looked_for()));
 }
 
 /// The layout of the input and what to open. Throws NotARecording where it is of none.

@@ -298,7 +298,7 @@ class Run {
     recorder.tells_moving = settings_.method == "dynamic-icp";
     recorder.period_s = check_.period_s;
     recorder.threads = settings_.threads;
-    recorder_.emplace(path, truth_, recorder);
+    recorder_.emplace(path, truth_.trajectory, recorder);
   }
 
   /// A file for a viewer that cannot be is no reason to lose the run.

@@ -20,7 +20,7 @@ std::string summary_json(const RunSummary& summary) {
   }
   nlohmann::ordered_json reasons = nlohmann::ordered_json::object();
   for (const auto& [reason, count] : summary.reasons) {
-    reasons[reason] = count;
+    reasons[std::string(to_string(reason))] = count;
   }
   const evaluation::RunAccuracy& accuracy = summary.accuracy;
   const nlohmann::ordered_json json = {

@@ -30,8 +30,8 @@ struct RunSummary {
   std::optional<double> clustered_ratio_mean;  ///< clustered over dynamic candidates
   std::optional<double> refined_ratio_mean;    ///< in an accepted object over clustered, as the paper tabulates it
   std::vector<std::string> assumptions;        ///< what had to be taken for granted about recording and method
-  std::array<std::size_t, odometry::kVerdicts.size()> verdicts{};  ///< frames per word of odometry::kVerdicts
-  std::vector<std::pair<std::string, std::size_t>> reasons;        ///< frames per reason, as they first occurred
+  std::array<std::size_t, odometry::kVerdicts.size()> verdicts{};      ///< frames per word of odometry::kVerdicts
+  std::vector<std::pair<odometry::FrameStatus, std::size_t>> reasons;  ///< frames per reason, as they first occurred
   std::string failure;      ///< "ODOMETRY FAILED on ...: cause" where most scans are lost, else empty
   bool stopped = false;     ///< asked to, before its last scan
   std::string no_accuracy;  ///< why there is none where the ground truth does not fit, else empty

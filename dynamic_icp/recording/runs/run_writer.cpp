@@ -23,7 +23,7 @@ std::optional<double> mean(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-void count_reason(std::vector<std::pair<std::string, std::size_t>>& counts, std::string_view reason) {
+void count_reason(std::vector<std::pair<odometry::FrameStatus, std::size_t>>& counts, odometry::FrameStatus reason) {
   const auto known = std::find_if(counts.begin(), counts.end(), [&](const auto& row) { return row.first == reason; });
   if (known == counts.end()) {
     counts.emplace_back(reason, 1);
@@ -55,7 +55,7 @@ void RunWriter::add(std::size_t index, const odometry::Frame& frame) {
   total_ms_.push_back(frame.times.total_ms);
   const auto word = std::ranges::find(odometry::kVerdicts, verdict(frame.status));
   ++verdicts_.at(static_cast<std::size_t>(word - odometry::kVerdicts.begin()));
-  count_reason(reasons_, to_string(frame.status));
+  count_reason(reasons_, frame.status);
   lost_.add(frame);
   if (trajectory_.size() > 1) {
     ++pairs_;

@@ -48,7 +48,7 @@ class RunWriter {
   std::size_t pairs_ = 0;
   std::size_t converged_ = 0;
   std::array<std::size_t, odometry::kVerdicts.size()> verdicts_{};
-  std::vector<std::pair<std::string, std::size_t>> reasons_;
+  std::vector<std::pair<odometry::FrameStatus, std::size_t>> reasons_;
   LostScans lost_;
 };
 

@@ -5,8 +5,10 @@
 #include <algorithm>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/nearest_key.hpp"
 #include "dynamic_icp/tools/scenes/builders.hpp"
 
 namespace dynamic_icp::scenes {
@@ -34,11 +36,12 @@ const SceneKind& find_scene(std::string_view name) {
     return scene.name == name || (!name.empty() && scene.former_name == name);
   });
   if (kind == kinds.end()) {
-    std::string names;
+    std::vector<std::string> names;
     for (const SceneKind& scene : kinds) {
-      names += fmt::format("{}{}", names.empty() ? "" : ", ", scene.name);
+      names.emplace_back(scene.name);
     }
-    throw UsageError(fmt::format("unknown scene '{}', expected a scene file (*.yaml) or one of: {}", name, names));
+    throw UsageError(fmt::format("unknown scene '{}'{}; expected a scene file (*.yaml) or one of: {}", name,
+                                 did_you_mean(name, names), fmt::join(names, ", ")));
   }
   return *kind;
 }

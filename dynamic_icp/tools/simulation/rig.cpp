@@ -7,8 +7,10 @@
 #include <set>
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/nearest_key.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/formats/yaml_map.hpp"
 
@@ -99,14 +101,15 @@ Rig find_rig(const std::string& name) {
   if (is_file_name(name)) {
     return parse_rig(formats::read_text_file(name), name);
   }
-  std::string names;
+  std::vector<std::string> names;
   for (const RigPreset& preset : rig_presets()) {
     if (preset.name == name) {
       return parse_rig(preset.yaml, fmt::format("{}.yaml", name));
     }
-    names += fmt::format("{}{}", names.empty() ? "" : ", ", preset.name);
+    names.emplace_back(preset.name);
   }
-  throw UsageError(fmt::format("unknown sensor '{}', expected a sensor file (*.yaml) or one of: {}", name, names));
+  throw UsageError(fmt::format("unknown sensor '{}'{}; expected a sensor file (*.yaml) or one of: {}", name,
+                               did_you_mean(name, names), fmt::join(names, ", ")));
 }
 
 }  // namespace dynamic_icp::simulation
