@@ -16,6 +16,7 @@
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
+#include "dynamic_icp/tools/benchmark/caption.hpp"
 #include "dynamic_icp/tools/benchmark/cell_plan.hpp"
 #include "dynamic_icp/tools/benchmark/cell_queue.hpp"
 #include "dynamic_icp/tools/benchmark/machine.hpp"
@@ -33,6 +34,7 @@
 #include "apps/method_options.hpp"
 #include "apps/options.hpp"
 #include "apps/scan_selection.hpp"
+#include "apps/terminal.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -48,7 +50,7 @@ struct BenchmarkOptions {
   std::string output;
   std::string tables;
   std::string methods = "all";
-  std::string ablations = "all";
+  std::optional<std::string> ablations;  ///< empty: all of all methods, none of methods that are named
   int jobs = 1;
   bool force = false;
   bool quiet = false;
@@ -100,20 +102,31 @@ void make_tables_folder(const fs::path& folder) {
   }
 }
 
-/// Makes tables/ and tables.md from results.json and prints the latter.
+/// What is printed: aligned, what tables have in common once, at the end.
+std::string plain_text(const std::vector<benchmark::Table>& tables, const benchmark::BenchmarkResults& results) {
+  const std::size_t width = terminal_width(stdout);
+  std::string text;
+  for (const benchmark::Table& table : tables) {
+    text += benchmark::plain(table) + "\n" + wrapped(benchmark::own_caption(table, results), width, 0) + "\n\n";
+  }
+  return text + wrapped(fmt::format("* best, + second. {}", benchmark::setup_text(results)), width, 0) + "\n";
+}
+
+/// Makes tables/ and tables.md from results.json and prints the tables.
 void write_tables(const fs::path& folder) {
   const fs::path source = folder / kResultsName;
   const benchmark::BenchmarkResults results = benchmark::results_from_json(formats::read_text_file(source), source);
   make_tables_folder(folder / "tables");
   std::string all;
-  for (const benchmark::Table& table : benchmark::all_tables(results)) {
+  const std::vector<benchmark::Table> tables = benchmark::all_tables(results);
+  for (const benchmark::Table& table : tables) {
     for (const auto& [ending, write] : kTableForms) {
       formats::write_whole_file(folder / "tables" / (table.name + ending), write(table));
     }
     all += (all.empty() ? "" : "\n") + benchmark::markdown(table);
   }
   formats::write_whole_file(folder / "tables.md", all);
-  print(all);
+  print(plain_text(tables, results));
 }
 
 std::string name_of(const benchmark::CellKey& key) {
@@ -142,7 +155,10 @@ std::size_t run_plans(const BenchmarkOptions& options, const benchmark::Benchmar
     if (!saved) {
       save();
     }
-    const std::string outcome = !result.finished ? "failed: " + result.failure : saved ? "done before" : "done";
+    const std::string outcome = !result.finished          ? "failed: " + result.failure
+                                : !result.failure.empty() ? "done, " + result.failure
+                                : saved                   ? "done before"
+                                                          : "done";
     progress.end(name_of(result.key), outcome, !result.finished);
   };
   benchmark::run_cells(plans, {folder.path(), program.path, options.jobs, options.force}, events);
@@ -162,7 +178,8 @@ benchmark::Sequences open_recordings(BenchmarkOptions& options) {
 }
 
 int run_benchmark(BenchmarkOptions options) {
-  const std::vector<Candidate> rivals = choose_candidates(options.methods, options.ablations, options.run);
+  const std::vector<Candidate> rivals = choose_candidates(
+      options.methods, options.ablations.value_or(options.methods == "all" ? "all" : "none"), options.run);
   const benchmark::Sequences opened = open_recordings(options);
   for (const std::string& reason : opened.skipped) {
     tell("dynamic-icp: warning: left out: {}\n", reason);
@@ -232,8 +249,10 @@ void add_benchmark_command(CLI::App& app, std::function<int()>& selected) {
   add_option(*command, "--methods", options->methods, "LIST",
              fmt::format("Methods, with commas: {} (default all)", fmt::join(known_methods(), ", ")));
   add_option(*command, "--ablations", options->ablations, "LIST",
-             fmt::format("Parts of {} to switch off, one at a time: none, {} (default all)", benchmark::kOurMethod,
-                         fmt::join(known_ablations(), ", ")));
+             fmt::format("Parts of {} to switch off, one at a time: all, none, {} (default: all with --methods all, "
+                         "none with methods that "
+                         "are named)",
+                         benchmark::kOurMethod, fmt::join(known_ablations(), ", ")));
   add_option(*command, "--jobs", options->jobs, "N",
              "Runs at the same time (default 1); more are faster together, but disturb each other's times")
       ->check(CLI::Range(1, 1024));

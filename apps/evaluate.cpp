@@ -14,6 +14,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation_report.hpp"
 #include "dynamic_icp/recording/evaluation/object_tracking_report.hpp"
@@ -118,19 +119,43 @@ void write_kitti_files(const Options& options, const formats::TumFile& estimate,
   }
 }
 
+/// Of a folder of a run its trajectory; other names are those of files.
+std::filesystem::path trajectory_file(const std::filesystem::path& named) {
+  const std::filesystem::path in_folder = named / "trajectory.tum";
+  return std::filesystem::exists(in_folder) ? in_folder : named;
+}
+
+/// The reference: a file, the trajectory of another run, or the ground truth that a recording brings along.
+formats::TumFile read_reference(std::filesystem::path& named) {
+  named = trajectory_file(named);
+  if (!std::filesystem::is_directory(named)) {
+    return formats::read_tum(named);
+  }
+  const std::unique_ptr<datasets::Dataset> recording = datasets::open_input(named, {});
+  if (recording->ground_truth().empty()) {
+    throw DataError(
+        fmt::format("{}: is a recording without ground truth; name the file that holds it", named.string()));
+  }
+  named = recording->ground_truth_file();
+  return {recording->ground_truth(), 0};
+}
+
 int evaluate_objects(const Options& options) {
   const evaluation::ObjectTracking tracking = runs::compare_run_objects(options.estimate, options.reference);
   write_out(options.json ? evaluation::tracking_json(tracking) : evaluation::tracking_table(tracking));
   return 0;
 }
 
-int run_evaluate(const Options& options) {
+int run_evaluate(Options options) {
   if (options.objects) {
     return evaluate_objects(options);
   }
   const evaluation::EvaluationConfig config = config_of(options);  // wrong use is reported before a file is read
+  options.estimate = trajectory_file(options.estimate).string();
   const formats::TumFile estimate = formats::read_tum(options.estimate);
-  const formats::TumFile reference = formats::read_tum(options.reference);
+  std::filesystem::path reference_file = options.reference;
+  const formats::TumFile reference = read_reference(reference_file);
+  options.reference = reference_file.string();
   const evaluation::Evaluation evaluation = evaluate_files(options, config, estimate, reference);
   const evaluation::EvaluationSource source = {options.estimate, options.reference, estimate.repeated_lines,
                                                reference.repeated_lines};
@@ -175,11 +200,13 @@ void add_evaluate_command(CLI::App& app, std::function<int()>& selected) {
   command
       ->add_option("ESTIMATE", options->estimate,
                    "TUM file: timestamp tx ty tz qx qy qz qw (s, m, unit quaternion); of the trajectory.tum of a "
-                   "run the covariances of frames.jsonl beside it are compared too; with --objects a run")
+                   "run the covariances of frames.jsonl beside it are compared too; or the folder of a run")
       ->required();
   command
-      ->add_option("REFERENCE", options->reference,
-                   "TUM file of the true poses of the same sensor; with --objects a simulated recording")
+      ->add_option(
+          "REFERENCE", options->reference,
+          "TUM file of the true poses of the same sensor; or a recording with ground truth, with --objects a simulated "
+          "one; or the folder of another run")
       ->required();
   add_error_options(*command, *options);
   CLI::Option* objects = command->add_flag("--objects", options->objects,

@@ -23,6 +23,8 @@
 #include "apps/calibration_info.hpp"
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
+#include "apps/sweep_advice.hpp"
+#include "apps/terminal.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -32,6 +34,7 @@ using Json = nlohmann::ordered_json;
 constexpr std::size_t kScansLookedAt = 10;
 constexpr double kGapPeriods = 1.5;
 constexpr std::size_t kGapsShown = 5;
+constexpr std::size_t kSentenceColumn = 30;  // of the diagnosis, behind question and verdict
 
 struct InfoOptions {
   std::string input;
@@ -76,19 +79,19 @@ void print_time(const datasets::Dataset& dataset, const TimesSeen& seen) {
     return;
   }
   if (seen.periods == 0) {
-    fmt::print("time         one scan at {} s\n", format_seconds(dataset.stamp(0)));
+    print_row("time         one scan at {} s\n", format_seconds(dataset.stamp(0)));
     return;
   }
-  fmt::print("time         {} to {} s, {:.3f} s in all\n", format_seconds(dataset.stamp(0)),
-             format_seconds(dataset.stamp(dataset.size() - 1)),
-             seconds_between(dataset.stamp(0), dataset.stamp(dataset.size() - 1)));
-  fmt::print("rate         {:.2f} Hz (periods {:.1f} to {:.1f} ms)\n", 1.0 / seen.period_s, 1e3 * seen.shortest_s,
-             1e3 * seen.longest_s);
+  print_row("time         {} to {} s, {:.3f} s in all\n", format_seconds(dataset.stamp(0)),
+            format_seconds(dataset.stamp(dataset.size() - 1)),
+            seconds_between(dataset.stamp(0), dataset.stamp(dataset.size() - 1)));
+  print_row("rate         {:.2f} Hz (periods {:.1f} to {:.1f} ms)\n", 1.0 / seen.period_s, 1e3 * seen.shortest_s,
+            1e3 * seen.longest_s);
   for (std::size_t i = 0; i < std::min(kGapsShown, seen.gaps.size()); ++i) {
-    fmt::print("gap          {:.3f} s before scan {}\n", seen.gaps[i].second, seen.gaps[i].first);
+    print_row("gap          {:.3f} s before scan {}\n", seen.gaps[i].second, seen.gaps[i].first);
   }
   if (seen.gaps.size() > kGapsShown) {
-    fmt::print("gap          {} more\n", seen.gaps.size() - kGapsShown);
+    print_row("gap          {} more\n", seen.gaps.size() - kGapsShown);
   }
 }
 
@@ -166,39 +169,39 @@ void print_rig(const std::vector<Eigen::Isometry3d>& mountings) {
   }
   for (std::size_t k = 0; k < mountings.size(); ++k) {
     const Eigen::Vector3d t = mountings[k].translation();
-    fmt::print("sensor {}     at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg\n", k, t.x(), t.y(), t.z(),
-               yaw_deg(mountings[k]));
+    print_row("sensor {}     at ({:.3f}, {:.3f}, {:.3f}) m, yaw {:.1f} deg\n", k, t.x(), t.y(), t.z(),
+              yaw_deg(mountings[k]));
   }
   const auto levers = lever_arms(mountings);
   for (Eigen::Index i = 0; i < 3; ++i) {
     const Eigen::Vector3d axis = levers.eigenvectors().col(i);
-    fmt::print("rotation     about ({:.2f}, {:.2f}, {:.2f}) shows in the Doppler with lever arms of {:.2f} m\n",
-               axis.x(), axis.y(), axis.z(), std::sqrt(std::max(0.0, levers.eigenvalues()[i])));
+    print_row("rotation     about ({:.2f}, {:.2f}, {:.2f}) shows in the Doppler with lever arms of {:.2f} m\n",
+              axis.x(), axis.y(), axis.z(), std::sqrt(std::max(0.0, levers.eigenvalues()[i])));
   }
 }
 
 void print_points(const PointsSeen& seen) {
   for (const std::string& warning : seen.warnings) {
-    fmt::print("warning      {}\n", warning);
+    print_row("warning      {}\n", warning);
   }
   if (seen.scans == 0) {
     return;
   }
-  fmt::print("points       {} to {} a scan, median {} ({} scans sampled)\n", seen.sizes.front(), seen.sizes.back(),
-             seen.sizes[seen.sizes.size() / 2], seen.scans);
-  fmt::print("unusable     {} not finite, {} implausible, {} at the origin, {} flagged by the sensor\n",
-             seen.dropped.non_finite, seen.dropped.implausible, seen.dropped.zero_range, seen.dropped.flagged);
+  print_row("points       {} to {} a scan, median {} ({} scans sampled)\n", seen.sizes.front(), seen.sizes.back(),
+            seen.sizes[seen.sizes.size() / 2], seen.scans);
+  print_row("invalid      {} NaN/Inf, {} implausible, {} zero-range, {} flagged by the sensor\n",
+            seen.dropped.non_finite, seen.dropped.implausible, seen.dropped.zero_range, seen.dropped.flagged);
   if (seen.any()) {
-    fmt::print("range        {:.1f} to {:.1f} m\n", seen.nearest_m, seen.farthest_m);
-    fmt::print("Doppler      {:.1f} to {:.1f} m/s\n", seen.slowest_mps, seen.fastest_mps);
+    print_row("range        {:.1f} to {:.1f} m\n", seen.nearest_m, seen.farthest_m);
+    print_row("Doppler      {:.1f} to {:.1f} m/s\n", seen.slowest_mps, seen.fastest_mps);
   }
-  fmt::print("point times  {}\n", seen.times ? "yes" : "none");
+  print_row("point times  {}\n", seen.times ? "yes" : "none");
   if (!seen.columns.empty()) {
     std::string names;
     for (const std::string& name : seen.columns) {
       names += (names.empty() ? "" : ", ") + name;
     }
-    fmt::print("more columns {}\n", names);
+    print_row("more columns {}\n", names);
   }
 }
 
@@ -214,12 +217,16 @@ double truth_coverage(const datasets::Dataset& dataset) {
 }
 
 void print_diagnosis(const diagnosis::Diagnosis& diagnosis) {
-  fmt::print("diagnosis    of {} scans\n", diagnosis.scans_looked_at);
+  print_row("diagnosis    of {} scans\n", diagnosis.scans_looked_at);
   for (const diagnosis::Finding& finding : diagnosis.findings) {
-    fmt::print("  {:<15} {:<11} {}\n", diagnosis::to_string(finding.question), diagnosis::to_string(finding.verdict),
-               finding.sentence);
+    print_wrapped(fmt::format("  {:<15} {:<11} {}\n", diagnosis::to_string(finding.question),
+                              diagnosis::to_string(finding.verdict), finding.sentence),
+                  kSentenceColumn);
     if (const std::string fix = fixing_options(finding); !fix.empty()) {
-      fmt::print("  {:<15} {:<11} fix with {}\n", "", "", fix);
+      print_wrapped(fmt::format("{:<{}}fix with {}\n", "", kSentenceColumn, fix), kSentenceColumn);
+    }
+    if (finding.question == diagnosis::Question::kPointTimes && finding.verdict == diagnosis::Verdict::kCannotTell) {
+      print_wrapped(fmt::format("{:<{}}{}\n", "", kSentenceColumn, sweep_advice(diagnosis.period_s)), kSentenceColumn);
     }
   }
 }
@@ -354,24 +361,24 @@ int info(const InfoOptions& options) {
     print_json(options, *dataset, times, seen, diagnosis, bag);
     return 0;
   }
-  fmt::print("input        {}\n", options.input);
-  fmt::print("format       {}\n", dataset->format());
+  print_row("input        {}\n", options.input);
+  print_row("format       {}\n", dataset->format());
   if (bag) {
     print_topics(*bag);
   }
-  fmt::print("scans        {}\n", dataset->size());
+  print_row("scans        {}\n", dataset->size());
   print_time(*dataset, times);
   print_points(seen);
   print_rig(seen.mountings);
   if (dataset->ground_truth().empty()) {
-    fmt::print("ground truth none\n");
+    print_row("ground truth none\n");
   } else {
-    fmt::print("ground truth {} ({} poses, {:.0f} % of the scans)\n", dataset->ground_truth_file().string(),
-               dataset->ground_truth().size(), truth_coverage(*dataset));
+    print_row("ground truth {} ({} poses, {:.0f} % of the scans)\n", dataset->ground_truth_file().string(),
+              dataset->ground_truth().size(), truth_coverage(*dataset));
   }
   print_diagnosis(diagnosis);
   for (const std::string& assumption : dataset->assumptions()) {
-    fmt::print("assumed      {}\n", assumption);
+    print_row("assumed      {}\n", assumption);
   }
   return 0;
 }

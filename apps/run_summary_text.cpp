@@ -6,6 +6,8 @@
 
 #include <fmt/format.h>
 
+#include "apps/sweep_advice.hpp"
+
 namespace dynamic_icp::apps {
 namespace {
 
@@ -17,9 +19,13 @@ std::string percent(const std::optional<double>& share) {
   return share ? fmt::format("{:.1f} %", 100.0 * *share) : "-";
 }
 
-std::string sweep_text(const runs::SweepRecord& sweep) {
+std::string sweep_text(const runs::SweepRecord& sweep, double period_s) {
   if (sweep.times() == "none") {
-    return sweep.search ? sweep.search->sentence : "none: the points have no times";
+    if (!sweep.search) {
+      return "none: the points have no times";
+    }
+    const bool is_unknown = sweep.search->hypothesis == diagnosis::SweepHypothesis::kUnknown;
+    return sweep.search->sentence + (is_unknown ? "; " + sweep_advice(period_s) : "");
   }
   return fmt::format("{}, {} s, times {}", sweep.deskewed() ? "deskewed" : "not deskewed", cell(sweep.duration_s(), 3),
                      sweep.times());
@@ -67,7 +73,7 @@ std::string summary_text(const runs::RunResult& result) {
     text += fmt::format("rate         {:.2f} Hz\n", 1.0 / result.period_s);
   }
   text += fmt::format("Doppler      {}\n", result.doppler);
-  text += fmt::format("sweep        {}\n", sweep_text(result.sweep));
+  text += fmt::format("sweep        {}\n", sweep_text(result.sweep, result.period_s));
   text += fmt::format("status       {}\n", status_text(summary));
   text += fmt::format("converged    {}   iterations {}\n", percent(summary.convergence_rate),
                       cell(summary.mean_iterations, 1));

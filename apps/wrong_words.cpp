@@ -36,10 +36,11 @@ bool is_number(const std::string& word) { return word.find_first_not_of("-012345
 
 /// The first option that the command does not have.
 std::optional<std::string> unknown_option(const CLI::App& command) {
+  const std::vector<std::string> known = long_names(command);
   for (const std::string& word : command.remaining()) {
     if (word.size() > 1 && word.starts_with('-') && !is_number(word)) {
       const std::string name = word.substr(0, word.find('='));
-      const std::string nearest(name.starts_with("--") ? nearest_key(name, long_names(command)) : "");
+      const std::string_view nearest = close_key(name, known);
       return fmt::format("'{}' has no option '{}'{}", command.get_name(), name,
                          nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
     }

@@ -104,6 +104,12 @@ def main():
 
 
 if __name__ == "__main__":
+    if {"-h", "--help"} & set(sys.argv[1:]):
+        print(__doc__)
+        sys.exit()
     if len(sys.argv) < 2:
         sys.exit(__doc__)
+    for folder in sys.argv[1:]:
+        if not (Path(folder) / "results.json").is_file():
+            sys.exit(f"{folder}: no folder of a benchmark: it holds no results.json")
     main()

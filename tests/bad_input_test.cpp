@@ -50,8 +50,8 @@ class BadInput : public ProgramTest {
   }
 
   /// The statuses of a run that must have gone through, with no NaN in any file of it.
-  std::vector<std::string> statuses(const Outcome& outcome) {
-    EXPECT_EQ(outcome.status, kDone) << outcome.text;
+  std::vector<std::string> statuses(const Outcome& outcome, int status = kDone) {
+    EXPECT_EQ(outcome.status, status) << outcome.text;
     for (const char* name : {"trajectory.tum", "frames.jsonl", "objects.jsonl", "summary.json"}) {
       const std::string content = read_file(folder_ / "out" / name);
       EXPECT_FALSE(content.empty()) << name;
@@ -98,7 +98,10 @@ TEST_F(BadInput, ScansWithoutUse) {
     not_numbers += record(NAN, 1.0F, INFINITY, NAN);
   }
   write_file(scans / "00005.bin", not_numbers);
-  const std::vector<std::string> result = statuses(run(recording));
+  const Outcome outcome = run(recording);
+  const std::vector<std::string> result = statuses(outcome, kMostScansLost);
+  ASSERT_EQ(result.size(), 6u) << outcome.text;
+  EXPECT_TRUE(outcome.text.find("ODOMETRY FAILED on 4 of 6 scans: ") != std::string::npos) << outcome.text;
   EXPECT_EQ(result, (std::vector<std::string>{"first", "too_few_points", "too_few_points", "too_few_points",
                                               "too_few_points", result.back()}));
   EXPECT_TRUE(result.back() == "converged" || result.back() == "iteration_limit") << "recovers: " << result.back();
@@ -246,6 +249,41 @@ TEST_F(BadInput, PosesThatDoNotFit) {
 TEST_F(BadInput, GroundTruthOfAnotherRecording) {
   write_file(folder_ / "other.tum", "1700000000.0 0 0 0 0 0 0 1\n1700000000.1 1 0 0 0 0 0 1\n");
   expect_failure(run(copy_of_street(2), "--ground-truth " + (folder_ / "other.tum").string()), kFailed, "1700000000");
+  const Outcome loud = run_program("run " + copy_of_street(2).string() + " --ground-truth " +
+                                   (folder_ / "other.tum").string() + " --output " + (folder_ / "out").string());
+  EXPECT_EQ(loud.text.find("odometry:"), std::string::npos) << "before the first scan: " << loud.text;
+}
+
+TEST_F(BadInput, ARunThatLosesMostScansSaysSoAndWhy) {
+  const fs::path recording = copy_of_street(6);
+  for (int scan = 2; scan <= 6; ++scan) {
+    const fs::path file = recording / "point_clouds" / ("0000" + std::to_string(scan) + ".bin");
+    fs::resize_file(file, 3 * 16);
+  }
+  for (const std::string quiet : {" --quiet", ""}) {
+    const fs::path out = folder_ / ("out" + quiet.substr(0, 2));
+    const Outcome lost = run_shell("'" DYNAMIC_ICP_PROGRAM "' run " + recording.string() + quiet + " --output '" +
+                                   out.string() + "' >/dev/null");
+    EXPECT_EQ(lost.status, kMostScansLost) << lost.text;
+    EXPECT_NE(lost.text.find("ODOMETRY FAILED on 5 of 6 scans: 3 points a scan are too few"), std::string::npos)
+        << lost.text;
+    const json summary = json::parse(read_file(out / "summary.json"));
+    EXPECT_EQ(summary["statuses"], json({{"ok", 1}, {"degenerate", 0}, {"lost", 5}}));
+    EXPECT_EQ(summary["reasons"], json({{"first", 1}, {"too_few_points", 5}}));
+    EXPECT_TRUE(summary["failure"].get<std::string>().starts_with("ODOMETRY FAILED"));
+  }
+}
+
+TEST_F(BadInput, GroundTruthOfTheRecordingThatDoesNotFitIsLeftOut) {
+  const fs::path recording = folder_ / "scans";
+  ASSERT_EQ(run_program("convert " + copy_of_street(3).string() + " --to npz --output " + recording.string()).status,
+            kDone);
+  write_file(recording / "ref_poses.txt", "1700000000.0 0 0 0 0 0 0 1\n1700000000.1 1 0 0 0 0 0 1\n");
+  const Outcome outcome = run_program("run " + recording.string() + " --output " + (folder_ / "out").string());
+  EXPECT_EQ(outcome.status, kDone) << outcome.text;
+  EXPECT_NE(outcome.text.find("ground truth"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("is not used"), std::string::npos) << outcome.text;
+  EXPECT_TRUE(json::parse(read_file(folder_ / "out" / "summary.json"))["rte_rmse_m"].is_null());
 }
 
 TEST_F(BadInput, AnEarlierRunIsNotOverwritten) {

@@ -52,8 +52,25 @@ TEST_F(CommandLine, WrongUseIsStatusTwoAndNamesTheRemedy) {
     EXPECT_NE(outcome.text.find(words), std::string::npos) << arguments << "\n" << outcome.text;
     EXPECT_FALSE(fs::exists(folder_ / "out"));
   };
-  expect_usage_error("", "subcommand");
-  expect_usage_error("fly", "fly");
+  expect_usage_error("", "Usage: dynamic-icp");
+  expect_usage_error("", "benchmark");
+  expect_usage_error("fly", "unknown command 'fly'; known are: run, ");
+  expect_usage_error("evalute x y", "unknown command 'evalute' (did you mean 'evaluate'?)");
+  expect_usage_error("help evalute", "(did you mean 'evaluate'?)");
+  expect_usage_error("run " + in, "see 'dynamic-icp run --help'");
+  expect_usage_error("run " + in + out + " --max-frame 5",
+                     "'run' has no option '--max-frame'; did you mean '--max-frames'?; see 'dynamic-icp run --help'");
+  expect_usage_error("run " + in + out + " -z 5", "'run' has no option '-z'; see");
+  expect_usage_error("run " + in + out + " more words", "'run' takes no further arguments: 'more', 'words'");
+  expect_usage_error("run " + in + out + " --method kis-icp", "unknown method 'kis-icp' (did you mean 'kiss-icp'?)");
+  expect_usage_error("run " + in + out + " --preset papr", "(did you mean 'paper'?)");
+  expect_usage_error("run " + in + out + " --format npzz", "(did you mean 'npz'?)");
+  expect_usage_error("convert " + in + out + " --to dcip", "(did you mean 'dicp'?)");
+  expect_usage_error("simulate stret --frames 2 " + out, "(did you mean 'street'?)");
+  expect_usage_error("simulate street --sensor aeries-i --frames 2 " + out, "did you mean 'aeries");
+  write_file(folder_ / "scene.json", "{\n  \"scene\": {\"name\": \"street\"}\n}\n");
+  expect_usage_error("run " + in + out + " --config " + (folder_ / "scene.json").string(),
+                     "scene.json: is a JSON file and no configuration; expected YAML with lines 'key: value'");
   expect_usage_error("run " + in, "--output");
   expect_usage_error("run " + in + out + " --wrong", "--wrong");
   expect_usage_error("run " + in + " --ouput " + (folder_ / "out").string(),
@@ -81,6 +98,52 @@ TEST_F(CommandLine, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("run " + in + out + " --threads -1", "threads");
   write_file(folder_ / "bad.yaml", "preprocess:\n  voxel:\n    voxel_size_m: [1, 2]\n");
   expect_usage_error("run " + in + out + " --config " + (folder_ / "bad.yaml").string(), "line 3");
+}
+
+TEST_F(CommandLine, HelpAndVersionAreCommandsToo) {
+  const Outcome help = run_program("help");
+  EXPECT_EQ(help.status, kDone);
+  EXPECT_EQ(help.text, run_program("--help").text);
+  EXPECT_EQ(help.text, run_program("-h").text);
+  EXPECT_EQ(run_program("help run").text, run_program("run --help").text);
+  EXPECT_NE(run_program("help run").text.find("Exit status: "), std::string::npos);
+  EXPECT_EQ(run_program("version").text, run_program("--version").text);
+  EXPECT_EQ(run_program("version").text, run_program("-v").text);
+  EXPECT_EQ(run_program("version").status, kDone);
+}
+
+TEST_F(CommandLine, ShortAndOtherNamesMeanTheSame) {
+  for (const char* name : {"--max-frames", "--max-scans", "--frames"}) {
+    const fs::path out = folder_ / name;
+    const Outcome run = run_program("run " + street().string() + " --quiet -o '" + out.string() + "' " + name + " 2");
+    ASSERT_EQ(run.status, kDone) << run.text;
+    EXPECT_EQ(json::parse(read_file(out / "summary.json"))["frames"], 2);
+  }
+}
+
+TEST_F(CommandLine, BlanksAroundKeyAndValueAreTrimmed) {
+  run_and_summarise("--max-frames 2 --set ' window.max_iterations = 9 ' " + street().string());
+  EXPECT_EQ(json::parse(read_file(folder_ / "out" / "run.json"))["configuration"]["window.max_iterations"], 9);
+}
+
+TEST_F(CommandLine, EvaluateTakesFolders) {
+  run_and_summarise(street().string());
+  const std::string run = (folder_ / "out").string();
+  const auto numbers = [](const std::string& arguments) {
+    const Outcome outcome = run_program("evaluate --json " + arguments);
+    EXPECT_EQ(outcome.status, kDone) << outcome.text;
+    return json::parse(outcome.text)["rte_rmse_m"];
+  };
+  const json by_files = numbers(run + "/trajectory.tum " + (street() / "ref_poses.txt").string());
+  EXPECT_EQ(numbers(run + " " + street().string()), by_files);
+  EXPECT_EQ(numbers(run + " " + run), 0.0);
+}
+
+TEST_F(CommandLine, OnePoseHasNoError) {
+  const Outcome one = run_program("run " + street().string() + " --max-frames 1 -o " + (folder_ / "out").string());
+  EXPECT_EQ(one.status, kDone) << one.text;
+  EXPECT_EQ(one.text.find("RTE"), std::string::npos) << one.text;
+  EXPECT_NE(one.text.find("1 ok, 0 degenerate, 0 lost"), std::string::npos) << one.text;
 }
 
 TEST_F(CommandLine, HelpDocumentsEveryOption) {

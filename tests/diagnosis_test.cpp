@@ -107,6 +107,27 @@ TEST_F(DiagnosisProgram, RunRefusesATurnedSignUntilItIsSaid) {
   EXPECT_EQ(run(turned, "out3", "--doppler-sign away").status, 0) << "what was said is believed";
 }
 
+TEST_F(DiagnosisProgram, RunRefusesOtherUnitsUntilTheyAreStated) {
+  const fs::path kmh = changed("kmh", [](float doppler) { return 3.6F * doppler; });
+  const Outcome refused = run(kmh, "out");
+  EXPECT_EQ(refused.status, 1);
+  EXPECT_FALSE(fs::exists(folder_ / "out"));
+  const std::size_t fix = refused.text.find("Run with ");
+  ASSERT_NE(fix, std::string::npos) << refused.text;
+  const std::string options = refused.text.substr(fix + 9, refused.text.find(';', fix) - fix - 9);
+  EXPECT_EQ(options, "--doppler-scale 0.277778");
+  EXPECT_EQ(run(kmh, "out", options).status, 0) << "what is advised helps";
+  EXPECT_LT(json::parse(read_file(folder_ / "out" / "summary.json"))["rte_rmse_m"], 0.02);
+
+  EXPECT_NE(refused.text.find("--doppler-scale 1\n"), std::string::npos) << refused.text;
+  const Outcome believed = run(kmh, "out2", "--doppler-scale 1");
+  EXPECT_NE(believed.status, 1) << believed.text;
+  EXPECT_TRUE(fs::exists(folder_ / "out2" / "run.json"));
+
+  const Outcome other_unit = run(changed("whole", [](float doppler) { return doppler; }), "out3", "--point-scale 1000");
+  EXPECT_NE(other_unit.status, 1) << "stated, if wrongly: " << other_unit.text;
+}
+
 TEST_F(DiagnosisProgram, RunWarnsOfWhatItCanLiveWith) {
   const fs::path biased = changed("biased", [](float doppler) { return doppler + 0.3F; });
   EXPECT_EQ(run(biased, "out").status, 0);

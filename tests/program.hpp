@@ -16,6 +16,7 @@ namespace fs = std::filesystem;
 inline constexpr int kDone = 0;
 inline constexpr int kFailed = 1;
 inline constexpr int kWrongUsage = 2;
+inline constexpr int kMostScansLost = 3;
 
 /// What a run of the program gave.
 struct Outcome {

@@ -53,7 +53,7 @@ std::string_view close_key(std::string_view typed, std::span<const std::string> 
 
 std::string did_you_mean(std::string_view typed, std::span<const std::string> keys) {
   const std::string_view key = close_key(typed, keys);
-  return key.empty() ? "" : fmt::format("; did you mean '{}'?", key);
+  return key.empty() ? "" : fmt::format(" (did you mean '{}'?)", key);
 }
 
 }  // namespace dynamic_icp

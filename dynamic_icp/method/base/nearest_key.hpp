@@ -16,7 +16,7 @@ std::string_view nearest_key(std::string_view typed, std::span<const std::string
 /// Empty otherwise: a word that is far from all keys was meant otherwise.
 std::string_view close_key(std::string_view typed, std::span<const std::string> keys);
 
-/// "; did you mean 'KEY'?" for such a key, for the end of a message; "" without one.
+/// " (did you mean 'KEY'?)" for such a key, to go into a message; "" without one.
 std::string did_you_mean(std::string_view typed, std::span<const std::string> keys);
 
 }  // namespace dynamic_icp

@@ -39,7 +39,7 @@ TEST(CloseKey, IsSilentWhereAWordIsFarFromAll) {
   EXPECT_EQ(close_key("rum", commands), "run");
   EXPECT_EQ(close_key("fly", commands), "");
   EXPECT_EQ(close_key("fly", {}), "");
-  EXPECT_EQ(did_you_mean("evalute", commands), "; did you mean 'evaluate'?");
+  EXPECT_EQ(did_you_mean("evalute", commands), " (did you mean 'evaluate'?)");
   EXPECT_EQ(did_you_mean("fly", commands), "");
 }
 

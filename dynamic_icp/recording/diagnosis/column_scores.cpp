@@ -15,6 +15,7 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr std::size_t kMaxPoints = 30000;
+constexpr std::ptrdiff_t kMinPoints = 20;
 constexpr double kFarthest_m = 1000.0;
 constexpr double kFarthestInCentimetres = 3e4;  // beyond, they are millimetres
 constexpr double kNearest_m = 0.5;
@@ -46,6 +47,16 @@ RawScan thinned(const RawScan& scan) {
     }
   }
   return few;
+}
+
+/// Whether a scan says anything of its columns: many finite points that are not all at one place. One point, or one
+/// place, is explained by some velocity whatever the columns are.
+bool tells_columns(const RawScan& scan) {
+  const auto is_finite = [](const Eigen::Vector3d& point) { return point.allFinite(); };
+  const auto first = std::ranges::find_if(scan.points, is_finite);
+  return first != scan.points.end() && std::ranges::count_if(scan.points, [&](const Eigen::Vector3d& point) {
+                                         return is_finite(point) && (point - *first).norm() > 0.0;
+                                       }) >= kMinPoints;
 }
 
 double static_residual(const RawScan& raw, const Workers& workers) {
@@ -95,6 +106,9 @@ ColumnScores score_columns(std::span<const RawScan> scans, const Workers& worker
   for (int column = 0; column < 4; ++column) {
     std::vector<double> residuals;
     for (const RawScan& scan : scans) {
+      if (!tells_columns(scan)) {
+        continue;
+      }
       const RawScan few = prepared(thinned(scan), column, {});
       // Each order of columns has its own guess: what is taken for the Doppler may be millimetres.
       const UnitGuess units = guess_units(std::span(&few, 1));

@@ -12,6 +12,9 @@
 
 namespace dynamic_icp::runs {
 
+/// The exit status of the program where a run failed so: its results are there, but the trajectory is a guess.
+inline constexpr int kMostScansLost = 3;
+
 /// The lost scans of a run (odometry::verdict), and what they have in common.
 class LostScans {
  public:

@@ -18,7 +18,8 @@ using datasets::Correction;
 using diagnosis::Question;
 
 /// What the numbers of a recording are taken for where nobody states anything: who states the same knows better than
-/// the diagnosis. Empty where a question is not about what can be stated.
+/// the diagnosis. Empty where a question stops no run: of timestamps that do not fit the speeds nobody knows which of
+/// both is wrong.
 Correction as_it_is(Question question, const datasets::Dataset& dataset) {
   switch (question) {
     case Question::kDopplerSign:
@@ -31,8 +32,6 @@ Correction as_it_is(Question question, const datasets::Dataset& dataset) {
       return {.point_scale = 1.0};
     case Question::kColumns:
       return {.columns = Correction::kInOrder};
-    case Question::kTimeScale:
-      return {.time_scale = 1.0};
     default:
       return {};
   }
@@ -51,8 +50,6 @@ bool is_stated(Question question, const Correction& correction) {
       return correction.point_scale.has_value();
     case Question::kColumns:
       return correction.columns.has_value();
-    case Question::kTimeScale:
-      return correction.time_scale.has_value();
     default:
       return true;
   }
@@ -64,8 +61,9 @@ bool stops(const diagnosis::Finding& finding, const Correction& stated, bool has
       is_stated(finding.question, stated)) {
     return false;
   }
-  const bool is_of_speed = finding.question == Question::kDopplerUnits || finding.question == Question::kTimeScale;
-  return finding.question == Question::kDopplerKind ? has_doppler : needs.doppler || !is_of_speed;
+  return finding.question == Question::kDopplerKind    ? has_doppler
+         : finding.question == Question::kDopplerUnits ? needs.doppler
+                                                       : true;
 }
 
 /// What is wrong, what fixes all of it, and how to state that it is right.

@@ -39,10 +39,10 @@ struct Needs {
 using FixInWords = std::function<std::string(const diagnosis::Finding&)>;
 
 /// Diagnoses scans from all over a run before it begins, and searches for sweeps where asked. Throws DataError where
-/// every result would be wrong: the sign or the unit of the Doppler, its kind, the unit of the points, the order of the
-/// columns or the pace of the timestamps is beyond doubt another one than stated, or there is no Doppler and the method
-/// needs it. The message holds the correction of each. What the user states is believed. Messages leave corrections out
-/// where `fix_in_words` is empty.
+/// every result would be wrong: the sign or the unit of the Doppler, its kind, the unit of the points or the order of
+/// the columns is beyond doubt another one than stated, or there is no Doppler and the method needs it. The message
+/// holds the correction of each. What the user states is believed. Messages leave corrections out where `fix_in_words`
+/// is empty.
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
                                const ScansToCheck& scans, const Needs& needs, const FixInWords& fix_in_words = {});
 

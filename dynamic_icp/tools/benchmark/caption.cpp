@@ -64,4 +64,13 @@ std::string setup_text(const BenchmarkResults& results) {
       info.threads == 0 ? "all" : std::to_string(info.threads), jobs, inputs_text(info), assumptions_text(results));
 }
 
+std::string own_caption(const Table& table, const BenchmarkResults& results) {
+  std::string caption = table.caption;
+  const std::string setup = setup_text(results);
+  if (caption.ends_with(setup)) {
+    caption.resize(caption.size() - setup.size());
+  }
+  return caption.substr(0, caption.find_last_not_of(' ') + 1);
+}
+
 }  // namespace dynamic_icp::benchmark

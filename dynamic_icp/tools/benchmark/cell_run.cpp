@@ -15,6 +15,7 @@
 #include "dynamic_icp/recording/formats/json_row.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/frame_rows.hpp"
+#include "dynamic_icp/recording/runs/lost_scans.hpp"
 #include "dynamic_icp/recording/runs/run_values.hpp"
 #include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
 
@@ -174,16 +175,19 @@ CellResult finish_cell(const fs::path& benchmark_folder, const CellPlan& plan, c
   result.folder = plan.folder;
   result.jobs = jobs;
   result.peak_memory_mib = child.peak_memory_mib;
-  if (!child.succeeded()) {
+  // A method that loses most scans has numbers all the same, which a comparison is about.
+  if (!child.succeeded() && child.exit_status != runs::kMostScansLost) {
     result.failure = failure_of(child, folder / kMessagesName);
   } else {
     try {
-      read_summary(folder / "run" / "summary.json", result);
+      const fs::path summary = folder / "run" / "summary.json";
+      read_summary(summary, result);
       read_notes(folder / "run" / "run.json", result);
       if (!plan.object_truth.empty()) {
         read_objects(plan.object_truth, folder / "run" / "objects.jsonl", result);
       }
       result.finished = true;
+      result.failure = child.succeeded() ? "" : runs::text_of(runs::read_summary(summary), "failure");
     } catch (const DataError& error) {
       result.failure = error.what();
     }

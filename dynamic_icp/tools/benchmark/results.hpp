@@ -50,7 +50,7 @@ struct TrackScores {
 struct CellResult {
   CellKey key;
   bool finished = false;
-  std::string failure;           ///< what the program said, when it did not finish
+  std::string failure;           ///< what the program said, when it did not finish or most scans were lost
   std::filesystem::path folder;  ///< of the cell, relative to the benchmark's folder
 
   std::size_t frames = 0;

@@ -87,6 +87,29 @@ TextRows text_rows(const Table& table, const Title& title, const Cell& cell) {
   return rows;
 }
 
+bool is_marked(const std::string& cell) { return cell.ends_with('*') || cell.ends_with('+'); }
+
+std::string without_trailing_blanks(const std::string& line) { return line.substr(0, line.find_last_not_of(' ') + 1); }
+
+/// The names of groups above the first of their columns; wide ones make room for themselves.
+std::string plain_groups(const std::vector<std::string>& groups, std::vector<std::size_t>& widths) {
+  std::string line;
+  for (std::size_t i = 0; i < groups.size(); ++i) {
+    std::size_t end = i + 1;  // of the columns below the name
+    std::size_t room = widths[i];
+    for (; end < groups.size() && groups[end].empty(); ++end) {
+      room += 2 + widths[end];
+    }
+    if (width_of(groups[i]) > room) {
+      widths[end - 1] += width_of(groups[i]) - room;
+      room = width_of(groups[i]);
+    }
+    line += (i == 0 ? "" : "  ") + groups[i] + std::string(room - width_of(groups[i]), ' ');
+    i = end - 1;
+  }
+  return without_trailing_blanks(line) + "\n";
+}
+
 /// Whether a spreadsheet would take the text for a formula and calculate it.
 bool is_formula(std::string_view text) {
   const bool may_be = text.size() > 1 && std::string_view("=+-@\t\r").find(text.front()) != std::string_view::npos;
@@ -158,6 +181,45 @@ std::string markdown(const Table& table) {
     }
   }
   return text + "\n" + escaped(table.caption, kMarkdown) + "\n";
+}
+
+std::string plain(const Table& table) {
+  TextRows rows;
+  std::vector<std::string> groups;
+  std::vector<std::string> titles;
+  for (const TableColumn& column : table.header) {
+    const bool is_begun = !groups.empty() && table.header[groups.size() - 1].group == column.group;
+    groups.push_back(is_begun ? "" : column.group);
+    titles.push_back(column.title);
+  }
+  const bool has_groups = std::ranges::any_of(groups, [](const std::string& group) { return !group.empty(); });
+  rows.push_back(titles);
+  for (const std::vector<TableCell>& row : table.rows) {
+    std::ranges::transform(row, std::back_inserter(rows.emplace_back()), [](const TableCell& cell) {
+      return emphasised(cell.text, cell.emphasis, {"", "*"}, {"", "+"});
+    });
+  }
+  std::vector<std::size_t> widths(table.header.size(), 0);
+  for (const auto& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      // Values end in one column, marked or not.
+      widths[i] = std::max(widths[i], width_of(row[i]) + (i > 0 && !is_marked(row[i]) ? 1 : 0));
+    }
+  }
+  std::string text = table.title + "\n";
+  if (has_groups) {
+    text += plain_groups(groups, widths);
+  }
+  for (const auto& row : rows) {
+    std::string line;
+    for (std::size_t i = 0; i < row.size(); ++i) {
+      const std::string value = row[i] + (i > 0 && !is_marked(row[i]) ? " " : "");
+      const std::string blanks(widths[i] - width_of(value), ' ');
+      line += i == 0 ? value + blanks : "  " + blanks + value;
+    }
+    text += without_trailing_blanks(line) + "\n";
+  }
+  return text;
 }
 
 std::string csv(const Table& table) {

@@ -33,6 +33,10 @@ struct Table {
 /// A heading, the table with columns of even width, the caption. Best **bold**, second <u>underlined</u>.
 std::string markdown(const Table& table);
 
+/// For a terminal: the title and columns of even width, two blanks apart, without the caption. Behind the
+/// value the best has a * and the second a +. Groups stand above their columns.
+std::string plain(const Table& table);
+
 /// Header and rows as RFC 4180 has them, without caption and emphasis. Groups stand before the titles. Texts that a
 /// spreadsheet would take for a formula, which begin with = + - @, get an apostrophe in front; numbers stay.
 std::string csv(const Table& table);

@@ -27,6 +27,21 @@ TEST(Table, MarkdownEscapesAlignsAndStandsOut) {
             "\n50% of a\\_b & {c}\n");
 }
 
+TEST(Table, PlainTextStandsInColumns) {
+  const Table table{.name = "n",
+                    .title = "Accuracy",
+                    .caption = "c",
+                    .header = {{"", "Method"}, {"city", "RTE"}, {"city", "RRE"}, {"a_long_street", "RTE"}},
+                    .rows = {{{"Allée"}, {"0.1", Emphasis::kBest}, {"20.25"}, {"7", Emphasis::kSecond}},
+                             {{"b"}, {"failed"}, {"-"}, {"12"}}}};
+  EXPECT_EQ(plain(table),
+            "Accuracy\n"
+            "        city             a_long_street\n"
+            "Method     RTE     RRE            RTE\n"
+            "Allée      0.1*  20.25              7+\n"
+            "b       failed       -             12\n");
+}
+
 TEST(Table, MarkdownCountsCharactersNotBytes) {
   const Table table{.name = "n", .title = "t", .caption = "c", .header = {{"", "Allée"}}, .rows = {{{"Straße"}}}};
   EXPECT_EQ(markdown(table), "## t\n\n| Allée  |\n| ------ |\n| Straße |\n\nc\n");
