@@ -10,7 +10,7 @@ int main(int argc, char** argv) {
   const auto odometry = dynamic_icp::odometry::make_odometry();
   for (std::size_t i = 0; i < recording->size(); ++i) {
     const dynamic_icp::odometry::Frame frame = odometry->process(recording->scan(i));
-    std::cout << to_string(frame.status) << "  position " << frame.T_world_sensor.translation().transpose()
+    std::cout << verdict(frame.status) << "  position " << frame.T_world_sensor.translation().transpose()
               << " m  velocity " << frame.ego.velocity_sensor.transpose() << " m/s\n";
   }
 }

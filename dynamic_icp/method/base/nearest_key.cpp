@@ -46,7 +46,7 @@ std::string_view nearest_key(std::string_view typed, std::span<const std::string
 
 std::string_view close_key(std::string_view typed, std::span<const std::string> keys) {
   const std::string_view nearest = nearest_key(typed, keys);
-  return !nearest.empty() && key_distance(typed, nearest) <= std::max<std::size_t>(1, nearest.size() / 3)
+  return !nearest.empty() && key_distance(typed, nearest) <= (nearest.size() + 2) / 3
              ? nearest
              : std::string_view();
 }

@@ -12,7 +12,7 @@ namespace dynamic_icp {
 /// part of a dotted key ("voxel_size_m") counts as the whole; the first of equals. Empty when there are no keys.
 std::string_view nearest_key(std::string_view typed, std::span<const std::string> keys);
 
-/// The same where it may well be a slip of the typist: at most a third of its letters, and at least one, are to change.
+/// The same where it may well be a slip of the typist: no more than a third of its letters, rounded up, are to change.
 /// Empty otherwise: a word that is far from all keys was meant otherwise.
 std::string_view close_key(std::string_view typed, std::span<const std::string> keys);
 

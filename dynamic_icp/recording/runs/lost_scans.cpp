@@ -32,8 +32,8 @@ std::string left_out(const Scan::Dropped& dropped) {
 
 /// "41 points a scan", "12 of 5000 points a scan"; what was left out goes to `note`.
 std::string points_text(double read, double used, const Scan::Dropped& dropped, std::string& note) {
-  if (used >= kFewUsed * read) {
-    return fmt::format("{:.0f} points a scan", used);
+  if (used >= kFewUsed * read || read < kFewPoints) {
+    return fmt::format("{:.0f} points a scan", read);
   }
   note = fmt::format(" ({})", left_out(dropped));
   return fmt::format("{:.0f} usable points a scan of {:.0f}", used, read);

@@ -36,6 +36,8 @@ constexpr Meaning kMeanings[] = {
     {"clustered_ratio_mean", "clustered, of the moving points, mean"},
     {"refined_ratio_mean", "on an object with a velocity, of the clustered points, mean"},
     {"matched_poses", "poses compared with the ground truth"},
+    {"failure", "why most scans are lost"},
+    {"stopped", "whether it was stopped before its last scan"},
 };
 
 bool has_part(std::string_view key, std::string_view part) { return key.find(part) != std::string_view::npos; }
@@ -71,7 +73,9 @@ std::string_view meaning_of(std::string_view key) {
       return meaning.text;
     }
   }
-  return key.starts_with("statuses.") ? "scans with this status" : "";
+  return key.starts_with("statuses.")  ? "scans with this status"
+         : key.starts_with("reasons.") ? "scans with this reason for their status"
+                                       : "";
 }
 
 }  // namespace dynamic_icp::report
