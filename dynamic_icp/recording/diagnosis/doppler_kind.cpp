@@ -18,7 +18,8 @@ bool expects_compensated(const Evidence& evidence) {
 
 Finding relative(const Evidence& evidence, double speed) {
   Finding finding{Question::kDopplerKind, Verdict::kOk, ""};
-  finding.sentence = fmt::format("relative, not ego-motion compensated: the static scene moves by {:.1f} m/s", speed);
+  finding.sentence =
+      fmt::format("relative, not ego-motion compensated; ego speed {:.1f} m/s (median of the scans sampled)", speed);
   if (expects_compensated(evidence)) {
     finding.verdict = Verdict::kWrong;
     finding.sentence += ", but the Doppler was declared compensated";

@@ -87,6 +87,15 @@ std::string refusal(const std::vector<const diagnosis::Finding*>& findings, cons
                      fix_in_words(is_right));
 }
 
+/// Whether scans that a run leaves out have a Doppler.
+bool has_doppler_elsewhere(const datasets::Dataset& dataset, diagnosis::DiagnosisConfig config,
+                           const Workers& workers) {
+  const bool is_part = config.begin > 0 || config.end < dataset.size();
+  config.begin = 0;
+  config.end = dataset.size();
+  return is_part && diagnosis::diagnose(dataset, config, workers).has_doppler;
+}
+
 }  // namespace
 
 RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets::InputSettings& settings,
@@ -105,7 +114,13 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   check.period_s = diagnosis.period_s;
   check.doppler = fmt::format("{}; {}", diagnosis.of(diagnosis::Question::kDopplerKind).sentence,
                               diagnosis.of(diagnosis::Question::kDopplerSign).sentence);
-  if (!diagnosis.has_doppler && needs.doppler && !settings.correction.doppler_kind) {
+  const bool lacks_doppler = !diagnosis.has_doppler && needs.doppler && !settings.correction.doppler_kind;
+  const bool is_at_rest = lacks_doppler && has_doppler_elsewhere(dataset, config, workers);
+  if (is_at_rest) {
+    check.warnings.push_back(
+        "the Doppler of the scans looked at is exactly zero, but not that of the whole recording: the sensor seems to "
+        "be at rest in these scans");
+  } else if (lacks_doppler) {
     const auto with_kind = [&](DopplerKind kind) {
       diagnosis::Finding finding;
       finding.fix.doppler_kind = kind;
@@ -119,8 +134,12 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   }
   std::vector<const diagnosis::Finding*> stopping;
   for (const diagnosis::Finding& finding : diagnosis.findings) {
+    const bool is_of_rest =
+        is_at_rest && (finding.question == Question::kDopplerKind || finding.question == Question::kDopplerUnits);
     if (stops(finding, settings.correction, diagnosis.has_doppler, needs)) {
       stopping.push_back(&finding);
+    } else if (is_of_rest) {
+      continue;
     } else if (finding.verdict == diagnosis::Verdict::kWrong || finding.verdict == diagnosis::Verdict::kSuspicious) {
       const std::string fix = fix_of(finding);
       check.warnings.push_back(fmt::format("{}: {}{}", diagnosis::to_string(finding.question), finding.sentence,

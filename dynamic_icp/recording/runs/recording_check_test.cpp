@@ -62,9 +62,17 @@ TEST(RecordingCheck, TheDopplerOfASensorThatMovesLaterIsNotRefused) {
 }
 
 TEST(RecordingCheck, ThatOfASensorThatNeverMovesIs) {
-  const LateStart recording;
+  const LateStart recording(0.0);
+  EXPECT_THROW(check_recording(recording, {}, {0, LateStart::kScans, 1}, {true}), DataError);
   EXPECT_THROW(check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, {true}), DataError);
   EXPECT_NO_THROW(check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, {false}));
+}
+
+TEST(RecordingCheck, ARunOverScansAtRestAloneIsNotRefusedWhereTheOthersMove) {
+  const LateStart recording;
+  const RecordingCheck check = check_recording(recording, {}, {0, LateStart::kFirstMoving, 1}, {true});
+  ASSERT_FALSE(check.warnings.empty());
+  EXPECT_NE(check.warnings[0].find("at rest"), std::string::npos) << check.warnings[0];
 }
 
 /// The ground truth of LateStart while it moves.
