@@ -109,7 +109,7 @@ std::string plain_text(const std::vector<benchmark::Table>& tables, const benchm
   for (const benchmark::Table& table : tables) {
     text += benchmark::plain(table) + "\n" + wrapped(benchmark::own_caption(table, results), width, 0) + "\n\n";
   }
-  return text + wrapped(fmt::format("* best, + second. {}", benchmark::setup_text(results)), width, 0) + "\n";
+  return text + wrapped(benchmark::setup_text(results), width, 0) + "\n";
 }
 
 /// Makes tables/ and tables.md from results.json and prints the tables.
@@ -235,7 +235,8 @@ void add_benchmark_command(CLI::App& app, std::function<int()>& selected) {
   CLI::App* command = app.add_subcommand(
       "benchmark", "Recordings through all methods under identical preprocessing; the paper's tables");
   command->footer(
-      "Ended at any time, the same command goes on where it was: finished runs whose program, configuration and "
+      "Resumable: after an interruption the same command goes on where it was. Finished runs whose program, "
+      "configuration and "
       "recording are unchanged are not run again; failed ones are.");
   command->add_option("INPUT", options->inputs, "Recordings, or folders whose sub-folders are recordings");
   add_option(*command, "-o,--output", options->output, "DIR",

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::size_t kMessageIndent = 2;
 
-void write_out(std::string_view text) { (void)std::fwrite(text.data(), 1, text.size(), stderr); }
+void write_to_stderr(std::string_view text) { (void)std::fwrite(text.data(), 1, text.size(), stderr); }
 
 }  // namespace
 
@@ -17,9 +17,9 @@ void tell_text(std::string_view text) noexcept {
   try {
     const bool redraws = text.find_first_of("\r\x1b") != std::string_view::npos;
     const std::string lines = wrapped(text, redraws ? 0 : terminal_width(stderr), kMessageIndent);
-    write_out(lines);
+    write_to_stderr(lines);
   } catch (const std::exception&) {  // no memory to wrap it
-    write_out(text);
+    write_to_stderr(text);
   }
 }
 

@@ -17,8 +17,10 @@
 #include "dynamic_icp/tools/report/viewer_bundle.hpp"
 
 #include "apps/commands.hpp"
+#include "apps/messages.hpp"
 #include "apps/number_list.hpp"
 #include "apps/options.hpp"
+#include "apps/terminal.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -105,6 +107,9 @@ report::PageContent content_of(const ReportOptions& options) {
 int write_page(const ReportOptions& options) {
   const report::ViewerBundle viewer = required_viewer();
   const fs::path html = destination(options);
+  if (terminal_width(stderr) > 0) {
+    tell("writing {} ...\n", html.string());
+  }
   formats::write_whole_file(html, report::html_page(content_of(options), viewer));
   fmt::print("{}\n", fs::absolute(html).lexically_normal().string());
   return 0;

@@ -123,6 +123,20 @@ TEST_F(Benchmark, RunsTheMethodsThatAreNamedAndNoAblations) {
   EXPECT_EQ(cells, (std::set<std::string>{"jam/dynamic-icp", "jam/kiss-icp", "street/dynamic-icp", "street/kiss-icp"}));
 }
 
+TEST_F(Benchmark, AMethodThatLosesMostScansHasItsNumbersAndIsNamed) {
+  for (int scan = 2; scan <= 7; ++scan) {
+    fs::resize_file(data() / "jam" / "point_clouds" / ("0000" + std::to_string(scan) + ".bin"), 3 * 16);
+  }
+  const Outcome outcome = benchmark(kOurs);
+  EXPECT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("jam dynamic-icp: done, ODOMETRY FAILED on 6 of 7 scans"), std::string::npos)
+      << outcome.text;
+  const json results = json::parse(read_file(out() / "results.json"));
+  EXPECT_EQ(results["cells"][0]["finished"], true);
+  EXPECT_TRUE(results["cells"][0]["rte_rmse_m"].is_number());
+  EXPECT_EQ(results["cells"][1]["failure"], "");
+}
+
 TEST_F(Benchmark, FinishedCellsStayChangedOnesRunAgain) {
   ASSERT_EQ(benchmark(kOurs + "--ablations no-dr").status, 0);
   const auto first = run_times();

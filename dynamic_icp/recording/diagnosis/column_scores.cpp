@@ -15,7 +15,7 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr std::size_t kMaxPoints = 30000;
-constexpr std::ptrdiff_t kMinPoints = 20;
+constexpr std::ptrdiff_t kMinPointsToTell = 20;
 constexpr double kFarthest_m = 1000.0;
 constexpr double kFarthestInCentimetres = 3e4;  // beyond, they are millimetres
 constexpr double kNearest_m = 0.5;
@@ -56,7 +56,7 @@ bool tells_columns(const RawScan& scan) {
   const auto first = std::ranges::find_if(scan.points, is_finite);
   return first != scan.points.end() && std::ranges::count_if(scan.points, [&](const Eigen::Vector3d& point) {
                                          return is_finite(point) && (point - *first).norm() > 0.0;
-                                       }) >= kMinPoints;
+                                       }) >= kMinPointsToTell;
 }
 
 double static_residual(const RawScan& raw, const Workers& workers) {

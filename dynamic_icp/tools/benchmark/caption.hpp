@@ -13,7 +13,7 @@ namespace dynamic_icp::benchmark {
 /// settings, machine, threads of a run, the most runs at the same time, inputs, and what methods had to assume.
 std::string setup_text(const BenchmarkResults& results);
 
-/// The caption of a table without that: for several tables that are shown together, with it once.
+/// The caption of a table as plain text, without that: for several tables that are shown together, with it once.
 std::string own_caption(const Table& table, const BenchmarkResults& results);
 
 }  // namespace dynamic_icp::benchmark
