@@ -14,6 +14,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/version.hpp"
+#include "dynamic_icp/recording/datasets/bag_dataset.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 
 #include "apps/command_line.hpp"
@@ -113,6 +114,10 @@ int main(int argc, char** argv) {
     return report(error.what(), kWrongUsage);
   } catch (const dynamic_icp::formats::EarlierResult& error) {
     return report(fmt::format("{}; use --force to replace it", error.what()), kDataOrMachineFailed);
+  } catch (const dynamic_icp::datasets::UnclearTopic& error) {
+    return report(fmt::format("{}\nfor instance --topic {}{}", error.what(), error.topic(),
+                              error.needs_doppler() ? " --field doppler=NAME" : ""),
+                  kDataOrMachineFailed);
   } catch (const std::bad_alloc&) {
     return report("the machine has no memory left", kDataOrMachineFailed);
   } catch (const std::system_error& error) {

@@ -132,17 +132,17 @@ class TopicChoice {
                  fmt::format("{}: {}", path_.string(), clouds.front().name));  // throws, naming the fields
     }
     if (usable.empty()) {
-      throw DataError(
-          fmt::format("{}: no cloud of points has coordinates and a Doppler by the names of its fields; name "
-                      "topic and field, for instance --topic {} --field doppler=NAME; its clouds:{}",
-                      path_.string(), clouds.front().name, listed(clouds)));
+      throw UnclearTopic(fmt::format("{}: no cloud of points has coordinates and a Doppler by the names of its fields; "
+                                     "name topic and field of one:{}",
+                                     path_.string(), listed(clouds)),
+                         clouds.front().name, true);
     }
     if (usable.size() > 1 &&
         std::any_of(usable.begin(), usable.end(), [&](const auto& t) { return t.name != usable.front().name; })) {
-      throw DataError(
-          fmt::format("{}: holds several clouds of points with Doppler; name one, for instance --topic {}, or "
-                      "several --topic for the sensors of a rig:{}",
-                      path_.string(), usable.front().name, listed(usable)));
+      throw UnclearTopic(fmt::format("{}: holds several clouds of points with Doppler; name the topic of one, or those "
+                                     "of several for the sensors of a rig:{}",
+                                     path_.string(), listed(usable)),
+                         usable.front().name, false);
     }
     if (clouds.size() > usable.size()) {
       assumptions.push_back(
@@ -163,7 +163,8 @@ class BagDataset final : public Dataset {
       : bag_(std::move(bag)), path_(path), assumptions_(bag_->notes()) {
     if (!options.sensors.empty()) {
       throw UsageError(
-          fmt::format("sensors of a bag are its topics: --topic, not --lidar {}", options.sensors.front()));
+          fmt::format("sensors of a bag are chosen by their topics, not by name; sensor '{}' was asked for",
+                      options.sensors.front()));
     }
     for (const std::string& name : TopicChoice(*bag_, path_, options).choose(assumptions_)) {
       topics_.push_back({.name = name});

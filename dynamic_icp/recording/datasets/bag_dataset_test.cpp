@@ -129,7 +129,7 @@ TEST(BagDataset, WithoutOneAnswerTheTopicsAreListedWithTheOption) {
   expect_part(fault_of<DataError>(without), "there are: x, y, z, intensity");
   EXPECT_EQ(open(without, {.fields = {{"doppler", "intensity"}}})->size(), 1U);
   add_cloud(*without, "/other", 0.1, "lidar", {{1, 2, 3}}, {"x", "y", "z"});
-  expect_part(fault_of<DataError>(without), "--topic /points --field doppler=NAME");
+  expect_part(fault_of<UnclearTopic>(without), "name topic and field of one:\n  /points: ");
   expect_part(fault_of<DataError>(without), "\n  /other: sensor_msgs/PointCloud2, 1 message; x, y, z (float32)");
 
   const auto several = new_bag();
@@ -137,13 +137,14 @@ TEST(BagDataset, WithoutOneAnswerTheTopicsAreListedWithTheOption) {
     add_cloud(*several, "/left", 0.1 * i, "left", {{1, 2, 3, 4}});
     add_cloud(*several, "/right", 0.1 * i, "right", {{1, 2, 3, 4}});
   }
-  expect_part(fault_of<DataError>(several), "name one, for instance --topic /left, or several --topic");
+  expect_part(fault_of<UnclearTopic>(several), "holds several clouds of points with Doppler");
   expect_part(fault_of<DataError>(several), "/right: sensor_msgs/PointCloud2, 2 messages at 10.0 Hz");
   EXPECT_EQ(open(several, {.topics = {"/right"}})->size(), 2U);
   EXPECT_EQ(open(several, {.topics = {"right"}})->size(), 2U);
   expect_part(fault_of<UsageError>(several, {.topics = {"/up"}}), "no topic '/up'; topics of clouds: /left, /right");
   expect_part(fault_of<UsageError>(several, {.topics = {"/left", "left"}}), "for the second time");
-  expect_part(fault_of<UsageError>(several, {.sensors = {"left"}}), "--topic, not --lidar left");
+  expect_part(fault_of<UsageError>(several, {.sensors = {"left"}}),
+              "chosen by their topics, not by name; sensor 'left'");
 }
 
 TEST(BagDataset, ZerosInHeadersGiveWayToTheTimesOfRecording) {
@@ -269,7 +270,7 @@ std::shared_ptr<FakeBag> bag_with_poses() {
 TEST(BagDataset, NoGroundTruthIsMadeOfAnOdometryUnasked) {
   const std::unique_ptr<Dataset> dataset = open(bag_with_poses(), {.topics = {"/left"}});
   EXPECT_TRUE(dataset->ground_truth().empty());
-  expect_part(said(*dataset), "no ground truth is taken: --truth-topic /odom takes the poses of that topic");
+  expect_part(said(*dataset), "name one of the topics of poses as truth-topic for that: /odom");
 }
 
 TEST(BagDataset, PosesOfATopicAreMovedToTheSensor) {
@@ -297,7 +298,7 @@ TEST(BagDataset, TopicsThatCallThemselvesGroundTruthAreTaken) {
   expect_part(said(*dataset), "ground truth is taken from topic '/vehicle/gt_pose', by its name");
   expect_part(said(*dataset), "its messages name no frame that moves");
   bag->add("/ground_truth", "geometry_msgs/PoseStamped", at(0.3), "");
-  expect_part(said(*open(bag, {.topics = {"/left"}})), "several topics are named so");
+  expect_part(said(*open(bag, {.topics = {"/left"}})), "several topics are called so");
 
   EXPECT_TRUE(is_named_ground_truth("/GroundTruth/pose"));
   EXPECT_TRUE(is_named_ground_truth("/base/ground_truth_odom"));

@@ -138,12 +138,10 @@ std::string topic_to_take(const bags::Bag& bag, std::vector<std::string>& assump
   if (!all.empty()) {
     assumptions.push_back(
         named.empty()
-            ? fmt::format("no ground truth is taken: --truth-topic {} takes the poses of that topic; there are: "
-                          "{}",
-                          all.front(), fmt::join(all, ", "))
-            : fmt::format("no ground truth is taken: several topics are named so, take one with --truth-topic "
-                          "{}; there are: {}",
-                          named.front(), fmt::join(named, ", ")));
+            ? fmt::format("no ground truth is taken: name one of the topics of poses as truth-topic for that: {}",
+                          fmt::join(all, ", "))
+            : fmt::format("no ground truth is taken: several topics are called so, name one as truth-topic: {}",
+                          fmt::join(named, ", ")));
   }
   return "";
 }

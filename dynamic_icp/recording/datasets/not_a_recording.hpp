@@ -17,7 +17,8 @@ class NotARecording : public DataError {
 };
 
 /// What stands in the way of an input of no known layout, as a sentence that begins with the name of a file: that it,
-/// or the first such file in the folder, is an archive, a Git LFS pointer, a ROS bag from before version 2.0 or the like. Empty: nothing of it.
+/// or the first such file in the folder, is an archive, a Git LFS pointer, a ROS bag from before version 2.0 or the
+/// like. Empty: nothing of it.
 std::string known_obstacle(const std::filesystem::path& input);
 
 }  // namespace dynamic_icp::datasets

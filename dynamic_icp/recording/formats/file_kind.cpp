@@ -51,10 +51,10 @@ constexpr std::string_view kSentences[] = {
     "is a 7z archive; unpack it first",
     "is a tar archive; unpack it first ('tar xf')",
     "is an array of NumPy (.npy)",
-    "is an MCAP recording, which --format mcap reads",
-    "is a ROS 1 bag, which --format rosbag reads",
+    "is an MCAP recording, which format mcap reads",
+    "is a ROS 1 bag, which format rosbag reads",
     "is a ROS bag from before version 2.0; convert it first: 'rosbag fix OLD.bag NEW.bag' (python3-rosbag of Debian)",
-    "is an SQLite database; if it is of a ROS 2 bag, --format rosbag2 reads it",
+    "is an SQLite database; if it is of a ROS 2 bag, format rosbag2 reads it",
     "is a PLY file",
     "is a PCD file",
 };
