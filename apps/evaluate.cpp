@@ -15,6 +15,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/pose_file.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation.hpp"
 #include "dynamic_icp/recording/evaluation/evaluation_report.hpp"
 #include "dynamic_icp/recording/evaluation/object_tracking_report.hpp"
@@ -125,11 +126,25 @@ std::filesystem::path trajectory_file(const std::filesystem::path& named) {
   return std::filesystem::exists(in_folder) ? in_folder : named;
 }
 
-/// The reference: a file, the trajectory of another run, or the ground truth that a recording brings along.
-formats::TumFile read_reference(std::filesystem::path& named) {
+formats::TumFile read_estimate(const std::string& file) {
+  datasets::PoseFile poses = datasets::read_pose_file(file);
+  if (!poses.has_stamps) {
+    throw DataError(
+        fmt::format("{}: its poses have no times, expected those of a run (trajectory.tum), or a times.txt "
+                    "beside it with as many times",
+                    file));
+  }
+  return {std::move(poses.poses), poses.repeated_lines};
+}
+
+/// The reference: a file, the trajectory of another run, or the ground truth that a recording brings along. Poses
+/// without times are those of the estimate, one for one.
+formats::TumFile read_reference(std::filesystem::path& named, const formats::Trajectory& estimate) {
   named = trajectory_file(named);
   if (!std::filesystem::is_directory(named)) {
-    return formats::read_tum(named);
+    datasets::PoseFile poses = datasets::read_pose_file(named);
+    return poses.has_stamps ? formats::TumFile{std::move(poses.poses), poses.repeated_lines}
+                            : formats::TumFile{datasets::read_truth(named, datasets::stamps_of(estimate)), 0};
   }
   const std::unique_ptr<datasets::Dataset> recording = datasets::open_input(named, {});
   if (recording->ground_truth().empty()) {
@@ -152,9 +167,9 @@ int run_evaluate(Options options) {
   }
   const evaluation::EvaluationConfig config = config_of(options);  // wrong use is reported before a file is read
   options.estimate = trajectory_file(options.estimate).string();
-  const formats::TumFile estimate = formats::read_tum(options.estimate);
+  const formats::TumFile estimate = read_estimate(options.estimate);
   std::filesystem::path reference_file = options.reference;
-  const formats::TumFile reference = read_reference(reference_file);
+  const formats::TumFile reference = read_reference(reference_file, estimate.trajectory);
   options.reference = reference_file.string();
   const evaluation::Evaluation evaluation = evaluate_files(options, config, estimate, reference);
   const evaluation::EvaluationSource source = {options.estimate, options.reference, estimate.repeated_lines,
@@ -205,8 +220,9 @@ void add_evaluate_command(CLI::App& app, std::function<int()>& selected) {
   command
       ->add_option(
           "REFERENCE", options->reference,
-          "TUM file of the true poses of the same sensor; or a recording with ground truth, with --objects a simulated "
-          "one; or the folder of another run")
+          "True poses of the same sensor: TUM, KITTI (12 columns, one pose for each of ESTIMATE, or a times.txt beside "
+          "them) or CSV with a header; or a recording with ground truth, with --objects a simulated one; or the folder "
+          "of another run")
       ->required();
   add_error_options(*command, *options);
   CLI::Option* objects = command->add_flag("--objects", options->objects,

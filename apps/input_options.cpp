@@ -57,9 +57,11 @@ void add_repeatable(CLI::App& command, const char* name, const char* type, const
 void add_input_options(CLI::App& command, datasets::InputSettings& settings) {
   add(command, settings, "format", "NAME",
       fmt::format("Layout of the recording: auto, {} (default auto)", fmt::join(datasets::known_formats(), ", ")));
-  add_repeatable(command, "--field", "NAME=COLUMN",
-                 "The column that holds x, y, z, doppler or time, where columns have names; repeatable",
-                 [&settings](const std::string& text) { set_field(settings, text); });
+  add_repeatable(
+      command, "--field", "NAME=COLUMN",
+      "The column that holds x, y, z, doppler or time, or the array that holds the points, where columns have "
+      "names; repeatable",
+      [&settings](const std::string& text) { set_field(settings, text); });
   add_repeatable(command, "--lidar", "NAME",
                  "Sensor to take of a recording with several; repeatable (default: the layout's choice)",
                  [&settings](const std::string& text) { datasets::set(settings, "lidar.", text); });
@@ -70,6 +72,9 @@ void add_input_options(CLI::App& command, datasets::InputSettings& settings) {
       "Topic of a bag whose poses are ground truth, or PARENT>CHILD of its transforms (default: one named so)");
   add(command, settings, "period", "S",
       fmt::format("Time from scan to scan where the recording has no times (default {} s)", settings.open.period_s));
+  add(command, settings, "dtype", "TYPE",
+      fmt::format("Type of the numbers of records in *.bin: {} (default float32)",
+                  fmt::join(datasets::record_types(), ", ")));
   add(command, settings, "time-scale", "F",
       "Factor for the time since the first scan and the times of points (default 1)");
   add_correction_options(command, settings);
@@ -83,7 +88,9 @@ void add_correction_options(CLI::App& command, datasets::InputSettings& settings
   add(command, settings, "doppler-scale", "F", "Factor that makes the Doppler m/s, e.g. 0.001 for mm/s (default 1)");
   add(command, settings, "point-scale", "F", "Factor that makes coordinates m, e.g. 0.001 for mm (default 1)");
   add(command, settings, "columns", "LIST",
-      "What the stored columns are: a permutation of x,y,z,doppler (default x,y,z,doppler)");
+      "What the stored columns are: x,y,z,doppler in their order; or what all numbers of a record, row or array "
+      "without "
+      "names are, with _ for what is not used, e.g. x,y,z,_,doppler (default x,y,z,doppler)");
 }
 
 std::string as_options(const datasets::Correction& correction) {

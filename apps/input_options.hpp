@@ -14,7 +14,7 @@ class App;
 
 namespace dynamic_icp::apps {
 
-/// --format, --field, --lidar, --topic, --truth-topic, --period and --time-scale, and those of
+/// --format, --field, --lidar, --topic, --truth-topic, --period, --dtype and --time-scale, and those of
 /// `add_correction_options`: what a user may say about a recording.
 void add_input_options(CLI::App& command, datasets::InputSettings& settings);
 

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <filesystem>
 #include <memory>
 
 #include <CLI/CLI.hpp>
@@ -10,7 +11,6 @@
 #include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
-#include "dynamic_icp/recording/formats/xyzd_bin.hpp"
 #include "dynamic_icp/recording/runs/frame_json.hpp"
 
 #include "apps/commands.hpp"
@@ -27,12 +27,25 @@ struct RegisterOptions {
   std::string target;
   std::string calibration;
   double dt_s = 0.1;
-  datasets::InputSettings settings;  ///< how the scans are corrected
+  datasets::InputSettings settings;  ///< how the scans are read and corrected
   MethodOptions method;
 };
 
-RawScan read_scan(const std::string& path, Stamp stamp, const datasets::Correction& correction) {
-  RawScan raw = datasets::corrected(formats::read_xyzd(path), correction);
+/// One scan in a file of any form that a recording may have; files without a known ending are records of float32.
+RawScan read_scan_file(const std::string& path, Stamp stamp, const datasets::InputSettings& settings) {
+  datasets::InputSettings of_file = settings;
+  const std::string ending = std::filesystem::path(path).extension().string();
+  const bool is_known = ending == ".bin" || ending == ".pcd" || ending == ".ply" || ending == ".npz" ||
+                        ending == ".npy" || ending == ".csv" || ending == ".txt" || ending == ".xyz" ||
+                        ending == ".asc";
+  if (settings.open.format == "auto" && !is_known && std::filesystem::is_regular_file(path)) {
+    of_file.open.format = "dicp";
+  }
+  const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(path, of_file);
+  if (dataset->size() != 1) {
+    throw DataError(fmt::format("{}: holds {} scans, expected a file of one scan", path, dataset->size()));
+  }
+  RawScan raw = dataset->scan(0);
   raw.stamp = stamp;
   if (!raw.warning.empty()) {
     tell("dynamic-icp: warning: {}\n", raw.warning);
@@ -46,9 +59,8 @@ int register_pair(const RegisterOptions& options) {
     throw UsageError(fmt::format("--dt is {}, expected 1e-9 to 3600 s", options.dt_s));
   }
   datasets::check(options.settings.correction);
-  const RawScan source = read_scan(options.source, Stamp{0}, options.settings.correction);
-  const RawScan target =
-      read_scan(options.target, Stamp{std::llround(options.dt_s * 1e9)}, options.settings.correction);
+  const RawScan source = read_scan_file(options.source, Stamp{0}, options.settings);
+  const RawScan target = read_scan_file(options.target, Stamp{std::llround(options.dt_s * 1e9)}, options.settings);
   odometry::SensorContext surroundings;
   surroundings.doppler_kind = source.doppler_kind;
   if (!options.calibration.empty()) {
@@ -74,14 +86,17 @@ void add_register_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<RegisterOptions>();
   CLI::App* command =
       app.add_subcommand("register", "Align one pair of scans; prints transform, covariance and velocities as JSON");
-  command->add_option("SOURCE", options->source, "Earlier scan: float32 x, y, z (m), Doppler (m/s, positive away)")
+  command
+      ->add_option(
+          "SOURCE", options->source,
+          "Earlier scan: .bin (float32 x, y, z in m, Doppler in m/s, positive away), .pcd, .ply, .npz, .npy or .csv")
       ->required();
   command->add_option("TARGET", options->target, "Later scan; T_target_source maps points of SOURCE into it")
       ->required();
   add_option(*command, "--dt", options->dt_s, "SECONDS", "Time between the two scans in s (default 0.1)");
   add_option(*command, "--calibration", options->calibration, "FILE",
              "calibration.json with the mounting of the sensor, for doppler-icp (default: the identity)");
-  add_correction_options(*command, options->settings);
+  add_input_options(*command, options->settings);
   add_method_options(*command, options->method);
   command->callback([options, &selected] { selected = [options] { return register_pair(*options); }; });
 }

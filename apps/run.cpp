@@ -192,7 +192,7 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
       ->type_name("DIR");
   add_input_options(*command, options->recording.settings);
   add_option(*command, "--ground-truth", options->settings.ground_truth, "FILE",
-             "TUM file to compare with (default: what the recording brings along)");
+             "Poses to compare with: TUM, KITTI or CSV with a header (default: what the recording brings along)");
   add_selection_options(*command, "process", options->settings.start, options->settings.max_frames);
   command->add_flag("--save-labels", options->settings.save_labels,
                     "Write labels/*.bin: static, object or unused per point");

@@ -14,6 +14,9 @@
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/record_dataset.hpp"
 #include "dynamic_icp/recording/datasets/record_guess.hpp"
+#include "dynamic_icp/recording/datasets/record_shape.hpp"
+#include "dynamic_icp/recording/datasets/stated_records.hpp"
+#include "dynamic_icp/recording/datasets/truth_search.hpp"
 #include "dynamic_icp/recording/formats/record_file.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
@@ -44,8 +47,14 @@ fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& 
   return *found;
 }
 
-[[noreturn]] void refuse(const fs::path& file, const std::string& content) {
-  if (is_velodyne(file.parent_path())) {
+[[noreturn]] void refuse(const fs::path& file, const std::string& content, const std::vector<fs::path>& files) {
+  const std::string shape = shape_sentence(files);
+  const bool is_plain =
+      content.size() % formats::kXyzd.bytes == 0 && other_shape(files, 4, formats::NumberType::kFloat32).empty();
+  if (!shape.empty() && !is_plain) {
+    throw DataError(shape);
+  }
+  if (is_velodyne(named_path(file).parent_path())) {
     throw DataError(fmt::format(
         "{}: looks like KITTI, whose fourth number is the reflectance and not Doppler (format dicp reads it "
         "as Doppler all the same)",
@@ -59,6 +68,9 @@ fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& 
     names += fmt::format("\n  {}, {} bytes{}", layout->name, layout->bytes,
                          content.size() % layout->bytes == 0 ? "" : ": does not divide the size");
   }
+  if (!shape.empty()) {
+    throw DataError(shape);
+  }
   throw DataError(fmt::format("{}: {} bytes that look like no records of points with Doppler. Tried:{}", file.string(),
                               content.size(), names));
 }
@@ -66,20 +78,51 @@ fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& 
 }  // namespace
 
 fs::path find_bin_folder(const fs::path& input) {
+  if (fs::is_regular_file(input)) {
+    return input.extension() == ".bin" ? input : fs::path();
+  }
   return holds_files(input, ".bin") ? input : find_folder(input, is_velodyne);
 }
 
-std::unique_ptr<Dataset> open_bin_folder(const fs::path& folder, const OpenOptions& options) {
-  StampedFiles scans = stamped_files(folder, ".bin", options.period_s);
-  const fs::path first = first_with_points(folder, scans.files);
+fs::path find_bin_scans(const fs::path& input) {
+  if (fs::is_regular_file(input)) {
+    return input;
+  }
+  if (holds_files(input, ".bin")) {
+    return input;
+  }
+  if (const fs::path dicp = find_dicp(input); !dicp.empty()) {
+    return dicp / "point_clouds";
+  }
+  return find_folder(input, [](const fs::path& below) { return holds_files(below, ".bin"); });
+}
+
+std::unique_ptr<Dataset> open_bin_folder(const fs::path& found, const OpenOptions& options) {
+  const bool is_scan = fs::is_regular_file(found);
+  const fs::path folder = is_scan ? named_path(found).parent_path() : found;
+  RecordRecording recording;
+  recording.format = "bin";
+  recording.scans =
+      is_scan ? stamped_files({found}, options.period_s) : stamped_files(folder, ".bin", options.period_s);
+  if (!is_scan) {
+    recording.truth = take_truth(folder, recording.scans);
+  }
+  if (states_records(options)) {
+    read_as_stated(options, recording);
+    return make_record_dataset(std::move(recording));
+  }
+  const std::vector<fs::path>& files = recording.scans.files;
+  const fs::path first = first_with_points(folder, files);
   const std::size_t candidates = is_velodyne(named_path(folder)) ? 1 : kCandidates.size();
   const RecordLayout* const layout = guess_layout(first, std::span(kCandidates).first(candidates));
   if (layout == nullptr) {
-    refuse(first, formats::read_whole_file(first, formats::kMaxRecordFileBytes));
+    refuse(first, formats::read_whole_file(first, formats::kMaxRecordFileBytes), files);
   }
-  RecordRecording recording;
-  recording.format = "bin";
-  recording.scans = std::move(scans);
+  if (layout == &formats::kXyzd) {
+    if (const std::string other = other_shape(files, 4, formats::NumberType::kFloat32); !other.empty()) {
+      throw DataError(other);
+    }
+  }
   recording.layout_of = [layout](const fs::path&, Stamp) -> const RecordLayout& { return *layout; };
   recording.scans.assumptions.push_back(
       fmt::format("only *.bin files: read as records of {} bytes ({}), as {} looks like", layout->bytes, layout->name,

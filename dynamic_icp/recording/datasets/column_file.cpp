@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/datasets/column_file.hpp"
 
+#include <algorithm>
+
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
@@ -17,6 +19,34 @@ constexpr const char* kDopplerColumn = "doppler";
 formats::NpyArray array_of(const formats::PlyColumn& column) {
   const formats::NpyType type = formats::is_float(column.type) ? column.type : formats::NpyType::kInt64;
   return formats::array_of(type, {column.values.size()}, column.values);
+}
+
+/// All columns of a text as one array.
+formats::NpyArray array_of(const formats::CsvTable& table, const std::filesystem::path& path) {
+  std::vector<std::vector<double>> columns;
+  for (const formats::NpyArray& column : table.columns) {
+    columns.push_back(formats::column_as_doubles(column));
+  }
+  const std::size_t rows = columns.empty() ? 0 : columns.front().size();
+  std::vector<double> values;
+  values.reserve(rows * columns.size());
+  for (std::size_t row = 0; row < rows; ++row) {
+    for (const std::vector<double>& column : columns) {
+      values.push_back(column[row]);
+    }
+  }
+  formats::NpyArray array = formats::array_of(formats::NpyType::kFloat64, {rows, columns.size()}, values);
+  array.origin = path.string();
+  return array;
+}
+
+formats::NpyArray column_of(const formats::CsvTable& table, const std::string& name,
+                            const std::filesystem::path& path) {
+  const auto found = std::find(table.names.begin(), table.names.end(), name);
+  if (found == table.names.end()) {
+    throw DataError(fmt::format("{}: has no column '{}'", path.string(), name));
+  }
+  return table.columns[static_cast<std::size_t>(found - table.names.begin())];
 }
 
 const formats::PlyElement& vertices(const formats::PlyFile& file, const std::filesystem::path& path) {
@@ -54,6 +84,18 @@ ColumnFile::ColumnFile(ColumnFileKind kind, const std::filesystem::path& path) :
         }
       }
       break;
+    case ColumnFileKind::kNpy:
+      file_ = NpyFile{path};
+      names_ = {kPointsColumn};
+      break;
+    case ColumnFileKind::kCsv: {
+      const formats::CsvTable& table = file_.emplace<formats::CsvTable>(formats::read_csv(path));
+      names_ = table.names;
+      if (names_.empty() && !table.columns.empty()) {
+        names_ = {kPointsColumn};
+      }
+      break;
+    }
     case ColumnFileKind::kNpyPair:
       file_ = NpyPair{path};
       names_ = {kPointsColumn, kDopplerColumn};
@@ -79,6 +121,12 @@ formats::NpyArray ColumnFile::read(const std::string& name) const {
   }
   if (const auto* const pair = std::get_if<NpyPair>(&file_)) {
     return formats::read_npy(name == kPointsColumn ? pair->points : doppler_file(pair->points));
+  }
+  if (const auto* const npy = std::get_if<NpyFile>(&file_)) {
+    return formats::read_npy(npy->path);
+  }
+  if (const auto* const table = std::get_if<formats::CsvTable>(&file_)) {
+    return table->names.empty() ? array_of(*table, path_) : column_of(*table, name, path_);
   }
   const formats::PlyColumn* const column = vertices(std::get<formats::PlyFile>(file_), path_).find(name);
   if (column == nullptr || column->is_list) {

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "dynamic_icp/recording/datasets/column_scan.hpp"
+#include "dynamic_icp/recording/formats/csv.hpp"
 #include "dynamic_icp/recording/formats/npy.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/pcd_read.hpp"
@@ -21,6 +22,8 @@ enum class ColumnFileKind : std::uint8_t {
   kNpz,
   kPcd,
   kPly,
+  kNpy,     ///< one array of shape (N, 4) or wider
+  kCsv,     ///< text; without a header the one array of all columns
   kNpyPair  ///< points in <name>.npy, an array of shape (N, 3), and Doppler in <name>_dop.npy, of shape (N,)
 };
 
@@ -53,7 +56,11 @@ class ColumnFile final : public NamedColumns {
   std::filesystem::path path_;
   std::vector<std::string> names_;
   std::vector<std::string> unusable_;
-  std::variant<NpyPair, formats::NpzFile, formats::PcdFile, formats::PlyFile> file_;
+  struct NpyFile {
+    std::filesystem::path path;
+  };
+
+  std::variant<NpyPair, NpyFile, formats::CsvTable, formats::NpzFile, formats::PcdFile, formats::PlyFile> file_;
 };
 
 }  // namespace dynamic_icp::datasets

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <fstream>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -11,6 +12,7 @@
 #include "dynamic_icp/recording/datasets/column_scan.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
+#include "dynamic_icp/recording/datasets/named_rows.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
 #include "dynamic_icp/recording/datasets/scan_stamps.hpp"
 #include "dynamic_icp/recording/datasets/truth_search.hpp"
@@ -30,6 +32,9 @@ std::string_view extension(ColumnFileKind kind) {
       return ".pcd";
     case ColumnFileKind::kPly:
       return ".ply";
+    case ColumnFileKind::kCsv:
+      return ".csv";
+    case ColumnFileKind::kNpy:
     case ColumnFileKind::kNpyPair:
       break;
   }
@@ -38,7 +43,50 @@ std::string_view extension(ColumnFileKind kind) {
 
 /// The name of the layout, as --format takes it.
 std::string_view format_name(ColumnFileKind kind) {
-  return kind == ColumnFileKind::kNpyPair ? "npz" : extension(kind).substr(1);
+  const bool is_npy = kind == ColumnFileKind::kNpyPair || kind == ColumnFileKind::kNpy;
+  return is_npy ? "npz" : extension(kind).substr(1);
+}
+
+/// The first bytes of a file; empty where it cannot be read.
+std::string head_of(const fs::path& file) {
+  constexpr std::size_t kHeadBytes = 4096;
+  std::string head(kHeadBytes, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  return head;
+}
+
+/// Whether a text may be a table of points, by its first lines: it is one of numbers, of four columns at least, and
+/// neither named nor headed like one of poses.
+bool is_cloud_table(const fs::path& file) {
+  std::string head = head_of(file);
+  const std::size_t last_line = head.rfind('\n');
+  head.resize(last_line == std::string::npos ? head.size() : last_line);
+  if (head.empty() || head.find('\0') != std::string::npos || is_truth_name(file) || !fs::is_regular_file(file)) {
+    return false;
+  }
+  try {
+    const formats::CsvTable table = formats::parse_csv(head, file.string());
+    const auto is_rotation = [](const std::string& name) { return name == "qw" || name == "q_w" || name == "qx"; };
+    return table.columns.size() >= 4 && formats::rows_of(table.columns.front()) > 0 &&
+           std::none_of(table.names.begin(), table.names.end(), is_rotation);
+  } catch (const DataError&) {
+    return false;
+  }
+}
+
+/// Whether a file is an array of points with their Doppler: of shape (N, 4) or wider.
+bool is_npy_table(const fs::path& file) {
+  if (file.extension() != ".npy" || !fs::is_regular_file(file)) {
+    return false;
+  }
+  try {
+    const formats::NpyHeader header = formats::parse_npy_header(head_of(file), file.string());
+    return header.shape.size() == 2 && header.shape[1] >= 4 && formats::is_float(header.type);
+  } catch (const DataError&) {
+    return false;
+  }
 }
 
 bool is_npy_pair(const fs::path& points) {
@@ -60,11 +108,16 @@ class ColumnDataset final : public Dataset {
       say_what_has_no_doppler(found);
     }
     find_stamps(folder, options.period_s);
-    const ColumnFile first(kind_, files_.front());
+    auto first = std::make_unique<ColumnFile>(kind_, files_.front());
+    const std::vector<std::string> unusable = first->unusable();
+    const ArrayReading reading = read_arrays_as(*first, options, files_.front());
+    assumptions_.insert(assumptions_.end(), reading.assumptions.begin(), reading.assumptions.end());
+    rows_ = reading.rows;
     meaning_ = find_meaning(
-        map_fields(first.names(), options.fields, files_.front().string(), first.unusable()), files_.size(),
+        map_columns(*with_rows(std::move(first), rows_), reading.fields, files_.front().string(), unusable),
+        files_.size(),
         [&](std::size_t i) {
-          return ColumnsOfScan{std::make_unique<ColumnFile>(kind_, files_[i]), files_[i]};
+          return ColumnsOfScan{open(files_[i]), files_[i]};
         },
         options.period_s, assumptions_);
     take_calibration(folder);
@@ -89,7 +142,7 @@ class ColumnDataset final : public Dataset {
 
   [[nodiscard]] RawScan scan(std::size_t index) const override {
     const fs::path& path = files_.at(index);
-    RawScan raw = read_scan(ColumnFile(kind_, path), meaning_, stamps_[index], path);
+    RawScan raw = read_scan(*open(path), meaning_, stamps_[index], path);
     raw.doppler_kind = doppler_kind_;
     set_mountings(path, raw);
     return raw;
@@ -97,13 +150,27 @@ class ColumnDataset final : public Dataset {
 
   [[nodiscard]] std::vector<PointColumn> columns(std::size_t index) const override {
     const fs::path& path = files_.at(index);
-    return other_columns(ColumnFile(kind_, path), meaning_.fields, path);
+    return other_columns(*open(path), meaning_.fields, path);
   }
 
  private:
+  [[nodiscard]] std::unique_ptr<NamedColumns> open(const fs::path& path) const {
+    return with_rows(std::make_unique<ColumnFile>(kind_, path), rows_);
+  }
+
   [[nodiscard]] std::vector<fs::path> scan_files(const fs::path& folder) const {
     const bool pairs = kind_ == ColumnFileKind::kNpyPair;
-    std::vector<fs::path> files = numbered_files(folder, pairs ? kDopplerEnding : extension(kind_));
+    std::vector<fs::path> files = files_ending_with(folder, pairs ? kDopplerEnding : extension(kind_));
+    if (kind_ == ColumnFileKind::kNpy) {
+      std::erase_if(files, [](const fs::path& file) { return !is_npy_table(file); });
+    }
+    if (kind_ == ColumnFileKind::kCsv) {
+      if (files.empty()) {
+        files = files_ending_with(folder, ".txt");
+      }
+      std::erase_if(files, [](const fs::path& file) { return !is_cloud_table(file); });
+    }
+    files = order_names(std::move(files)).files;
     if (pairs) {
       for (fs::path& file : files) {
         const std::string name = file.filename().string();
@@ -111,10 +178,7 @@ class ColumnDataset final : public Dataset {
       }
     }
     if (files.empty()) {
-      throw DataError(
-          fmt::format("{}: no *{} has a number in its name to order the scans by; name one file for a "
-                      "single scan",
-                      folder.string(), extension(kind_)));
+      throw DataError(fmt::format("{}: holds no scans, expected files *{}", folder.string(), extension(kind_)));
     }
     return files;
   }
@@ -133,17 +197,10 @@ class ColumnDataset final : public Dataset {
 
   void find_stamps(const fs::path& folder, double period_s) {
     StampedFiles stamped = stamped_files(files_, period_s);
+    truth_ = take_truth(folder, stamped);
     files_ = std::move(stamped.files);
     stamps_ = std::move(stamped.stamps);
-    std::vector<std::string>& said = stamped.assumptions;
-    const bool are_indices = stamped.are_indices;
-    truth_ = search_truth(folder, stamps_, are_indices, assumptions_);
-    if (are_indices && !truth_.poses.empty()) {
-      std::transform(truth_.poses.begin(), truth_.poses.end(), stamps_.begin(),
-                     [](const formats::StampedPose& pose) { return pose.stamp; });
-      said = {fmt::format("the names of the scans are no times: those of the poses are taken, one for one")};
-    }
-    assumptions_.insert(assumptions_.end(), said.begin(), said.end());
+    assumptions_.insert(assumptions_.end(), stamped.assumptions.begin(), stamped.assumptions.end());
   }
 
   void set_mountings(const fs::path& path, RawScan& raw) const {
@@ -175,6 +232,7 @@ class ColumnDataset final : public Dataset {
   ColumnFileKind kind_;
   std::vector<fs::path> files_;
   std::vector<Stamp> stamps_;
+  NamedRows rows_;
   ColumnMeaning meaning_;
   Calibration calibration_;
   DopplerKind doppler_kind_ = DopplerKind::kRelative;
@@ -193,6 +251,25 @@ bool holds_npy_pairs(const fs::path& folder) {
   return false;
 }
 
+/// Whether a folder has a file of its own that passes.
+bool holds_any(const fs::path& folder, bool (*test)(const fs::path&), std::string_view extension) {
+  std::error_code ignored;
+  for (fs::directory_iterator entry(folder, ignored); !ignored && entry != fs::directory_iterator();
+       entry.increment(ignored)) {
+    if (entry->path().extension() == extension && entry->path().filename().string().front() != '.' &&
+        test(entry->path())) {
+      return true;
+    }
+  }
+  return false;
+}
+
+bool holds_npy_tables(const fs::path& folder) { return holds_any(folder, is_npy_table, ".npy"); }
+
+bool holds_cloud_tables(const fs::path& folder) {
+  return holds_any(folder, is_cloud_table, ".csv") || holds_any(folder, is_cloud_table, ".txt");
+}
+
 fs::path find_files_of(ColumnFileKind kind, const fs::path& input) {
   if (fs::is_regular_file(input)) {
     return input.extension() == extension(kind) ? input : fs::path();
@@ -203,11 +280,24 @@ fs::path find_files_of(ColumnFileKind kind, const fs::path& input) {
 }  // namespace
 
 fs::path find_npz(const fs::path& input) {
-  if (is_npy_pair(input)) {
+  if (fs::is_regular_file(input) && input.extension() == ".npy") {
     return input;
   }
-  const fs::path found = find_files_of(ColumnFileKind::kNpz, input);
-  return found.empty() && fs::is_directory(input) ? find_folder(input, holds_npy_pairs) : found;
+  fs::path found = find_files_of(ColumnFileKind::kNpz, input);
+  if (found.empty() && fs::is_directory(input)) {
+    found = find_folder(input, holds_npy_pairs);
+  }
+  return found.empty() && fs::is_directory(input) ? find_folder(input, holds_npy_tables) : found;
+}
+
+fs::path find_csv(const fs::path& input) {
+  if (fs::is_regular_file(input)) {
+    const fs::path ending = input.extension();
+    return ending == ".csv" || ((ending == ".txt" || ending == ".xyz" || ending == ".asc") && is_cloud_table(input))
+               ? input
+               : fs::path();
+  }
+  return find_folder(input, holds_cloud_tables);
 }
 
 fs::path find_pcd(const fs::path& input) { return find_files_of(ColumnFileKind::kPcd, input); }
@@ -215,8 +305,16 @@ fs::path find_pcd(const fs::path& input) { return find_files_of(ColumnFileKind::
 fs::path find_ply(const fs::path& input) { return find_files_of(ColumnFileKind::kPly, input); }
 
 std::unique_ptr<Dataset> open_npz(const fs::path& found, const OpenOptions& options) {
-  const bool pairs = fs::is_directory(found) ? !holds_files(found, ".npz") : found.extension() == ".npy";
-  return std::make_unique<ColumnDataset>(pairs ? ColumnFileKind::kNpyPair : ColumnFileKind::kNpz, found, options);
+  ColumnFileKind kind = ColumnFileKind::kNpz;
+  if (fs::is_directory(found) ? !holds_files(found, ".npz") : found.extension() == ".npy") {
+    const bool pairs = fs::is_directory(found) ? holds_npy_pairs(found) : is_npy_pair(found);
+    kind = pairs ? ColumnFileKind::kNpyPair : ColumnFileKind::kNpy;
+  }
+  return std::make_unique<ColumnDataset>(kind, found, options);
+}
+
+std::unique_ptr<Dataset> open_csv(const fs::path& found, const OpenOptions& options) {
+  return std::make_unique<ColumnDataset>(ColumnFileKind::kCsv, found, options);
 }
 
 std::unique_ptr<Dataset> open_pcd(const fs::path& found, const OpenOptions& options) {

@@ -210,18 +210,24 @@ TEST_F(ColumnFolder, AScanMayBeEmpty) {
 TEST_F(ColumnFolder, TheSameStampTwiceAndMixedUnitsAreErrors) {
   write_pcd("a_1.pcd", 1);
   write_pcd("b_1.pcd", 1);
+  write_pcd("b_2.pcd", 1);
   expect_message("carries the same number");
   fs::remove(folder_ / "b_1.pcd");
+  fs::remove(folder_ / "b_2.pcd");
   write_pcd("1724479779384.pcd", 1);
   write_pcd("1724479779384000000.pcd", 1);
   fs::remove(folder_ / "a_1.pcd");
   expect_message("another kind of number");
 }
 
-TEST_F(ColumnFolder, FilesWithoutNumbersHaveNoOrder) {
-  write_pcd("cloud.pcd", 1);
-  expect_message("no *.pcd has a number");
-  EXPECT_EQ(open_dataset(folder_ / "cloud.pcd")->size(), 1u);
+TEST_F(ColumnFolder, FilesWithoutNumbersComeInTheOrderOfTheirNames) {
+  write_pcd("second.pcd", 2);
+  write_pcd("first.pcd", 1);
+  const std::unique_ptr<Dataset> dataset = open_dataset(folder_);
+  ASSERT_EQ(dataset->size(), 2U);
+  EXPECT_EQ(dataset->scan(0).points.at(0).x(), 1.0);
+  EXPECT_TRUE(said(*dataset, "no number tells the scans apart"));
+  EXPECT_EQ(open_dataset(folder_ / "first.pcd")->stamp(0).ns, 0);
 }
 
 TEST_F(ColumnFolder, SeveralRecordingsMustBeNamed) {

@@ -9,8 +9,11 @@
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
+#include "dynamic_icp/recording/datasets/pose_file.hpp"
 #include "dynamic_icp/recording/datasets/record_dataset.hpp"
-#include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/datasets/record_shape.hpp"
+#include "dynamic_icp/recording/datasets/stated_records.hpp"
+#include "dynamic_icp/recording/datasets/truth_search.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -21,18 +24,43 @@ constexpr const char* kScans = "point_clouds";
 
 bool is_dicp(const fs::path& folder) { return holds_files(folder / kScans, ".bin"); }
 
-/// The poses carry the stamps, one for each scan; those of the vehicle are taken to the sensor.
-void read_poses(const fs::path& path, RecordRecording& recording) {
-  formats::Trajectory poses = formats::read_tum(path).trajectory;
-  if (poses.size() != recording.scans.files.size()) {
-    throw DataError(fmt::format("{}: {} poses for {} scans, expected one pose per scan (they carry the time stamps)",
-                                path.string(), poses.size(), recording.scans.files.size()));
+/// The poses, one for each scan, carry the stamps where they have some; those of the vehicle are taken to the sensor.
+void read_poses(const fs::path& path, const fs::path& scans, double period_s, RecordRecording& recording) {
+  PoseFile file = read_pose_file(path);
+  if (file.has_stamps) {
+    recording.scans.files = numbered_files(scans, ".bin");
+  } else {
+    recording.scans = stamped_files(scans, ".bin", period_s);
   }
-  for (formats::StampedPose& pose : poses) {
+  if (file.poses.size() != recording.scans.files.size()) {
+    throw DataError(fmt::format("{}: {} poses for {} scans, expected one pose per scan{}", path.string(),
+                                file.poses.size(), recording.scans.files.size(),
+                                file.has_stamps ? " (they carry the time stamps)" : ""));
+  }
+  for (std::size_t i = 0; i < file.poses.size(); ++i) {
+    formats::StampedPose& pose = file.poses[i];
     pose.T_world_sensor = pose.T_world_sensor * recording.T_vehicle_sensor.value_or(Eigen::Isometry3d::Identity());
-    recording.scans.stamps.push_back(pose.stamp);
+    if (file.has_stamps) {
+      recording.scans.stamps.push_back(pose.stamp);
+    } else {
+      pose.stamp = recording.scans.stamps[i];
+    }
   }
-  recording.truth = {std::move(poses), path};
+  recording.truth = {std::move(file.poses), path};
+}
+
+/// Files and stamps of the scans, with the poses where there are any.
+void find_scans(const fs::path& folder, const OpenOptions& options, RecordRecording& recording) {
+  const fs::path scans = is_dicp(folder) ? folder / kScans : folder;
+  if (const fs::path poses = folder / "ref_poses.txt"; fs::exists(poses)) {
+    read_poses(poses, scans, options.period_s, recording);
+    return;
+  }
+  recording.scans = stamped_files(scans, ".bin", options.period_s);
+  for (std::string& sentence : recording.scans.assumptions) {
+    sentence = "no ref_poses.txt: " + sentence;
+  }
+  recording.truth = take_truth(folder, recording.scans);
 }
 
 }  // namespace
@@ -43,10 +71,17 @@ fs::path find_dicp(const fs::path& input) {
   if (whole.filename() == kScans && is_dicp(whole.parent_path())) {
     return whole.parent_path();
   }
+  // One of the scans is a recording of it alone.
+  if (whole.parent_path().filename() == kScans && whole.extension() == ".bin" && fs::is_regular_file(whole)) {
+    return whole;
+  }
   return find_folder(input, is_dicp);
 }
 
 fs::path find_dicp_scans(const fs::path& input) {
+  if (fs::is_regular_file(input)) {
+    return input;
+  }
   const fs::path folder = find_dicp(input);
   if (!folder.empty()) {
     return folder;
@@ -56,7 +91,10 @@ fs::path find_dicp_scans(const fs::path& input) {
   });
 }
 
-std::unique_ptr<Dataset> open_dicp(const fs::path& folder, const OpenOptions& options) {
+std::unique_ptr<Dataset> open_dicp(const fs::path& found, const OpenOptions& options) {
+  const bool is_scan = fs::is_regular_file(found);
+  const fs::path beside = is_scan ? named_path(found).parent_path() : found;
+  const fs::path folder = is_scan && beside.filename() == kScans ? beside.parent_path() : beside;
   RecordRecording recording;
   recording.format = "dicp";
   recording.layout_of = [](const fs::path&, Stamp) -> const formats::RecordLayout& { return formats::kXyzd; };
@@ -73,17 +111,18 @@ std::unique_ptr<Dataset> open_dicp(const fs::path& folder, const OpenOptions& op
                       path.string(), calibration.mountings.size()));
     }
   }
-  const fs::path scans = is_dicp(folder) ? folder / kScans : folder;
-  if (const fs::path poses = folder / "ref_poses.txt"; fs::exists(poses)) {
-    recording.scans.files = numbered_files(scans, ".bin");
-    read_poses(poses, recording);
+  if (is_scan) {
+    recording.scans = stamped_files({found}, options.period_s);
   } else {
-    recording.scans = stamped_files(scans, ".bin", options.period_s);
-    for (std::string& sentence : recording.scans.assumptions) {
-      sentence = "no ref_poses.txt: " + sentence;
-    }
+    find_scans(folder, options, recording);
   }
   recording.scans.assumptions.insert(recording.scans.assumptions.begin(), assumptions.begin(), assumptions.end());
+  if (states_records(options)) {
+    read_as_stated(options, recording);
+  } else if (const std::string other = other_shape(recording.scans.files, 4, formats::NumberType::kFloat32);
+             !other.empty()) {
+    throw DataError(other);
+  }
   return make_record_dataset(std::move(recording));
 }
 

@@ -18,11 +18,12 @@ namespace {
 using Aliases = std::span<const std::string_view>;
 
 constexpr std::array<std::string_view, 4> kPoints = {"points", "xyz", "pts", "positions"};
-constexpr std::array<std::string_view, 15> kDoppler = {"doppler",    "velocity",     "radial_velocity",
-                                                       "radial_vel", "v_radial",     "doppler_velocity",
-                                                       "dopplers",   "velocity_mps", "v_doppler_mps",
-                                                       "range_rate", "vel",          "v_r",
-                                                       "vr",         "rv",           "v"};
+constexpr std::array<std::string_view, 17> kDoppler = {"doppler",      "velocity",     "radial_velocity",
+                                                       "radial_vel",   "v_radial",     "doppler_velocity",
+                                                       "dopplers",     "velocity_mps", "v_doppler_mps",
+                                                       "range_rate",   "vel",          "v_r",
+                                                       "vr",           "rv",           "v",
+                                                       "radial_speed", "speed"};
 constexpr std::array<std::string_view, 11> kTime = {
     "time_offset_ns", "time_offset_s",        "offset_time",    "t", "time_stamp", "timestamp", "time", "time_offset",
     "time_offsets",   "nanosecs_since_frame", "timestamp_nsecs"};
@@ -227,6 +228,12 @@ bool FieldMap::uses(const std::string& array) const {
     used = used || array == point[k].array || (line_of_sight && array == (*line_of_sight)[k].array);
   }
   return used;
+}
+
+bool has_doppler_name(const std::vector<std::string>& names) {
+  return std::any_of(names.begin(), names.end(), [](const std::string& name) {
+    return std::find(kDoppler.begin(), kDoppler.end(), lower_case(name)) != kDoppler.end();
+  });
 }
 
 FieldMap map_fields(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,

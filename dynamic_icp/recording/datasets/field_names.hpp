@@ -48,7 +48,7 @@ struct FieldMap {
 ///
 ///   point          x, y, z; or one array of them: points, xyz, pts, positions
 ///   doppler        doppler, velocity, radial_velocity, radial_vel, v_radial, doppler_velocity, dopplers, velocity_mps,
-///                  v_doppler_mps, range_rate, vel, v_r, vr, rv, v, in this order
+///                  v_doppler_mps, range_rate, vel, v_r, vr, rv, v, radial_speed, speed, in this order
 ///   time           time_offset_ns, time_offset_s, offset_time, t, time_stamp, timestamp, time, time_offset,
 ///                  time_offsets, nanosecs_since_frame, timestamp_nsecs, in this order
 ///   line of sight  los or directions, or los_x, los_y, los_z
@@ -65,5 +65,8 @@ struct FieldMap {
 /// they are not among the names.
 FieldMap map_fields(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
                     const std::string& origin, const std::vector<std::string>& unusable = {});
+
+/// Whether one of the names is one of a Doppler.
+bool has_doppler_name(const std::vector<std::string>& names);
 
 }  // namespace dynamic_icp::datasets

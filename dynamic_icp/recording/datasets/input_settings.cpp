@@ -10,17 +10,26 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/parse_number.hpp"
+#include "dynamic_icp/recording/datasets/field_names.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
 
 constexpr std::array<std::string_view, 4> kColumnNames = {"x", "y", "z", "doppler"};
+constexpr std::size_t kMostColumns = 64;
 constexpr double kMinPeriod_s = 1e-6;
 constexpr double kMaxPeriod_s = 3600.0;
 constexpr double kMaxScale = 1e9;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& text, std::string_view expected) {
   throw UsageError(fmt::format("{} is '{}', expected {}", name, text, expected));
+}
+
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
 }
 
 double number(const std::string& name, const std::string& text, double least, double most, std::string_view unit) {
@@ -39,22 +48,56 @@ bool is_second(const std::string& name, const std::string& text, std::string_vie
   return text == second;
 }
 
-std::array<int, 4> columns(const std::string& name, const std::string& text) {
-  std::array<int, 4> where = {-1, -1, -1, -1};
-  std::string_view rest = text;
-  for (int stored = 0; stored < 4; ++stored) {
+std::vector<std::string> names_in(const std::string& name, const std::string& text) {
+  std::vector<std::string> names;
+  for (std::string_view rest = text;;) {
     const std::size_t end = std::min(rest.find(','), rest.size());
-    const auto found = std::find(kColumnNames.begin(), kColumnNames.end(), rest.substr(0, end));
-    if (found == kColumnNames.end()) {
-      refuse(name, text, "x, y, z and doppler, each once, with commas: what the stored columns are");
+    names.push_back(lower_case(rest.substr(0, end)));
+    if (names.back().empty() || names.size() > kMostColumns) {
+      refuse(name, text,
+             fmt::format("up to {} names with commas: x, y, z, doppler, _ for what is not used, ...", kMostColumns));
     }
-    where.at(static_cast<std::size_t>(found - kColumnNames.begin())) = stored;
-    rest.remove_prefix(std::min(end + 1, rest.size()));
+    if (end == rest.size()) {
+      return names;
+    }
+    rest.remove_prefix(end + 1);
   }
-  if (!rest.empty() || std::count(where.begin(), where.end(), -1) > 0) {
-    refuse(name, text, "x, y, z and doppler, each once, with commas: what the stored columns are");
+}
+
+/// Where x, y, z and Doppler stand where the names are these four, each once; nothing else.
+std::optional<std::array<int, 4>> permutation_of(const std::vector<std::string>& names) {
+  std::array<int, 4> where = {-1, -1, -1, -1};
+  for (std::size_t stored = 0; stored < names.size(); ++stored) {
+    const auto found = std::find(kColumnNames.begin(), kColumnNames.end(), names[stored]);
+    if (found == kColumnNames.end() || names.size() != kColumnNames.size()) {
+      return std::nullopt;
+    }
+    where.at(static_cast<std::size_t>(found - kColumnNames.begin())) = static_cast<int>(stored);
   }
-  return where;
+  return std::count(where.begin(), where.end(), -1) == 0 ? std::optional(where) : std::nullopt;
+}
+
+/// Four of these names in another order change the columns as read, whatever the layout; more, or others, say what
+/// numbers without names are.
+void set_columns(InputSettings& settings, const std::string& name, const std::string& text) {
+  const std::vector<std::string> names = names_in(name, text);
+  settings.correction.columns = permutation_of(names);
+  settings.open.columns = settings.correction.columns ? std::vector<std::string>() : names;
+  if (settings.correction.columns) {
+    return;
+  }
+  std::vector<std::string> used = names;
+  std::erase(used, "_");
+  std::sort(used.begin(), used.end());
+  try {
+    if (std::adjacent_find(used.begin(), used.end()) != used.end()) {
+      throw DataError("named twice");
+    }
+    (void)map_fields(used, {}, name);
+  } catch (const DataError&) {
+    refuse(name, text,
+           "x, y, z and doppler, each once, and _ for what is not used, with commas: what the stored columns are");
+  }
 }
 
 std::string stored_columns(const std::array<int, 4>& columns) {
@@ -73,7 +116,7 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
   if (name == "format") {
     settings.open.format = text;
   } else if (name.starts_with("field.")) {
-    settings.open.fields[name.substr(6)] = text;
+    settings.open.fields[lower_case(name.substr(6))] = text;
   } else if (name.starts_with("lidar.")) {
     settings.open.sensors.push_back(text);
   } else if (name.starts_with("topic.")) {
@@ -94,7 +137,13 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
   } else if (name == "time-scale") {
     correction.time_scale = scale();
   } else if (name == "columns") {
-    correction.columns = columns(name, text);
+    set_columns(settings, name, text);
+  } else if (name == "dtype") {
+    const std::vector<std::string> known = record_types();
+    if (std::find(known.begin(), known.end(), text) == known.end()) {
+      refuse(name, text, fmt::format("one of: {}", fmt::join(known, ", ")));
+    }
+    settings.open.dtype = text;
   } else {
     throw UsageError(fmt::format("unknown setting of an input '{}'", name));
   }
@@ -119,6 +168,12 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
   if (!settings.open.truth_topic.empty()) {
     all.emplace_back("truth-topic", settings.open.truth_topic);
   }
+  if (!settings.open.columns.empty()) {
+    all.emplace_back("columns", fmt::format("{}", fmt::join(settings.open.columns, ",")));
+  }
+  if (!settings.open.dtype.empty()) {
+    all.emplace_back("dtype", settings.open.dtype);
+  }
   if (settings.open.period_s != OpenOptions{}.period_s) {
     add_number("period", settings.open.period_s);
   }
@@ -140,7 +195,11 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
 
 std::unique_ptr<Dataset> open_input(const std::filesystem::path& input, const InputSettings& settings) {
   check(settings.correction);
-  return corrected(open_dataset(input, settings.open), settings.correction);
+  OpenOptions open = settings.open;
+  if (settings.correction.columns && open.columns.empty()) {
+    open.columns.assign(kColumnNames.begin(), kColumnNames.end());  // four of them, which the correction puts in order
+  }
+  return corrected(open_dataset(input, open), settings.correction);
 }
 
 }  // namespace dynamic_icp::datasets

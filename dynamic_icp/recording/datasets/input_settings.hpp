@@ -25,9 +25,10 @@ struct InputSettings {
 inline void apply(const Correction& correction, InputSettings& settings) { settings.correction.apply(correction); }
 
 /// Takes over one of them:
-///   format NAME, field.NAME COLUMN, lidar.NUMBER NAME, topic.NUMBER NAME, truth-topic NAME, period S, doppler-sign
-///   away|towards, doppler-kind relative|compensated, doppler-scale F, point-scale F, time-scale F, columns: x, y, z
-///   and doppler with commas, in the order in which they are stored.
+///   format NAME, field.NAME COLUMN, lidar.NUMBER NAME, topic.NUMBER NAME, truth-topic NAME, period S,
+///   doppler-sign away|towards, doppler-kind relative|compensated, doppler-scale F, point-scale F, time-scale F,
+///   columns: x, y, z and doppler with commas, in the order in which they are stored; or what each number of a record
+///   without names is ("x,y,z,_,doppler"), dtype TYPE of these numbers.
 /// Throws UsageError naming the setting, its value and what was expected.
 void set(InputSettings& settings, const std::string& name, const std::string& text);
 

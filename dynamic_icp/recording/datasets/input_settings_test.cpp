@@ -60,7 +60,10 @@ TEST(InputSettings, WrongTextsAreNamed) {
                        {"point-scale", "inf"},
                        {"time-scale", "1e30"},
                        {"columns", "x,y,z"},
-                       {"columns", "x,y,z,speed"},
+                       {"columns", "x,y,z,colour"},
+                       {"columns", "x,y,z,_,_"},
+                       {"columns", "x,y,z,doppler,"},
+                       {"dtype", "float"},
                        {"columns", "x,x,z,doppler"},
                        {"columns", "x,y,z,doppler,x"},
                        {"colour", "red"}};
@@ -73,6 +76,21 @@ TEST(InputSettings, WrongTextsAreNamed) {
       EXPECT_NE(std::string(error.what()).find(name), std::string::npos) << error.what();
     }
   }
+}
+
+// Four names in another order change what was read; others say what there is to read.
+TEST(InputSettings, ColumnsAreAnOrderOrARecord) {
+  InputSettings settings;
+  set(settings, "columns", "x,y,doppler,z");
+  EXPECT_EQ(settings.correction.columns, (std::array<int, 4>{0, 1, 3, 2}));
+  EXPECT_TRUE(settings.open.columns.empty());
+  set(settings, "columns", "X,y,z,_,Doppler");
+  set(settings, "dtype", "float64");
+  set(settings, "field.Points", "cloud");
+  EXPECT_FALSE(settings.correction.columns);
+  EXPECT_EQ(settings.open.columns, (std::vector<std::string>{"x", "y", "z", "_", "doppler"}));
+  EXPECT_EQ(settings.open.fields.at("points"), "cloud");
+  EXPECT_EQ(texts(settings), (Texts{{"field.points", "cloud"}, {"columns", "x,y,z,_,doppler"}, {"dtype", "float64"}}));
 }
 
 }  // namespace

@@ -13,9 +13,10 @@
 namespace dynamic_icp::datasets {
 
 /// Whether the folder (or one up to three levels below it) holds `point_clouds/*.bin`; the folder that does, or empty.
+/// A file of such a folder is one itself.
 std::filesystem::path find_dicp(const std::filesystem::path& input);
 
-/// The same, or else a folder of *.bin files or one named velodyne: for when the user names the format.
+/// The same, or else any file, a folder of *.bin files or one named velodyne: for when the user names the format.
 std::filesystem::path find_dicp_scans(const std::filesystem::path& input);
 
 /// The layout of the Doppler-ICP data, which is also the plain one for interchange:
@@ -25,8 +26,10 @@ std::filesystem::path find_dicp_scans(const std::filesystem::path& input);
 ///   calibration.json            optional: pose of the sensor in the vehicle; ref_poses.txt then holds vehicle poses
 ///                               (calibration.hpp)
 /// Scans are ordered by the number in their file name. Without ref_poses.txt the names may be time stamps; else the
-/// period of the options is assumed. A folder without point_clouds/ holds the scans itself.
-std::unique_ptr<Dataset> open_dicp(const std::filesystem::path& folder, const OpenOptions& options = {});
+/// period of the options is assumed. A folder without point_clouds/ holds the scans itself; a file is a recording of
+/// one scan. Records of another kind are read where the user states them (stated_records.hpp); where sizes and content
+/// of the files say that they are of another kind and the user does not, a DataError has the option that states it.
+std::unique_ptr<Dataset> open_dicp(const std::filesystem::path& found, const OpenOptions& options = {});
 
 /// The folder of a recording of HeRCULES, up to three levels below `input`; empty when there is none.
 std::filesystem::path find_hercules(const std::filesystem::path& input);
@@ -102,23 +105,26 @@ std::filesystem::path find_aevascenes(const std::filesystem::path& input);
 /// and for fields, whose names are known here.
 std::unique_ptr<Dataset> open_aevascenes(const std::filesystem::path& found, const OpenOptions& options = {});
 
-// Recordings of files whose columns have names, one a scan: archives of NumPy arrays (*.npz), PCD or PLY. Which column
-// says what is found by its name (field_names.hpp), once for all scans, as is the unit of the times of points
+// Recordings of files whose columns have names, one a scan: archives of NumPy arrays (*.npz), PCD, PLY or text. Which
+// column says what is found by its name (field_names.hpp), once for all scans, as is the unit of the times of points
 // (point_times.hpp), for which opening reads one scan. Stamps are in the names of the files (scan_stamps.hpp), ground
 // truth is looked for beside them (truth_search.hpp), and a calibration.json (calibration.hpp): the poses of the truth
 // are those of the scans' frame all the same. What is called compensated holds compensated Doppler.
 
 /// The file or the folder of such files that the input is, or that lies up to three levels below it; else empty. Throws
 /// DataError that lists them when there are several.
-std::filesystem::path find_npz(const std::filesystem::path& input);  ///< or pairs <name>.npy and <name>_dop.npy
+std::filesystem::path find_npz(
+    const std::filesystem::path& input);  ///< or pairs <name>.npy and <name>_dop.npy, or *.npy of shape (N, 4+)
 std::filesystem::path find_pcd(const std::filesystem::path& input);
 std::filesystem::path find_ply(const std::filesystem::path& input);
+std::filesystem::path find_csv(const std::filesystem::path& input);  ///< *.csv of points, else *.txt
 
 /// Opens one of them. Throws DataError naming file, place and what was expected; UsageError for sensors, which such
 /// files do not have, and for unknown fields.
 std::unique_ptr<Dataset> open_npz(const std::filesystem::path& found, const OpenOptions& options = {});
 std::unique_ptr<Dataset> open_pcd(const std::filesystem::path& found, const OpenOptions& options = {});
 std::unique_ptr<Dataset> open_ply(const std::filesystem::path& found, const OpenOptions& options = {});
+std::unique_ptr<Dataset> open_csv(const std::filesystem::path& found, const OpenOptions& options = {});
 
 // Recordings of messages, whatever their container: a bag of ROS 1, one of ROS 2 (a folder with metadata.yaml, or a
 // *.db3 file), an MCAP file alone. bag_dataset.hpp says how clouds become scans.
@@ -132,13 +138,18 @@ std::filesystem::path find_mcap(const std::filesystem::path& input);
 /// Opens any of them.
 std::unique_ptr<Dataset> open_bag(const std::filesystem::path& found, const OpenOptions& options = {});
 
-/// A folder of *.bin files that nothing else was recognised by: `input` itself, or one named velodyne up to three
-/// levels below it; empty when there is none.
+/// A file *.bin, or a folder of such files that nothing else was recognised by: `input` itself, or one named velodyne
+/// up to three levels below it; empty when there is none.
 std::filesystem::path find_bin_folder(const std::filesystem::path& input);
 
-/// Its scans, in records of the layout that the content of the first looks like, which is said among the assumptions.
-/// A folder named velodyne is of the radar of View-of-Delft or refused. Throws DataError when it looks like none, and
-/// for scans of KITTI, which have no Doppler.
-std::unique_ptr<Dataset> open_bin_folder(const std::filesystem::path& folder, const OpenOptions& options = {});
+/// The same, any file, the folder point_clouds/ of a recording or the only one below that holds *.bin: for when the
+/// user names the format.
+std::filesystem::path find_bin_scans(const std::filesystem::path& input);
+
+/// Its scans, in the records that the user states, else those of the layout that the content of the first looks like,
+/// which is said among the assumptions. A folder named velodyne is of the radar of View-of-Delft, stated or refused.
+/// Ground truth is looked for beside them. Throws DataError when the content looks like no layout, with the option that
+/// states what it may be instead, and for scans of KITTI, which have no Doppler.
+std::unique_ptr<Dataset> open_bin_folder(const std::filesystem::path& found, const OpenOptions& options = {});
 
 }  // namespace dynamic_icp::datasets

@@ -50,6 +50,15 @@ TEST_F(NumberedFiles, TheSameNumberTwiceIsAnError) {
   EXPECT_THROW(names(), DataError);
 }
 
+// By the last run of digits alone they would come as 0, 1, 2.
+TEST_F(NumberedFiles, SecondsGoBeforeTheirFractions) {
+  for (const char* name : {"1700000001.000000000.bin", "1700000000.100000000.bin", "1700000000.900000000.bin"}) {
+    make(name);
+  }
+  EXPECT_EQ(names(), (std::vector<std::string>{"1700000000.100000000.bin", "1700000000.900000000.bin",
+                                               "1700000001.000000000.bin"}));
+}
+
 TEST_F(NumberedFiles, AMissingFolderIsAnError) { EXPECT_THROW(numbered_files(folder_ / "no", ".bin"), DataError); }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <numeric>
 #include <optional>
 #include <system_error>
 
@@ -21,7 +22,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestIndex = 9;  // digits
-constexpr std::size_t kSecondsDigits = 10;
 constexpr std::size_t kDecimals = 9;
 constexpr std::size_t kNanosecondDigits = 19;
 // Half of the range of 64 bits, so that the difference of any two stamps fits as well.
@@ -34,36 +34,52 @@ struct NamedTime {
   std::string fraction;  ///< those after it; empty: none
 };
 
-NamedTime time_in(const fs::path& file) {
+/// The digits that tell the time or the index, by what tells the names apart; empty: none do.
+std::string_view telling_digits(std::string_view stem, const OrderedNames& names) {
+  const std::vector<std::string_view> runs = digit_runs(stem);
+  switch (names.order) {
+    case NameOrder::kSeconds:
+    case NameOrder::kLastNumber:
+      return runs.empty() ? std::string_view() : runs.back();
+    case NameOrder::kOneNumber:
+      return runs[names.number];
+    case NameOrder::kAllNumbers:
+    case NameOrder::kText:
+      break;
+  }
+  return {};
+}
+
+NamedTime time_in(const fs::path& file, const OrderedNames& names) {
   const std::string stem = file.stem().string();
-  const std::string_view digits = last_digits(stem);
+  const std::string_view digits = telling_digits(stem, names);
+  if (names.order == NameOrder::kSeconds) {
+    const std::string_view before = std::string_view(stem).substr(0, stem.size() - digits.size() - 1);
+    return {file, std::string(last_digits(before)), std::string(digits)};
+  }
   // Zeros in front are those of an index, however many; but 19 digits are nanoseconds, also soon after time 0.
   const bool counts_ns = digits.size() == kNanosecondDigits;
   const std::size_t nonzero =
       counts_ns || digits.empty() ? 0 : std::min(digits.find_first_not_of('0'), digits.size() - 1);
-  NamedTime named{file, std::string(digits.substr(nonzero)), {}};
-  const std::size_t first = stem.rfind(digits);
-  if (!digits.empty() && first > 0 && stem[first - 1] == '.') {
-    const std::string_view before = std::string_view(stem).substr(0, first - 1);
-    const std::string_view whole = last_digits(before);
-    if (whole.size() == kSecondsDigits && whole.front() != '0' && before.ends_with(whole)) {
-      named.whole = whole;
-      named.fraction = digits;
-    }
-  }
-  return named;
+  return {file, std::string(digits.substr(nonzero)), {}};
 }
 
 bool is_index(const NamedTime& named) { return named.fraction.empty() && named.whole.size() <= kLongestIndex; }
 
 /// Names of one kind can be compared: indices, or times of one unit.
 bool same_kind(const NamedTime& a, const NamedTime& b) {
+  if (!a.fraction.empty() && !b.fraction.empty()) {
+    return true;  // seconds, of simulated time too
+  }
   return is_index(a) || is_index(b) ? is_index(a) == is_index(b)
                                     : a.whole.size() == b.whole.size() && a.fraction.empty() == b.fraction.empty();
 }
 
 /// The index, or Unix time in ns.
 Stamp whole_stamp(const NamedTime& named) {
+  if (!named.fraction.empty()) {
+    return parse_seconds(named.whole).value_or(Stamp{});
+  }
   if (is_index(named)) {
     Stamp index;
     std::from_chars(named.whole.data(), named.whole.data() + named.whole.size(), index.ns);
@@ -116,32 +132,11 @@ bool counts_nanoseconds(const std::vector<NamedTime>& times, std::vector<std::st
   return nanoseconds;
 }
 
-std::vector<fs::path> files_with_digits(const fs::path& folder, std::string_view extension) {
-  std::vector<fs::path> files;
-  std::error_code fault;
-  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
-       entry.increment(fault)) {
-    const fs::path& path = entry->path();
-    if (path.extension() == extension && path.filename().string().front() != '.') {
-      if (!last_digits(path.stem().string()).empty()) {
-        files.push_back(path);
-      }
-    }
-  }
-  if (fault) {
-    throw DataError(fmt::format("{}: cannot read the folder: {}", folder.string(), fault.message()));
-  }
-  if (files.empty()) {
-    throw DataError(fmt::format("{}: holds no scans, expected files *{} with numbers or time stamps as names",
-                                folder.string(), extension));
-  }
-  return files;
-}
-
-std::vector<NamedTime> times_in(const std::vector<fs::path>& files) {
+/// What the names say, in their order. Throws DataError where they are of several kinds.
+std::vector<NamedTime> times_in(const OrderedNames& names) {
   std::vector<NamedTime> times;
-  for (const fs::path& file : files) {
-    times.push_back(time_in(file));
+  for (const fs::path& file : names.files) {
+    times.push_back(time_in(file, names));
   }
   // An order that does not depend on that of the folder, for messages.
   std::sort(times.begin(), times.end(), [](const NamedTime& a, const NamedTime& b) { return a.file < b.file; });
@@ -156,14 +151,57 @@ std::vector<NamedTime> times_in(const std::vector<fs::path>& files) {
   return times;
 }
 
+/// Scans that are a period apart, in the order of their names.
+StampedFiles counted_files(OrderedNames names, double period_s) {
+  StampedFiles result;
+  result.are_indices = true;
+  for (std::size_t i = 0; i < names.files.size(); ++i) {
+    result.stamps.push_back(Stamp{std::llround(1e9 * period_s * static_cast<double>(i))});
+  }
+  result.files = std::move(names.files);
+  if (result.files.size() > 1) {
+    result.assumptions.push_back(fmt::format("{} the names of the scans, {} first: a scan period of {} s is assumed",
+                                             names.order == NameOrder::kText
+                                                 ? "no number tells the scans apart: they are in the order of"
+                                                 : "several numbers together are the order of",
+                                             result.files.front().filename().string(), period_s));
+  }
+  return result;
+}
+
+/// What is assumed of the period of scans whose names are indices.
+std::string period_sentence(const std::vector<Stamp>& indices, double period_s) {
+  std::string sentence =
+      fmt::format("the names of the scans are numbers, not times: a scan period of {} s is assumed", period_s);
+  std::int64_t step = 0;
+  for (std::size_t i = 1; i < indices.size(); ++i) {
+    step = std::gcd(step, indices[i].ns - indices[i - 1].ns);
+  }
+  if (indices.size() > 2 && step > 1) {
+    sentence +=
+        fmt::format(" for each number; they go up in steps of {}: if no scans are missing, state --period {:.6g}", step,
+                    period_s / static_cast<double>(step));
+  }
+  return sentence;
+}
+
 }  // namespace
 
 StampedFiles stamped_files(const fs::path& folder, std::string_view extension, double period_s) {
-  return stamped_files(files_with_digits(folder, extension), period_s);
+  const std::vector<fs::path> files = files_ending_with(folder, extension);
+  if (files.empty()) {
+    throw DataError(fmt::format("{}: holds no scans, expected files *{} with numbers or time stamps as names",
+                                folder.string(), extension));
+  }
+  return stamped_files(files, period_s);
 }
 
 StampedFiles stamped_files(const std::vector<fs::path>& files, double period_s) {
-  std::vector<NamedTime> times = times_in(files);
+  OrderedNames names = order_names(files);
+  if (names.order == NameOrder::kAllNumbers || names.order == NameOrder::kText) {
+    return counted_files(std::move(names), period_s);
+  }
+  std::vector<NamedTime> times = times_in(names);
   StampedFiles result;
   std::vector<std::pair<Stamp, fs::path>> scans;
   const bool indices = is_index(times.front());
@@ -180,15 +218,16 @@ StampedFiles stamped_files(const std::vector<fs::path>& files, double period_s) 
                                   indices ? "number" : "time stamp", scans[i - 1].second.filename().string()));
     }
   }
-  const double period_ns = 1e9 * period_s;
-  const std::int64_t first = scans.front().first.ns;
   for (auto& [stamp, file] : scans) {
-    result.stamps.push_back(indices ? Stamp{std::llround(period_ns * static_cast<double>(stamp.ns - first))} : stamp);
+    result.stamps.push_back(stamp);
     result.files.push_back(std::move(file));
   }
   if (indices) {
-    result.assumptions.push_back(
-        fmt::format("the names of the scans are numbers, not times: a scan period of {} s is assumed", period_s));
+    result.assumptions.push_back(period_sentence(result.stamps, period_s));
+    const std::int64_t first = result.stamps.front().ns;
+    for (Stamp& stamp : result.stamps) {
+      stamp.ns = std::llround(1e9 * period_s * static_cast<double>(stamp.ns - first));
+    }
   }
   return result;
 }

@@ -76,6 +76,41 @@ TEST_F(ScanStamps, DecimalSecondsAreExact) {
             (Ns{1'724'479'779'380'000'000, 1'724'479'779'480'000'000}));
 }
 
+// pcl_ros writes "<seconds>.<nanoseconds>"; a clock that is simulated begins near 0.
+TEST_F(ScanStamps, SecondsAndNanosecondsAreOneNumber) {
+  EXPECT_EQ(stamps({"1700000000.000000000.bin", "1700000001.000000000.bin", "1700000000.900000000.bin"}),
+            (Ns{1'700'000'000'000'000'000, 1'700'000'000'900'000'000, 1'700'000'001'000'000'000}));
+  EXPECT_EQ(stamps({"cloud_9.900000000.bin", "cloud_10.100000000.bin", "cloud_10.000000000.bin"}),
+            (Ns{9'900'000'000, 10'000'000'000, 10'100'000'000}));
+  EXPECT_EQ(stamps({"1700000000.100.bin", "1700000001.100.bin"}),
+            (Ns{1'700'000'000'100'000'000, 1'700'000'001'100'000'000}));
+}
+
+TEST_F(ScanStamps, TheNumberThatDiffersCounts) {
+  const StampedFiles scans = read({"cloud_10_run2.bin", "cloud_0_run2.bin", "cloud_1_run2.bin"});
+  EXPECT_EQ(scans.stamps, (std::vector<Stamp>{{0}, {100'000'000}, {1'000'000'000}}));
+  EXPECT_EQ(scans.files.back().filename(), "cloud_10_run2.bin");
+  EXPECT_EQ(stamps({"1724479779384729506_lidar0.bin", "1724479779484729506_lidar0.bin"}),
+            (Ns{1'724'479'779'384'729'506, 1'724'479'779'484'729'506}));
+}
+
+TEST_F(ScanStamps, SeveralNumbersTogetherOrNoneGiveAnOrderAndAPeriod) {
+  const StampedFiles several = read({"2_0.bin", "10_0.bin", "2_1.bin"});
+  EXPECT_EQ(several.files.back().filename(), "10_0.bin");
+  EXPECT_EQ(several.stamps, (std::vector<Stamp>{{0}, {100'000'000}, {200'000'000}}));
+  EXPECT_NE(several.assumptions.at(0).find("2_0.bin first: a scan period of 0.1 s"), std::string::npos);
+  const StampedFiles none = read({"c_1.bin", "a_1.bin", "b_1.bin"});
+  EXPECT_EQ(none.files.front().filename(), "a_1.bin");
+  EXPECT_EQ(none.stamps.back().ns, 200'000'000);
+  EXPECT_NE(none.assumptions.at(0).find("no number tells the scans apart"), std::string::npos);
+  EXPECT_EQ(read({"last.bin", "first.bin"}).files.front().filename(), "first.bin");
+}
+
+TEST_F(ScanStamps, StepsOfSeveralAreSaidWithThePeriodThatMayBeMeant) {
+  EXPECT_NE(read({"0.bin", "10.bin", "20.bin"}).assumptions.at(0).find("--period 0.01"), std::string::npos);
+  EXPECT_EQ(read({"0.bin", "10.bin", "15.bin", "16.bin"}).assumptions.at(0).find("--period"), std::string::npos);
+}
+
 TEST_F(ScanStamps, FractionsOfSeveralLengthsAreDecimalsOrNanosecondsAndItIsSaid) {
   const StampedFiles decimals = read({"1724479779.05.bin", "1724479779.15.bin", "1724479779.2.bin"});
   EXPECT_EQ(decimals.stamps.at(2).ns, 1'724'479'779'200'000'000);
@@ -133,7 +168,7 @@ TEST_F(ScanStamps, WhatIsNoTimeNamesTheFile) {
             std::string::npos)
       << mixed;
   EXPECT_NE(fault({"1724479779384729506.bin", "1724479779384729.bin"}).find("another kind"), std::string::npos);
-  EXPECT_NE(fault({"notes.bin"}).find(folder_.string() + ": holds no scans"), std::string::npos);
+  EXPECT_NE(fault({}).find(folder_.string() + ": holds no scans"), std::string::npos);
   EXPECT_NE(fault({}).find("expected files *.bin"), std::string::npos);
   fs::remove_all(folder_);
   EXPECT_THROW(stamped_files(folder_, ".bin", 0.1), DataError);

@@ -9,7 +9,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
-#include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/datasets/pose_file.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -18,11 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr double kNear_s = 0.2;
 
-bool is_candidate(const fs::directory_entry& entry) {
-  const std::string name = entry.path().filename().string();
-  return name == "ref_poses.txt" || name == "ground_truth.txt" || name == "gt.txt" || name == "poses.txt" ||
-         (name.ends_with("_gt.txt") && name.front() != '.');
-}
+bool is_candidate(const fs::directory_entry& entry) { return is_truth_name(entry.path()); }
 
 bool is_near(const formats::Trajectory& poses, Stamp stamp) {
   const auto after = std::lower_bound(poses.begin(), poses.end(), stamp,
@@ -49,10 +45,14 @@ std::vector<Truth> fitting_in(const fs::path& folder, const std::vector<Stamp>& 
   std::vector<Truth> fitting;
   for (const fs::path& path : entries_of(folder, is_candidate)) {
     try {
-      formats::Trajectory poses = formats::read_tum(path).trajectory;
-      const std::string reason = misfit(poses, stamps, stamps_are_indices);
+      PoseFile file = read_pose_file(path);
+      const bool one_for_one = stamps_are_indices || !file.has_stamps;
+      const std::string reason = misfit(file.poses, stamps, one_for_one);
       if (reason.empty()) {
-        fitting.push_back({std::move(poses), path});
+        for (std::size_t i = 0; !file.has_stamps && i < stamps.size(); ++i) {
+          file.poses[i].stamp = stamps[i];
+        }
+        fitting.push_back({std::move(file.poses), path});
       } else {
         assumptions.push_back(fmt::format("{}: is not used as ground truth: {}", path.string(), reason));
       }
@@ -64,6 +64,15 @@ std::vector<Truth> fitting_in(const fs::path& folder, const std::vector<Stamp>& 
 }
 
 }  // namespace
+
+bool is_truth_name(const fs::path& file) {
+  const std::string name = file.stem().string();
+  const fs::path ending = file.extension();
+  const bool is_text = ending == ".txt" || ending == ".csv" || ending == ".tum";
+  const bool is_named = name == "ref_poses" || name == "ground_truth" || name == "groundtruth" || name == "gt" ||
+                        name == "poses" || name == "gt_poses" || name.ends_with("_gt") || name.ends_with("_poses");
+  return is_text && is_named && name.front() != '.';
+}
 
 Truth search_truth(const fs::path& folder, const std::vector<Stamp>& stamps, bool stamps_are_indices,
                    std::vector<std::string>& assumptions) {
@@ -83,6 +92,18 @@ Truth search_truth(const fs::path& folder, const std::vector<Stamp>& stamps, boo
     }
   }
   return {};
+}
+
+Truth take_truth(const fs::path& folder, StampedFiles& scans) {
+  std::vector<std::string> said;
+  Truth truth = search_truth(folder, scans.stamps, scans.are_indices, said);
+  if (scans.are_indices && !truth.poses.empty()) {
+    std::transform(truth.poses.begin(), truth.poses.end(), scans.stamps.begin(),
+                   [](const formats::StampedPose& pose) { return pose.stamp; });
+    scans.assumptions = {"the names of the scans are no times: those of the poses are taken, one for one"};
+  }
+  scans.assumptions.insert(scans.assumptions.begin(), said.begin(), said.end());
+  return truth;
 }
 
 }  // namespace dynamic_icp::datasets

@@ -80,7 +80,28 @@ TEST_F(TruthSearch, OfSeveralNoneIsTaken) {
   EXPECT_EQ(find().file, folder_ / "ground_truth.txt") << "the nearer one";
   formats::write_whole_file(folder_ / "ground_truth.txt", "1 2 3 4 5 6 7 8 9 10 11 12\n");
   EXPECT_EQ(find().file, above_ / "ref_poses.txt");
-  EXPECT_TRUE(said("12 columns"));
+  EXPECT_TRUE(said("no rotation"));
+}
+
+TEST_F(TruthSearch, PosesOfKittiOneForEachScanAndTablesWithNames) {
+  std::string kitti;
+  for (int i = 0; i < 4; ++i) {
+    kitti += "1 0 0 " + std::to_string(i) + " 0 1 0 0 0 0 1 0\n";
+  }
+  formats::write_whole_file(folder_ / "poses.txt", kitti);
+  const Truth by_count = find();
+  ASSERT_EQ(by_count.poses.size(), 4u);
+  EXPECT_EQ(by_count.poses[3].stamp, stamps_[3]);
+  EXPECT_EQ(by_count.poses[3].T_world_sensor.translation().x(), 3.0);
+  formats::write_whole_file(folder_ / "times.txt", "5\n6\n7\n8\n");
+  EXPECT_TRUE(find().poses.empty()) << "they say another time";
+  fs::remove(folder_ / "poses.txt");
+  formats::write_whole_file(folder_ / "gt.csv",
+                            "qw,qx,qy,qz,timestamp_ns,ty,tx,tz\n1,0,0,0,1000000000,2,1,3\n1,0,0,0,1300000000,5,4,6\n");
+  const Truth table = find();
+  ASSERT_EQ(table.poses.size(), 2u);
+  EXPECT_EQ(table.poses[1].stamp.ns, 1'300'000'000);
+  EXPECT_EQ(table.poses[1].T_world_sensor.translation(), Eigen::Vector3d(4, 5, 6));
 }
 
 TEST_F(TruthSearch, ASlashAtTheEndIsNoOtherFolder) {

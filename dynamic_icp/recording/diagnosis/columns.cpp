@@ -61,7 +61,8 @@ std::optional<int> forward_axis(const View& view, int up) {
 
 /// Whether another one may be named to be the Doppler.
 bool has_named_columns(const datasets::Dataset& dataset) {
-  return dataset.format() == "npz" || dataset.format() == "pcd" || dataset.format() == "ply";
+  return dataset.format() == "npz" || dataset.format() == "pcd" || dataset.format() == "ply" ||
+         dataset.format() == "csv";
 }
 
 /// Which of the columns as read are x, y, z and Doppler. Without an axis ahead x and y keep their order.

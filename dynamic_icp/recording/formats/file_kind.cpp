@@ -39,6 +39,13 @@ constexpr Mark kMarks[] = {
     {"# .PCD ", FileKind::kPcd},
     {"VERSION ", FileKind::kPcd},  // some writers leave the comment out,
     {"FIELDS ", FileKind::kPcd},   // others the version too
+    {"LASF", FileKind::kLas},
+    {"ASTM-E57", FileKind::kE57},
+    {"\x89HDF\r\n\x1A\n", FileKind::kHdf5},
+    {"MATLAB ", FileKind::kMatlab},
+    {"PAR1", FileKind::kParquet},
+    {"\xD4\xC3\xB2\xA1"sv, FileKind::kPcap},
+    {"\x0A\x0D\x0D\x0A"sv, FileKind::kPcap},  // pcapng
 };
 
 // In the order of FileKind.
@@ -57,8 +64,20 @@ constexpr std::string_view kSentences[] = {
     "is an SQLite database; if it is of a ROS 2 bag, format rosbag2 reads it",
     "is a PLY file",
     "is a PCD file",
+    "is a LAS or LAZ file, which is not read; write each scan as text with 'pdal translate IN.las OUT.csv "
+    "--writers.text.precision=6', where the Doppler is one of its extra dimensions",
+    "is an E57 file, which is not read; write each scan with Python: import numpy, pye57; numpy.savez('00000.npz', "
+    "**pye57.E57('IN.e57').read_scan_raw(0))",
+    "is an HDF5 file, which is not read; write each scan with Python: import h5py, numpy; numpy.savez('00000.npz', "
+    "points=..., doppler=...) of its data sets of shape (N, 3) and (N,)",
+    "is a MATLAB file, which is not read; write each scan with Python: import numpy, scipy.io; "
+    "numpy.savez('00000.npz', points=..., doppler=...) of what scipy.io.loadmat reads",
+    "is a Parquet file, which is not read; write each scan as text with Python: import pandas; "
+    "pandas.read_parquet('IN.parquet').to_csv('OUT.csv', index=False)",
+    "is a capture of network packets, which is not read; have the software of the sensor write each scan as PCD or "
+    "text",
 };
-static_assert(std::size(kSentences) == static_cast<std::size_t>(FileKind::kPcd) + 1);
+static_assert(std::size(kSentences) == static_cast<std::size_t>(FileKind::kPcap) + 1);
 
 unsigned char byte_at(std::string_view head, std::size_t at) { return static_cast<unsigned char>(head[at]); }
 

@@ -26,7 +26,13 @@ enum class FileKind : std::uint8_t {
   kOldRosBag,
   kSqlite,
   kPly,
-  kPcd
+  kPcd,
+  kLas,
+  kE57,
+  kHdf5,
+  kMatlab,
+  kParquet,
+  kPcap
 };
 
 /// As many bytes from the front of a file as it takes to tell.

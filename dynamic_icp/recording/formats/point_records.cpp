@@ -69,14 +69,14 @@ void read_times(std::string_view block, const RecordLayout& layout, double unit_
 void read_times(std::string_view block, const RecordLayout& layout, double* times) {
   if (layout.time_type == RecordTime::kNanoseconds) {
     read_times<std::int32_t>(block, layout, kNanosecond, times);
+  } else if (layout.time_type == RecordTime::kAsStored) {
+    with_type(layout.type, [&](auto zero) { read_times<decltype(zero)>(block, layout, 1.0, times); });
   } else if (layout.time_type != RecordTime::kNone) {
     read_times<float>(block, layout, 1.0, times);
   }
 }
 
-double field_at(std::string_view block, std::size_t at, const RecordField& field) {
-  const double value = field.type == NumberType::kUint8 ? static_cast<double>(value_at<std::uint8_t>(block, at))
-                                                        : static_cast<double>(value_at<float>(block, at));
+double field_value(double value, const RecordField& field) {
   if (field.mask == 0) {
     return value;
   }
@@ -86,8 +86,22 @@ double field_at(std::string_view block, std::size_t at, const RecordField& field
 
 void append_field(std::string_view block, const RecordLayout& layout, const RecordField& field,
                   std::vector<double>& values) {
-  for (std::size_t at = field.offset; at < block.size(); at += layout.bytes) {
-    values.push_back(field_at(block, at, field));
+  with_type(field.type, [&](auto zero) {
+    for (std::size_t at = field.offset; at < block.size(); at += layout.bytes) {
+      values.push_back(field_value(static_cast<double>(value_at<decltype(zero)>(block, at)), field));
+    }
+  });
+}
+
+/// Points and Doppler of whole records, from a row of the scan on.
+template <class Number>
+void read_measurements(std::string_view block, const RecordLayout& layout, std::size_t row, RawScan& raw) {
+  const auto [x, y, z] = layout.point;
+  for (std::size_t at = 0; at < block.size(); at += layout.bytes, ++row) {
+    raw.points[row] = {static_cast<double>(value_at<Number>(block, at + x)),
+                       static_cast<double>(value_at<Number>(block, at + y)),
+                       static_cast<double>(value_at<Number>(block, at + z))};
+    raw.doppler[row] = static_cast<double>(value_at<Number>(block, at + layout.doppler));
   }
 }
 
@@ -120,10 +134,8 @@ RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout)
     if (!raw.times.empty()) {
       read_times(block, layout, raw.times.data() + row);
     }
-    for (std::size_t at = 0; at < block.size(); at += layout.bytes, ++row) {
-      raw.points[row] = {value_at<float>(block, at), value_at<float>(block, at + 4), value_at<float>(block, at + 8)};
-      raw.doppler[row] = value_at<float>(block, at + layout.doppler);
-    }
+    with_type(layout.type, [&](auto zero) { read_measurements<decltype(zero)>(block, layout, row, raw); });
+    row += block.size() / layout.bytes;
     for (ChannelValues& channel : channels) {
       append_field(block, layout, *channel.field, channel.values);
     }

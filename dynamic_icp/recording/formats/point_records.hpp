@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -11,11 +12,12 @@
 
 #include "dynamic_icp/method/base/raw_scan.hpp"
 #include "dynamic_icp/recording/formats/channel.hpp"
+#include "dynamic_icp/recording/formats/npy_header.hpp"
 
 namespace dynamic_icp::formats {
 
-// Scans as files of little-endian records without padding, one per point, that begin with float32 x, y, z (m, sensor
-// frame) and hold the Doppler as float32 (m/s, positive away).
+// Scans as files of little-endian records without padding, one per point, that hold x, y, z (m, sensor frame) and the
+// Doppler (m/s, positive away): in the layouts of data sets as float32, x, y and z in front.
 
 /// How a record holds the time of its point after the scan's stamp.
 enum class RecordTime : std::uint8_t {
@@ -23,9 +25,10 @@ enum class RecordTime : std::uint8_t {
   kNanoseconds,           ///< int32
   kSeconds,               ///< float32
   kSecondsOrNanoseconds,  ///< float32: nanoseconds in files where one is above 10
+  kAsStored               ///< of the type of the point, in a unit and from a time that the reader does not know
 };
 
-enum class NumberType : std::uint8_t { kFloat32, kUint8 };
+using NumberType = NpyType;
 
 /// A further number of a record.
 struct RecordField {
@@ -45,6 +48,8 @@ struct RecordLayout {
   RecordTime time_type = RecordTime::kNone;
   std::size_t time = 0;  ///< its offset
   std::span<const RecordField> fields = {};
+  std::array<std::size_t, 3> point = {0, 4, 8};  ///< offsets of x, y, z
+  NumberType type = NumberType::kFloat32;        ///< of x, y, z and the Doppler
 };
 
 // The layouts by their names.

@@ -5,8 +5,8 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/pose_file.hpp"
 #include "dynamic_icp/recording/evaluation/association.hpp"
-#include "dynamic_icp/recording/formats/tum.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -32,7 +32,7 @@ RunTruth truth_for_run(const datasets::Dataset& dataset, const datasets::ScanRan
                        const std::filesystem::path& stated) {
   const bool is_stated = !stated.empty();
   RunTruth truth{is_stated ? stated : dataset.ground_truth_file(),
-                 is_stated ? formats::read_tum(stated).trajectory : dataset.ground_truth(),
+                 is_stated ? datasets::read_truth(stated, datasets::stamps_of(dataset)) : dataset.ground_truth(),
                  {}};
   if (truth.trajectory.empty()) {
     return truth;

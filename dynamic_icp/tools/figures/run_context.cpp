@@ -9,9 +9,9 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/pose_file.hpp"
 #include "dynamic_icp/recording/evaluation/association.hpp"
 #include "dynamic_icp/recording/evaluation/relative_error.hpp"
-#include "dynamic_icp/recording/formats/tum.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -33,11 +33,12 @@ datasets::InputSettings input_settings(const runs::RunFiles& run) {
   return settings;
 }
 
-Trajectory truth_trajectory(const std::string& path, const datasets::Dataset* recording) {
+Trajectory truth_trajectory(const std::string& path, const datasets::Dataset* recording, const Trajectory& estimate) {
   if (recording != nullptr && recording->ground_truth_file() == path) {
     return recording->ground_truth();
   }
-  return formats::read_tum(path).trajectory;
+  return datasets::read_truth(path,
+                              recording != nullptr ? datasets::stamps_of(*recording) : datasets::stamps_of(estimate));
 }
 
 /// Speeds from the differences of the positions before and after; frames whose neighbours are unmatched get none.
@@ -109,7 +110,7 @@ std::optional<RunTruth> read_truth(const runs::RunFiles& run, const datasets::Da
     return std::nullopt;
   }
   try {
-    return compare(run, truth_trajectory(path, recording));
+    return compare(run, truth_trajectory(path, recording, run.trajectory));
   } catch (const DataError& error) {
     notes.push_back(fmt::format("No errors are shown: the ground truth cannot be used. {}", error.what()));
     return std::nullopt;

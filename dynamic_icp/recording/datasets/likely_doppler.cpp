@@ -1,0 +1,121 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/likely_doppler.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include <Eigen/Cholesky>
+
+namespace dynamic_icp::datasets {
+namespace {
+
+constexpr std::size_t kRows = 2000;
+constexpr std::size_t kFewestRows = 10;
+constexpr int kRounds = 15;
+constexpr double kExplained = 1.0 / 3.0;  // of the spread may be left
+constexpr double kLeastSpread = 0.05;
+constexpr double kAngleTolerance = 0.02;  // rad
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Median distance from the median.
+double spread_of(const std::vector<double>& values) {
+  const double middle = median(values);
+  std::vector<double> distances(values.size());
+  std::transform(values.begin(), values.end(), distances.begin(), [&](double v) { return std::abs(v - middle); });
+  return median(std::move(distances));
+}
+
+/// Whether most numbers are an angle of their points, in radians or degrees.
+bool is_angle(const std::vector<Eigen::Vector3d>& directions, const std::vector<double>& values) {
+  const auto is_angle_of = [&](const auto& angle_of, double unit) {
+    const auto near = std::count_if(directions.begin(), directions.end(), [&](const Eigen::Vector3d& direction) {
+      const double angle = angle_of(direction);
+      const double value = unit * values[static_cast<std::size_t>(&direction - directions.data())];
+      return std::hypot(std::sin(value) - std::sin(angle), std::cos(value) - std::cos(angle)) < kAngleTolerance;
+    });
+    return 2 * static_cast<std::size_t>(near) > directions.size();
+  };
+  const auto azimuth = [](const Eigen::Vector3d& u) { return std::atan2(u.y(), u.x()); };
+  const auto elevation = [](const Eigen::Vector3d& u) { return std::asin(std::clamp(u.z(), -1.0, 1.0)); };
+  constexpr double kDegree = std::numbers::pi / 180.0;
+  return is_angle_of(azimuth, 1.0) || is_angle_of(azimuth, kDegree) || is_angle_of(elevation, 1.0) ||
+         is_angle_of(elevation, kDegree);
+}
+
+/// The share of the spread of the values that no velocity explains, by least squares whose weights fall with the
+/// residuals: moving objects are few.
+double unexplained(const std::vector<Eigen::Vector3d>& directions, const std::vector<double>& values) {
+  const double spread = spread_of(values);
+  const bool are_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+  if (values.size() < kFewestRows || are_whole || spread < kLeastSpread || is_angle(directions, values)) {
+    return 1.0;
+  }
+  std::vector<double> residuals(values.size(), 0.0);
+  double scale = 10.0 * spread;
+  for (int round = 0; round < kRounds; ++round) {
+    Eigen::Matrix3d A = Eigen::Matrix3d::Identity() * 1e-9;
+    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      const double weight = 1.0 / (1.0 + std::pow(residuals[i] / scale, 2));
+      A += weight * directions[i] * directions[i].transpose();
+      b += weight * values[i] * directions[i];
+    }
+    const Eigen::Vector3d v = A.ldlt().solve(b);
+    for (std::size_t i = 0; i < values.size(); ++i) {
+      residuals[i] = std::abs(values[i] - v.dot(directions[i]));
+    }
+    scale = std::max(median(residuals), 1e-3 * spread);
+  }
+  return median(residuals) / spread;
+}
+
+}  // namespace
+
+std::optional<std::size_t> likely_doppler(std::span<const Eigen::Vector3d> points,
+                                          std::span<const std::vector<double>> columns) {
+  std::optional<std::size_t> best;
+  double least = kExplained;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    std::vector<Eigen::Vector3d> directions;
+    std::vector<double> values;
+    for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kRows) {
+      const double range = points[i].norm();
+      if (range > 0.0 && std::isfinite(range) && std::isfinite(columns[k][i])) {
+        directions.emplace_back(points[i] / range);
+        values.push_back(columns[k][i]);
+      }
+    }
+    const double left = values.empty() ? 1.0 : unexplained(directions, values);
+    if (left < least) {
+      least = left;
+      best = k;
+    }
+  }
+  return best;
+}
+
+std::string proposed_columns(std::span<const std::vector<double>> columns) {
+  std::vector<Eigen::Vector3d> points;
+  for (std::size_t i = 0; i < columns.front().size(); ++i) {
+    points.emplace_back(columns[0][i], columns[1][i], columns[2][i]);
+  }
+  const std::span<const std::vector<double>> others = columns.subspan(3);
+  std::string text = "x,y,z";
+  if (!others.empty()) {
+    const std::size_t doppler = likely_doppler(points, others).value_or(others.size() - 1);
+    for (std::size_t k = 0; k < others.size(); ++k) {
+      text += k == doppler ? ",doppler" : ",_";
+    }
+  }
+  return text;
+}
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,26 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include <Eigen/Core>
+
+namespace dynamic_icp::datasets {
+
+/// Which of some columns without names may be the Doppler of the points: the one that a velocity of the sensor explains
+/// best, to a third of its spread at least, by a robust fit to some of the rows. Columns of whole numbers (lines,
+/// times), columns that hardly vary and angles of the points are none. Each column is as long as the points. For
+/// proposals only: a sensor at rest has no such column.
+std::optional<std::size_t> likely_doppler(std::span<const Eigen::Vector3d> points,
+                                          std::span<const std::vector<double>> columns);
+
+/// What rows of numbers may be of which the first three are the point, for a proposal: "x,y,z,_,doppler". The last is
+/// taken for the Doppler where no column is likely to be. `columns` are those of a row, three at least.
+std::string proposed_columns(std::span<const std::vector<double>> columns);
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,235 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/datasets/record_shape.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <fstream>
+#include <system_error>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/recording/datasets/likely_doppler.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
+
+namespace dynamic_icp::datasets {
+namespace {
+
+namespace fs = std::filesystem;
+using formats::NpyType;
+
+constexpr std::size_t kFewestNumbers = 3;
+constexpr std::size_t kMostNumbers = 16;
+constexpr std::size_t kPlain = 4;           // x, y, z, Doppler
+constexpr std::size_t kLookedAt = 100'000;  // numbers
+constexpr std::size_t kFilesLookedAt = 200;
+constexpr std::size_t kFewestRecords = 500;
+constexpr double kMostAbsurd = 0.05;    // of the numbers
+constexpr double kAsGoodAs = 1.15;      // multiples of the length are about as good
+constexpr double kClearlyBetter = 0.6;  // of the jumps that the expected length has
+
+template <class Number>
+std::vector<double> numbers_of(std::string_view content) {
+  std::vector<double> numbers;
+  const std::size_t count = std::min(content.size() / sizeof(Number), kLookedAt);
+  for (std::size_t i = 0; i < count; ++i) {
+    numbers.push_back(static_cast<double>(formats::value_at<Number>(content, i * sizeof(Number))));
+  }
+  return numbers;
+}
+
+bool is_absurd(double value) {
+  constexpr double kLargest = 1e7;
+  constexpr double kSmallest = 1e-9;
+  return std::isfinite(value) && (std::abs(value) > kLargest || (value != 0.0 && std::abs(value) < kSmallest));
+}
+
+double absurd_share(const std::vector<double>& numbers) {
+  return numbers.empty() ? 1.0
+                         : static_cast<double>(std::count_if(numbers.begin(), numbers.end(), is_absurd)) /
+                               static_cast<double>(numbers.size());
+}
+
+/// How far numbers are apart that lie `lag` apart, on the mean, on a scale that is linear below 1 and logarithmic
+/// beyond.
+double jump(const std::vector<double>& scaled, std::size_t lag) {
+  double sum = 0.0;
+  std::size_t pairs = 0;
+  for (std::size_t i = lag; i < scaled.size(); ++i) {
+    const double difference = std::abs(scaled[i] - scaled[i - lag]);
+    if (std::isfinite(difference)) {
+      sum += difference;
+      ++pairs;
+    }
+  }
+  return pairs == 0 ? INFINITY : sum / static_cast<double>(pairs);
+}
+
+double median_of_column(const std::vector<double>& scaled, std::size_t column, std::size_t stride) {
+  std::vector<double> values;
+  for (std::size_t i = column; i < scaled.size(); i += stride) {
+    if (std::isfinite(scaled[i])) {
+      values.push_back(scaled[i]);
+    }
+  }
+  if (values.empty()) {
+    return 0.0;
+  }
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// Whether records of `stride` numbers are no records of `shorter` ones that take turns, such as those of several
+/// beams: then columns that lie so far apart are of one kind.
+bool is_own_length(const std::vector<double>& scaled, std::size_t stride, std::size_t shorter) {
+  if (stride % shorter != 0) {
+    return true;
+  }
+  std::size_t different = 0;
+  for (std::size_t k = 0; k < shorter; ++k) {
+    const double here = median_of_column(scaled, k, stride);
+    const double there = median_of_column(scaled, k + shorter, stride);
+    different += std::abs(here - there) > 1.0 ? 1 : 0;
+  }
+  return different >= 2;
+}
+
+std::vector<double> scaled_of(const std::vector<double>& numbers) {
+  std::vector<double> scaled(numbers.size());
+  std::transform(numbers.begin(), numbers.end(), scaled.begin(), [](double v) { return std::asinh(v); });
+  return scaled;
+}
+
+/// The length of records that explains the numbers; 0: none stands out.
+std::size_t length_of(const std::vector<double>& scaled) {
+  std::array<double, kMostNumbers + 1> jumps{};
+  jumps.fill(INFINITY);
+  double least = INFINITY;
+  for (std::size_t lag = 1; lag <= kMostNumbers; ++lag) {
+    jumps.at(lag) = jump(scaled, lag);
+    least = lag >= kFewestNumbers ? std::min(least, jumps.at(lag)) : least;
+  }
+  for (std::size_t lag = kFewestNumbers; lag <= kMostNumbers; ++lag) {
+    if (jumps.at(lag) <= kAsGoodAs * least) {
+      // Records of beams that take turns repeat at several times their length.
+      for (std::size_t shorter = kPlain; shorter < lag; ++shorter) {
+        if (lag % shorter == 0 && !is_own_length(scaled, lag, shorter)) {
+          return shorter;
+        }
+      }
+      return jumps.at(lag) < kClearlyBetter * std::min(jumps[1], jumps[2]) ? lag : 0;
+    }
+  }
+  return 0;
+}
+
+std::optional<RecordShape> shape_of_numbers(const std::vector<double>& numbers, NpyType type) {
+  if (absurd_share(numbers) > kMostAbsurd) {
+    return std::nullopt;
+  }
+  const std::size_t length = length_of(scaled_of(numbers));
+  if (length == 0) {
+    return std::nullopt;
+  }
+  std::vector<std::vector<double>> columns(length);
+  for (std::size_t i = 0; i + length <= numbers.size(); i += length) {
+    for (std::size_t k = 0; k < length; ++k) {
+      columns[k].push_back(numbers[i + k]);
+    }
+  }
+  return RecordShape{length, type, proposed_columns(columns)};
+}
+
+std::uintmax_t size_of_file(const fs::path& file) {
+  std::error_code fault;
+  const std::uintmax_t size = fs::file_size(file, fault);
+  return fault ? 0 : size;
+}
+
+/// The sizes of files from all over the recording that are not empty.
+std::vector<std::uintmax_t> sizes_of(const std::vector<fs::path>& files) {
+  std::vector<std::uintmax_t> sizes;
+  for (std::size_t i = 0; i < files.size(); i += 1 + files.size() / kFilesLookedAt) {
+    if (const std::uintmax_t size = size_of_file(files[i]); size > 0) {
+      sizes.push_back(size);
+    }
+  }
+  return sizes;
+}
+
+std::size_t multiples(const std::vector<std::uintmax_t>& sizes, std::size_t bytes) {
+  return static_cast<std::size_t>(
+      std::count_if(sizes.begin(), sizes.end(), [&](std::uintmax_t size) { return size % bytes == 0; }));
+}
+
+/// The begin of the first file that is not empty; empty where there is none, or it cannot be read: its reader says so.
+std::string first_content(const std::vector<fs::path>& files) {
+  const auto first =
+      std::find_if(files.begin(), files.end(), [](const fs::path& file) { return size_of_file(file) > 0; });
+  std::error_code fault;
+  if (first == files.end() || !fs::is_regular_file(*first, fault)) {
+    return "";
+  }
+  std::string content(std::min<std::uintmax_t>(size_of_file(*first), kLookedAt * sizeof(double)), '\0');
+  std::ifstream file(*first, std::ios::binary);
+  file.read(content.data(), static_cast<std::streamsize>(content.size()));
+  content.resize(static_cast<std::size_t>(file.gcount()));
+  return content;
+}
+
+std::string_view type_name(NpyType type) { return type == NpyType::kFloat64 ? "float64" : "float32"; }
+
+std::string sentence_of(const std::vector<fs::path>& files, const RecordShape& shape, const std::string& instead) {
+  const std::vector<std::uintmax_t> sizes = sizes_of(files);
+  const std::string sizes_say = sizes.size() == 1
+                                    ? fmt::format("its size is a multiple of {} bytes", shape.bytes())
+                                    : fmt::format("the sizes of {} of {} files are multiples of {} bytes",
+                                                  multiples(sizes, shape.bytes()), sizes.size(), shape.bytes());
+  return fmt::format(
+      "{}: looks like records of {} {} a point{}: {}, and the numbers repeat at that length; state what "
+      "they are, e.g. with --columns {}{}",
+      files.front().string(), shape.numbers, type_name(shape.type), instead, sizes_say, shape.columns,
+      shape.type == NpyType::kFloat64 ? " --dtype float64" : "");
+}
+
+}  // namespace
+
+std::optional<RecordShape> shape_of(std::string_view content) {
+  if (std::optional<RecordShape> shape = shape_of_numbers(numbers_of<float>(content), NpyType::kFloat32)) {
+    return shape;
+  }
+  return shape_of_numbers(numbers_of<double>(content), NpyType::kFloat64);
+}
+
+std::string other_shape(const std::vector<fs::path>& files, std::size_t numbers, NpyType type) {
+  const std::vector<std::uintmax_t> sizes = sizes_of(files);
+  const std::string content = first_content(files);
+  const std::optional<RecordShape> shape = shape_of(content);
+  if (!shape || (shape->numbers == numbers && shape->type == type) || shape->numbers <= kFewestNumbers) {
+    return "";
+  }
+  const std::size_t expected_bytes = numbers * formats::size_of(type);
+  const std::size_t as_expected = multiples(sizes, expected_bytes);
+  const std::size_t as_seen = multiples(sizes, shape->bytes());
+  if (as_expected == sizes.size() && shape->type == type && content.size() < kFewestRecords * expected_bytes) {
+    return "";  // so few numbers may look like anything
+  }
+  // A scan that was cut short, or a few, are no reason to doubt.
+  if (10 * as_seen < 9 * sizes.size() || as_seen < as_expected) {
+    return "";
+  }
+  const std::string instead = as_expected == sizes.size()
+                                  ? fmt::format(" rather than of {}", numbers)
+                                  : fmt::format(", not of {} ({} bytes)", numbers, expected_bytes);
+  return sentence_of(files, *shape, shape->type == type ? instead : "");
+}
+
+std::string shape_sentence(const std::vector<fs::path>& files) {
+  const std::optional<RecordShape> shape = shape_of(first_content(files));
+  return shape && shape->numbers > kFewestNumbers ? sentence_of(files, *shape, "") : "";
+}
+
+}  // namespace dynamic_icp::datasets

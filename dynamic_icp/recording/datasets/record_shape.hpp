@@ -1,0 +1,39 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "dynamic_icp/recording/formats/npy_header.hpp"
+
+namespace dynamic_icp::datasets {
+
+// What the records of files without a mark are when they are of no known layout: numbers of one type, one after the
+// other, without padding. Told by the sizes of the files and by the numbers of one of them, to say it to the user.
+
+struct RecordShape {
+  std::size_t numbers = 0;  ///< of a record
+  formats::NpyType type = formats::NpyType::kFloat32;
+  std::string columns;  ///< what they may be, as a proposal: "x,y,z,_,doppler"
+
+  [[nodiscard]] std::size_t bytes() const { return numbers * formats::size_of(type); }
+};
+
+/// The shape of float32 or float64 records, of 3 to 16 numbers: numbers of one column are closer to each other than to
+/// those of other columns, from one record to the next. Nothing where the numbers are absurd (beyond 10 000 km, or not
+/// 0 but below 1e-9) whatever they are taken for, or where no length stands out.
+std::optional<RecordShape> shape_of(std::string_view content);
+
+/// Why the files, scans of one recording, are no records of `numbers` numbers of this type, where sizes and content
+/// agree that they are of another shape: a sentence with the option that states it. Empty: nothing speaks against it.
+std::string other_shape(const std::vector<std::filesystem::path>& files, std::size_t numbers, formats::NpyType type);
+
+/// What the files look like whatever was expected, in such a sentence; empty: like no records.
+std::string shape_sentence(const std::vector<std::filesystem::path>& files);
+
+}  // namespace dynamic_icp::datasets

@@ -1,0 +1,225 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/formats/csv.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <span>
+
+#include <fmt/format.h>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/parse_number.hpp"
+#include "dynamic_icp/recording/formats/memory_error.hpp"
+#include "dynamic_icp/recording/formats/text_lines.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+namespace dynamic_icp::formats {
+namespace {
+
+constexpr std::string_view kAround = " \t\r\v\f";
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+constexpr std::size_t kMostCsvColumns = 1024;
+
+std::string_view bare(std::string_view cell) {
+  const std::size_t begin = std::min(cell.find_first_not_of(kAround), cell.size());
+  cell = cell.substr(begin, cell.find_last_not_of(kAround) + 1 - begin);
+  const bool quoted = cell.size() >= 2 && (cell.front() == '"' || cell.front() == '\'') && cell.back() == cell.front();
+  return quoted ? cell.substr(1, cell.size() - 2) : cell;
+}
+
+/// The next line with something in it, and the number of lines taken for it.
+struct NextLine {
+  std::string_view text;
+  std::size_t lines = 0;
+};
+
+std::optional<NextLine> next_line(std::string_view& rest) {
+  NextLine next;
+  while (const std::optional<std::string_view> line = take_line(rest)) {
+    ++next.lines;
+    next.text = bare(*line);
+    if (!next.text.empty()) {
+      next.text = *line;
+      return next;
+    }
+  }
+  return std::nullopt;
+}
+
+bool is_comment(std::string_view line) { return bare(line).starts_with('#'); }
+
+bool are_names(const std::vector<std::string_view>& cells) { return std::any_of(cells.begin(), cells.end(), is_name); }
+
+std::optional<double> number_of(std::string_view cell) {
+  return cell.empty() ? std::optional(std::numeric_limits<double>::quiet_NaN()) : parse_number<double>(cell);
+}
+
+/// A column while it is read: whole numbers as long as all are.
+class GrowingColumn {
+ public:
+  bool add(std::string_view cell) {
+    if (whole_) {
+      if (const std::optional<std::int64_t> number = parse_number<std::int64_t>(cell)) {
+        integers_.push_back(*number);
+        return true;
+      }
+      whole_ = false;
+      numbers_.assign(integers_.begin(), integers_.end());
+      integers_ = {};
+    }
+    const std::optional<double> number = number_of(cell);
+    numbers_.push_back(number.value_or(0.0));
+    return number.has_value();
+  }
+
+  [[nodiscard]] NpyArray array() const {
+    return whole_ ? npy_array<std::int64_t>({integers_.size()}, integers_)
+                  : npy_array<double>({numbers_.size()}, numbers_);
+  }
+
+ private:
+  bool whole_ = true;
+  std::vector<std::int64_t> integers_;
+  std::vector<double> numbers_;
+};
+
+}  // namespace
+
+char delimiter_of(std::string_view line) {
+  for (const char delimiter : {',', ';', '\t'}) {
+    if (line.find(delimiter) != std::string_view::npos) {
+      return delimiter;
+    }
+  }
+  return ' ';
+}
+
+std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
+  std::vector<std::string_view> cells;
+  if (delimiter == ' ') {
+    cells = words_of(line);
+    std::transform(cells.begin(), cells.end(), cells.begin(), bare);
+    return cells;
+  }
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = std::min(line.find(delimiter, begin), line.size());
+    cells.push_back(bare(line.substr(begin, end - begin)));
+    if (end == line.size()) {
+      return cells;
+    }
+    begin = end + 1;
+  }
+}
+
+bool is_name(std::string_view cell) { return !number_of(cell); }
+
+std::string column_name(std::string_view cell) {
+  cell = cell.substr(std::min(cell.find_first_not_of("# \t"), cell.size()));
+  const std::size_t unit = cell.find_last_of("[(");
+  if (unit != std::string_view::npos && unit > 0 && (cell.back() == ']' || cell.back() == ')')) {
+    cell = cell.substr(0, unit);
+  }
+  return std::string(bare(cell));
+}
+
+CsvHeader parse_csv_header(std::string_view text, std::string_view origin) {
+  CsvHeader header;
+  std::string_view rest = text;
+  if (rest.starts_with(kByteOrderMark)) {
+    rest.remove_prefix(kByteOrderMark.size());
+  }
+  std::string_view candidate;  // the last comment before the first row, or the line of names
+  std::size_t candidate_line = 0;
+  bool has_names = false;
+  for (std::size_t line = 0;;) {
+    header.begin = text.size() - rest.size();
+    header.first_line = line + 1;
+    const std::optional<NextLine> next = next_line(rest);
+    if (!next) {
+      break;
+    }
+    line += next->lines;
+    const char delimiter = delimiter_of(next->text);
+    const std::vector<std::string_view> cells = cells_of(next->text, delimiter);
+    const bool in_comment = is_comment(next->text);
+    if (in_comment && has_names) {
+      continue;
+    }
+    if (in_comment || (are_names(cells) && !has_names)) {
+      candidate = next->text;
+      candidate_line = line;
+      has_names = !in_comment;
+      continue;
+    }
+    header.delimiter = delimiter;
+    header.columns = cells.size();
+    break;
+  }
+  if (candidate.empty()) {
+    return header;
+  }
+  std::string_view names = candidate;
+  const bool in_comment = is_comment(candidate);
+  if (in_comment) {
+    names = names.substr(names.find('#') + 1);
+  }
+  for (const std::string_view cell : cells_of(names, header.columns > 0 ? header.delimiter : delimiter_of(names))) {
+    header.names.push_back(column_name(cell));
+  }
+  if (header.columns == 0 || header.names.size() == header.columns) {
+    return header;
+  }
+  if (!in_comment) {
+    throw DataError(fmt::format("{}: line {}: {} names, but the row after it has {} numbers", origin, candidate_line,
+                                header.names.size(), header.columns));
+  }
+  header.names.clear();  // any comment
+  return header;
+}
+
+CsvTable parse_csv(std::string_view text, std::string_view origin) {
+  const CsvHeader header = parse_csv_header(text, origin);
+  if (header.columns > kMostCsvColumns) {
+    throw DataError(fmt::format("{}: line {}: {} columns, expected at most {}", origin, header.first_line,
+                                header.columns, kMostCsvColumns));
+  }
+  std::vector<GrowingColumn> columns(std::max(header.columns, header.names.size()));
+  std::string_view rest = text.substr(header.begin);
+  std::size_t line = header.first_line - 1;
+  while (const std::optional<NextLine> next = next_line(rest)) {
+    line += next->lines;
+    if (is_comment(next->text)) {
+      continue;
+    }
+    const std::vector<std::string_view> cells = cells_of(next->text, header.delimiter);
+    if (cells.size() != columns.size()) {
+      throw DataError(fmt::format("{}: line {}: {} columns, expected {} as in the first row", origin, line,
+                                  cells.size(), columns.size()));
+    }
+    for (std::size_t k = 0; k < cells.size(); ++k) {
+      if (!columns[k].add(cells[k])) {
+        throw DataError(fmt::format("{}: line {}: column {} is {}, expected a number{}", origin, line, k + 1,
+                                    quoted_text(cells[k]),
+                                    cells[k].find(',') != std::string_view::npos ? " with a decimal point" : ""));
+      }
+    }
+  }
+  CsvTable table;
+  table.names = header.names;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    table.columns.push_back(columns[k].array());
+    table.columns.back().origin = fmt::format(
+        "{}: column {}", origin, table.names.empty() ? fmt::format("{}", k + 1) : fmt::format("'{}'", table.names[k]));
+  }
+  return table;
+}
+
+CsvTable read_csv(const std::filesystem::path& path) {
+  return with_memory_for(path, [&] { return parse_csv(read_text_file(path), path.string()); });
+}
+
+}  // namespace dynamic_icp::formats
