@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <span>
 #include <utility>
 #include <vector>
 
@@ -13,8 +14,8 @@ namespace dynamic_icp {
 inline constexpr double kSigmaPerMad = 1.4826;
 
 /// The value in place round(share * (n - 1)) of the ascending values, share from 0 to 1; 0 of none. Unlike
-/// evaluation::percentile it does not interpolate: what it gives was measured.
-inline double quantile(std::vector<double> values, double share) {
+/// evaluation::percentile it does not interpolate: what it gives was measured. Brings the values into another order.
+inline double quantile_among(std::span<double> values, double share) {
   if (values.empty()) {
     return 0.0;
   }
@@ -22,6 +23,9 @@ inline double quantile(std::vector<double> values, double share) {
   std::nth_element(values.begin(), place, values.end());
   return *place;
 }
+
+/// The same of values that stay as they are.
+inline double quantile(std::vector<double> values, double share) { return quantile_among(values, share); }
 
 /// The middle value, of an even number the upper of the two; 0 of none.
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }

@@ -47,11 +47,13 @@ ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions
   }
   result.W = median({radial.begin(), radial.end()}) * mean.normalized();
   std::vector<double> magnitudes(radial.size());
+  std::vector<double> sorted(radial.size());
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     for (std::size_t i = 0; i < radial.size(); ++i) {
       magnitudes[i] = std::abs(radial[i] - directions[i].dot(result.W));
     }
-    const double scale = std::max(sigma_mps, kSigmaPerMad * median(magnitudes));
+    sorted = magnitudes;
+    const double scale = std::max(sigma_mps, kSigmaPerMad * quantile_among(sorted, 0.5));
     Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
     Eigen::Vector3d b = Eigen::Vector3d::Zero();
     for (std::size_t i = 0; i < radial.size(); ++i) {

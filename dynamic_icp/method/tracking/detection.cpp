@@ -16,6 +16,12 @@ Detection make_detection(const Scan& scan, std::span<const double> radial, std::
                          const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view) {
   Detection detection;
   const std::size_t stride = std::max<std::size_t>(1, (rows.size() + kMaxPoints - 1) / kMaxPoints);
+  const std::size_t points = (rows.size() + stride - 1) / stride;
+  detection.points.reserve(points);
+  detection.directions.reserve(points);
+  detection.radial.reserve(points);
+  detection.times.reserve(points);
+  detection.levers.reserve(scan.is_of_rig() ? points : 0);
   for (std::size_t i = 0; i < rows.size(); i += stride) {
     const std::uint32_t row = rows[i];
     const double time = scan.has_times() ? scan.times()[row] : 0.0;

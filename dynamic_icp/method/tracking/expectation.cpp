@@ -35,26 +35,38 @@ OrientedBox above_ground(OrientedBox box) {
   return box;
 }
 
-/// The points of a few rows, which are seen near each other more often than not, and the box around them.
-struct Block {
-  std::vector<Vector3d> points;  ///< m, world
-  Eigen::AlignedBox3d around;
-  double latest_s = 0.0;  ///< time after the stamp, absolute
+constexpr std::size_t kPatch = 64;    // rows, which are seen near each other more often than not
+constexpr double kRounding_m = 0.01;  // more than rounding moves a point
 
-  void add(const Vector3d& point, double time_s) {
-    points.push_back(point);
-    around.extend(point);
-    latest_s = std::max(latest_s, std::abs(time_s));
-  }
+/// A sphere around the box that an expectation flags rows in, as far as the sensor may see it during its sweep.
+struct Flagged {
+  OrientedBox box;  ///< world
+  double reach_m = 0.0;
+  Vector3d centre_sensor;  ///< m, sensor frame at the stamp
 };
+
+OrientedBox flagged_box(const Expectation& expected) {
+  OrientedBox box = above_ground(expected.box);
+  box.size.head<2>().array() += 2.0 * expected.gate_m;
+  box.size.z() += expected.gate_m;
+  box.centre += 0.5 * expected.gate_m * box.axes.col(2);
+  return box;
+}
+
+/// How far from where the pose at the stamp puts them points of a patch may lie, against a body of this velocity (m/s,
+/// world): the sensor moves and turns meanwhile.
+double largest_shift_m(const Eigen::AlignedBox3d& patch, double latest_s, const SensorMotion& sensor,
+                       const Vector3d& velocity) {
+  const double farthest = patch.min().cwiseAbs().cwiseMax(patch.max().cwiseAbs()).norm();
+  const double turned_rad = latest_s * sensor.angular_velocity_sensor.norm();
+  return latest_s * (sensor.velocity_world - velocity).norm() + turned_rad * (1.0 + 0.5 * turned_rad) * farthest;
+}
 
 }  // namespace
 
-Expectation::Expectation(const Track& predicted, const SensorMotion& sensor, const TrackerConfig& config)
-    : box(predicted.best().seen_box()) {
-  const BoxEstimate estimate = predicted.estimate();
-  whole = estimate.box;
-  velocity = estimate.velocity;
+Expectation::Expectation(const Track& predicted, const BoxEstimate& estimate, const SensorMotion& sensor,
+                         const TrackerConfig& config)
+    : box(predicted.best().seen_box()), whole(estimate.box), velocity(estimate.velocity) {
   const Vector3d eye = sensor.T_world_sensor.translation();
   W = predicted.body().doppler_velocity(eye);
   W_covariance = predicted.body().doppler_covariance(eye);
@@ -101,6 +113,8 @@ void visit_static_points(const TrackingInput& input, std::span<const Expectation
     return;
   }
   std::vector<OrientedBox> boxes;
+  std::vector<Vector3d> centres;  // sensor frame
+  std::vector<double> reaches;
   std::vector<std::vector<std::uint32_t>> boxes_of_column(static_cast<std::size_t>(RangeImage::column_count()));
   const Eigen::Isometry3d T_sensor_world = input.sensor.T_world_sensor.inverse();
   for (const Expectation& expected : expectations) {
@@ -113,6 +127,8 @@ void visit_static_points(const TrackingInput& input, std::span<const Expectation
           static_cast<std::uint32_t>(boxes.size()));
     }
     boxes.push_back(box);
+    centres.push_back(T_sensor_world * box.centre);
+    reaches.push_back(reach + kRounding_m);
   }
   const std::size_t rows = input.scan.size();
   std::vector<std::vector<Hit>> hits(Workers::block_count(rows, kPointBlock));
@@ -123,8 +139,11 @@ void visit_static_points(const TrackingInput& input, std::span<const Expectation
         continue;
       }
       const double time = input.scan.has_times() ? input.scan.times()[row] : 0.0;
-      const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
       for (const std::uint32_t i : candidates) {
+        if ((input.scan.points()[row] - centres[i]).squaredNorm() > reaches[i] * reaches[i]) {
+          continue;
+        }
+        const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
         if (distance_outside(boxes[i], point - time * expectations[i].velocity) <= 0.0) {
           hits[block].push_back(
               {i, static_cast<std::uint32_t>(row), input.sensor.direction_world(input.scan.directions()[row], time)});
@@ -142,32 +161,43 @@ void visit_static_points(const TrackingInput& input, std::span<const Expectation
 void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
                std::span<const Expectation> expectations, const Workers& workers,
                std::vector<std::uint8_t>& is_moving) {
+  const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
+  std::vector<Flagged> flagged;
+  for (const Expectation& expected : expectations) {
+    const OrientedBox box = flagged_box(expected);
+    flagged.push_back({box, 0.5 * box.size.norm(), T_sensor_world * box.centre});
+  }
   const auto time_of = [&](std::size_t row) { return scan.has_times() ? scan.times()[row] : 0.0; };
-  workers.for_blocks(
-      expectations.empty() ? 0 : scan.size(), kPointBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-        Block block;
-        for (std::size_t row = begin; row < end; ++row) {
-          block.add(sensor.point_world(scan.points()[row], time_of(row)), time_of(row));
+  const auto flag_patch = [&](std::size_t begin, std::size_t end) {
+    Eigen::AlignedBox3d patch;
+    double latest_s = 0.0;
+    for (std::size_t row = begin; row < end; ++row) {
+      patch.extend(scan.points()[row]);
+      latest_s = std::max(latest_s, std::abs(time_of(row)));
+    }
+    for (std::size_t i = 0; i < flagged.size(); ++i) {
+      const auto& [box, reach, centre_sensor] = flagged[i];
+      const Expectation& expected = expectations[i];
+      if (patch.exteriorDistance(centre_sensor) >
+          reach + largest_shift_m(patch, latest_s, sensor, expected.velocity) + kRounding_m) {
+        continue;
+      }
+      for (std::size_t row = begin; row < end; ++row) {
+        const double time_s = time_of(row);
+        const Vector3d point = sensor.point_world(scan.points()[row], time_s) - time_s * expected.velocity;
+        if ((point - box.centre).squaredNorm() < reach * reach && distance_outside(box, point) <= 0.0 &&
+            expected.gate_ratio(sensor.direction_world(scan.directions()[row], time_s), radial[row]) < 1.0) {
+          is_moving[row] = 1;
         }
-        for (const Expectation& expected : expectations) {
-          OrientedBox box = above_ground(expected.box);
-          box.size.head<2>().array() += 2.0 * expected.gate_m;
-          box.size.z() += expected.gate_m;
-          box.centre += 0.5 * expected.gate_m * box.axes.col(2);
-          const double reach = 0.5 * box.size.norm();
-          if (block.around.exteriorDistance(box.centre) > reach + block.latest_s * expected.velocity.norm()) {
-            continue;
-          }
-          for (std::size_t row = begin; row < end; ++row) {
-            const double time_s = time_of(row);
-            const Vector3d point = block.points[row - begin] - time_s * expected.velocity;
-            if ((point - box.centre).squaredNorm() < reach * reach && distance_outside(box, point) <= 0.0 &&
-                expected.gate_ratio(sensor.direction_world(scan.directions()[row], time_s), radial[row]) < 1.0) {
-              is_moving[row] = 1;
-            }
-          }
-        }
-      });
+      }
+    }
+  };
+  workers.for_blocks(flagged.empty() ? 0 : scan.size(), kPointBlock,
+                     [&](std::size_t, std::size_t block_begin, std::size_t block_end) {
+                       for (std::size_t begin = block_begin; begin < block_end; begin += kPatch) {
+                         flag_patch(begin, std::min(begin + kPatch, block_end));
+                       }
+                     });
 }
 
 }  // namespace dynamic_icp::tracking

@@ -32,8 +32,9 @@ struct Expectation {
   double max_width_m = 0.0;      ///< of what was seen and what is added to it, as far as its place is known
   double gate_mps = 0.0;         ///< difference of their radial velocities, beyond the uncertainty of W
 
-  /// `predicted` is the track at the stamp.
-  Expectation(const Track& predicted, const SensorMotion& sensor, const TrackerConfig& config);
+  /// `predicted` is the track at the stamp, `estimate` what it says.
+  Expectation(const Track& predicted, const BoxEstimate& estimate, const SensorMotion& sensor,
+              const TrackerConfig& config);
 
   /// Distance from the box of a point measured `time_s` after the stamp.
   [[nodiscard]] double outside(const Eigen::Vector3d& point_world, double time_s) const;
@@ -61,13 +62,13 @@ struct TrackingInput {
   std::span<const std::uint8_t> is_moving;  ///< for each row
   SensorMotion sensor;
   double stamp_s = 0.0;  ///< since the first scan
-  double sweep_s = 0.0;  ///< largest time of a point
-  MovingCells moving;
-  std::vector<std::uint32_t> groups;             ///< of the cells
-  std::vector<Eigen::Vector3d> cell_points;      ///< their centroids, world
-  std::vector<Eigen::Vector3d> cell_directions;  ///< their lines of sight, world
-  RangeImage view;
-  GroundHeights heights;
+  double sweep_s = 0.0;  ///< largest time of a point, before or after the stamp
+  const MovingCells& moving;
+  std::span<const std::uint32_t> groups;             ///< of the cells
+  std::span<const Eigen::Vector3d> cell_points;      ///< their centroids, world
+  std::span<const Eigen::Vector3d> cell_directions;  ///< their lines of sight, world
+  const RangeImage& view;
+  const GroundHeights& heights;
 };
 
 /// Called with the number of an expectation, a row, and the row's line of sight in world axes.

@@ -32,7 +32,8 @@ Track track_of_car(const Vector3d& centre, const Vector3d& velocity) {
 }
 
 Expectation expectation_of(const Vector3d& centre, const Vector3d& velocity) {
-  return {track_of_car(centre, velocity), SensorMotion{}, {}};
+  const Track track = track_of_car(centre, velocity);
+  return {track, track.estimate(), SensorMotion{}, {}};
 }
 
 TEST(Expectation, ItsOwnPointsAreInsideAndHaveItsRadialVelocity) {
@@ -83,9 +84,10 @@ TEST(Expectation, VisitsTheStaticPointsInItsBoxAboveTheGround) {
   const std::vector<double> radial(scan.size(), 0.0);
   for (const int threads : {1, 2}) {
     const Workers workers(threads);
-    const TrackingInput input{
-        scan,           radial, is_moving, {}, 0.0, 0.0, {}, {}, {}, {}, RangeImage(scan, Vector3d::Zero(), workers),
-        GroundHeights()};
+    const RangeImage view(scan, Vector3d::Zero(), workers);
+    const MovingCells moving;
+    const GroundHeights heights;
+    const TrackingInput input{scan, radial, is_moving, {}, 0.0, 0.0, moving, {}, {}, {}, view, heights};
     std::vector<std::uint32_t> visited;
     visit_static_points(input, std::vector<Expectation>{expected}, workers,
                         [&](std::size_t number, std::uint32_t row, const Vector3d& direction) {

@@ -71,9 +71,13 @@ GroundHeights::GroundHeights(const Ground& ground, std::span<const Eigen::Vector
     if (is_moving[row] != 0) {
       continue;
     }
-    const Eigen::Vector3d x = R_level_sensor * points[row];
-    const double bin = (x.z() - plane_z) / kBin_m + 0.5 * kBins;
-    if (const auto cell = cell_of(x); cell && bin >= 0.0 && bin < kBins) {
+    const Eigen::Vector3d& p = points[row];
+    const double z = (R_level_sensor(2, 0) * p.x() + R_level_sensor(2, 1) * p.y()) + R_level_sensor(2, 2) * p.z();
+    const double bin = (z - plane_z) / kBin_m + 0.5 * kBins;
+    if (!(bin >= 0.0 && bin < kBins)) {
+      continue;
+    }
+    if (const auto cell = cell_of(R_level_sensor * p)) {
       std::uint16_t& count = cells_[*cell][static_cast<std::size_t>(bin)];
       count = static_cast<std::uint16_t>(std::min(count + 1, 0xffff));
     }

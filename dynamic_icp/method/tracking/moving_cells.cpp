@@ -3,8 +3,10 @@
 #include "dynamic_icp/method/tracking/moving_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <iterator>
 #include <limits>
 #include <numbers>
@@ -30,25 +32,43 @@ void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& c
   ++cell.count;
 }
 
+/// Calls visit(row) for each row of [begin, end) that moves, ascending: eight flags at a time, for most of them are 0.
+template <typename Visit>
+void visit_moving(std::span<const std::uint8_t> is_moving, std::size_t begin, std::size_t end, const Visit& visit) {
+  constexpr std::size_t kFlags = sizeof(std::uint64_t);
+  std::size_t row = begin;
+  for (; row + kFlags <= end; row += kFlags) {
+    std::uint64_t flags = 0;
+    std::memcpy(&flags, &is_moving[row], kFlags);
+    for (std::size_t i = 0; flags != 0 && i < kFlags; ++i) {
+      if (is_moving[row + i] != 0) {
+        visit(row + i);
+      }
+    }
+  }
+  for (; row < end; ++row) {
+    if (is_moving[row] != 0) {
+      visit(row);
+    }
+  }
+}
+
 /// The rows that move, ascending.
-std::vector<std::uint32_t> moving_rows(std::span<const std::uint8_t> is_moving, const Workers& workers) {
-  std::vector<std::uint32_t> end_of_block(Workers::block_count(is_moving.size(), kPointBlock));
+void find_moving_rows(std::span<const std::uint8_t> is_moving, const Workers& workers, MovingCells& result) {
+  std::vector<std::uint32_t>& end_of_block = result.end_of_block;
+  end_of_block.resize(Workers::block_count(is_moving.size(), kPointBlock));
   workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     end_of_block[block] = static_cast<std::uint32_t>(std::count_if(
         is_moving.begin() + static_cast<std::ptrdiff_t>(begin), is_moving.begin() + static_cast<std::ptrdiff_t>(end),
         [](std::uint8_t moving) { return moving != 0; }));
   });
   std::partial_sum(end_of_block.begin(), end_of_block.end(), end_of_block.begin());
-  std::vector<std::uint32_t> rows(end_of_block.empty() ? 0 : end_of_block.back());
+  result.rows.resize(end_of_block.empty() ? 0 : end_of_block.back());
   workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::uint32_t next = block == 0 ? 0 : end_of_block[block - 1];
-    for (std::size_t row = begin; row < end; ++row) {
-      if (is_moving[row] != 0) {
-        rows[next++] = static_cast<std::uint32_t>(row);
-      }
-    }
+    visit_moving(is_moving, begin, end,
+                 [&](std::size_t row) { result.rows[next++] = static_cast<std::uint32_t>(row); });
   });
-  return rows;
 }
 
 /// From sums to means.
@@ -145,21 +165,43 @@ std::vector<CellGroup> groups_among(const MovingCells& moving, std::span<const s
   return groups;
 }
 
+constexpr std::size_t kDirections = 12;
+
+/// Directions seen from above, of half a turn.
+std::array<Eigen::Vector3d, kDirections> directions_across() {
+  std::array<Eigen::Vector3d, kDirections> across;
+  for (std::size_t i = 0; i < kDirections; ++i) {
+    across[i] = upright_axes(std::numbers::pi * static_cast<double>(i) / kDirections).col(1);
+  }
+  return across;
+}
+
 /// Whether seen from above the cells need a wider strip than one vehicle.
 bool too_wide(const MovingCells& moving, const CellGroup& group, double largest_width_m) {
-  constexpr int kDirections = 12;
-  double width = std::numeric_limits<double>::infinity();
-  for (int i = 0; i < kDirections; ++i) {
-    const Eigen::Vector3d across = upright_axes(std::numbers::pi * i / kDirections).col(1);
+  static const std::array<Eigen::Vector3d, kDirections> kAcross = directions_across();
+  for (const Eigen::Vector3d& across : kAcross) {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
     for (const std::uint32_t cell : group.cells) {
       low = std::min(low, across.dot(moving.cells[cell].centroid));
       high = std::max(high, across.dot(moving.cells[cell].centroid));
     }
-    width = std::min(width, high - low);
+    if (!(high - low > largest_width_m)) {
+      return false;
+    }
   }
-  return width > largest_width_m;
+  return true;
+}
+
+/// Drops groups with too few points: parts of them have no more.
+void drop_small(const MovingCells& moving, int min_points, std::vector<CellGroup>& groups) {
+  std::erase_if(groups, [&](const CellGroup& group) {
+    std::size_t points = 0;
+    for (const std::uint32_t cell : group.cells) {
+      points += moving.cells[cell].count;
+    }
+    return std::cmp_less(points, min_points);
+  });
 }
 
 /// Gives each group its rows.
@@ -172,7 +214,7 @@ void add_rows(const MovingCells& moving, std::vector<CellGroup>& groups) {
     }
   }
   for (std::size_t i = 0; i < moving.rows.size(); ++i) {
-    const std::uint32_t group = group_of_cell[moving.cell_of[i]];
+    const std::uint32_t group = group_of_cell[moving.order.cell[i]];
     if (group != kNoGroup) {
       groups[group].rows.push_back(moving.rows[i]);
     }
@@ -196,30 +238,28 @@ ConfigFields fields(GroupingConfig& config) {
   };
 }
 
-MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
-                         const GroupingConfig& config, const Workers& workers) {
-  MovingCells result;
-  result.rows = moving_rows(is_moving, workers);
+void gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
+                  const GroupingConfig& config, const Workers& workers, MovingCells& result) {
+  find_moving_rows(is_moving, workers, result);
   const std::size_t n = result.rows.size();
-  spatial::CellOrder order;
+  spatial::CellOrder& order = result.order;
   order.keys.resize(n);
   workers.for_each(n, kPointBlock, [&](std::size_t i) {
     order.keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
   });
   order.sort();
-  std::vector<std::uint32_t> rows_by_cell(n);
+  result.rows_by_cell.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
-    rows_by_cell[order.place(i)] = result.rows[i];
+    result.rows_by_cell[order.place(i)] = result.rows[i];
   }
   result.cells.resize(order.cells());
   workers.for_each(result.cells.size(), kCellBlock, [&](std::size_t cell) {
+    result.cells[cell] = {};
     for (std::uint32_t k = order.first[cell]; k < order.first[cell + 1]; ++k) {
-      add_point(scan, rows_by_cell[k], radial[rows_by_cell[k]], result.cells[cell]);
+      add_point(scan, result.rows_by_cell[k], radial[result.rows_by_cell[k]], result.cells[cell]);
     }
     take_means(result.cells[cell]);
   });
-  result.cell_of = std::move(order.cell);
-  return result;
 }
 
 std::vector<std::uint32_t> group_cells(std::span<const MovingCell> cells, const GroupingConfig& config) {
@@ -263,6 +303,7 @@ std::vector<CellGroup> vehicle_groups(const MovingCells& moving, std::span<const
                                       double largest_width_m, int min_points, const GroupingConfig& config) {
   GroupingConfig tighter = config;
   std::vector<CellGroup> groups = groups_among(moving, cells, config);
+  drop_small(moving, min_points, groups);
   tighter.bridge_m = 0.0;  // a gap in one body, or two bodies beside each other?
   for (int i = 0; i <= kMaxTightenings; ++i) {
     if (i > 0) {
@@ -279,9 +320,9 @@ std::vector<CellGroup> vehicle_groups(const MovingCells& moving, std::span<const
       }
     }
     groups = std::move(parted);
+    drop_small(moving, min_points, groups);
   }
   add_rows(moving, groups);
-  std::erase_if(groups, [&](const CellGroup& group) { return std::cmp_less(group.rows.size(), min_points); });
   return groups;
 }
 

@@ -11,6 +11,7 @@
 #include "dynamic_icp/method/base/config_field.hpp"
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/spatial/cell_order.hpp"
 
 namespace dynamic_icp::tracking {
 
@@ -38,14 +39,18 @@ struct MovingCell {
 /// Cells in the order of their first points.
 struct MovingCells {
   std::vector<MovingCell> cells;
-  std::vector<std::uint32_t> rows;     ///< of the scan: the moving ones, ascending
-  std::vector<std::uint32_t> cell_of;  ///< for each of these rows its cell
+  std::vector<std::uint32_t> rows;  ///< of the scan: the moving ones, ascending
+  spatial::CellOrder order;         ///< of these rows
+
+  // Memory of gather_cells
+  std::vector<std::uint32_t> rows_by_cell;
+  std::vector<std::uint32_t> end_of_block;
 };
 
 /// Sorts the rows with `is_moving` != 0 into cubes. A cube holds few points of anything else than one surface, so its
-/// mean stands for it. `radial` has one value per row.
-MovingCells gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
-                         const GroupingConfig& config, const Workers& workers);
+/// mean stands for it. `radial` has one value per row. `cells` may hold those of another scan.
+void gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
+                  const GroupingConfig& config, const Workers& workers, MovingCells& cells);
 
 /// A group number 0, 1, ... for each cell, in the order of the first cells: cells belong together when a chain of
 /// neighbours joins them, each link short enough for its range and without a jump of the radial velocity. Where the

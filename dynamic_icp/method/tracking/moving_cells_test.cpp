@@ -32,10 +32,17 @@ MovingCell cell(const Vector3d& centroid, double radial) {
   return result;
 }
 
+MovingCells gathered(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
+                     const GroupingConfig& config, const Workers& workers) {
+  MovingCells cells;
+  gather_cells(scan, radial, is_moving, config, workers, cells);
+  return cells;
+}
+
 TEST(MovingCells, NothingMovesNothingIsGathered) {
-  EXPECT_TRUE(gather_cells(Scan{}, {}, {}, {}, kWorkers).cells.empty());
+  EXPECT_TRUE(gathered(Scan{}, {}, {}, {}, kWorkers).cells.empty());
   const Scan scan = scan_of({{5, 0, 0}});
-  EXPECT_TRUE(gather_cells(scan, std::vector<double>{1.0}, std::vector<std::uint8_t>{0}, {}, kWorkers).cells.empty());
+  EXPECT_TRUE(gathered(scan, std::vector<double>{1.0}, std::vector<std::uint8_t>{0}, {}, kWorkers).cells.empty());
   EXPECT_TRUE(group_cells({}, {}).empty());
 }
 
@@ -43,19 +50,18 @@ TEST(MovingCells, HoldMeansAndRowsOfTheMovingPoints) {
   const Scan scan = scan_of({{5.1, 0.1, 0.1}, {9.1, 0.1, 0.1}, {5.3, 0.3, 0.3}, {5.2, 0.2, 0.2}});
   const std::vector<double> radial = {1.0, 7.0, 3.0, 50.0};
   const MovingCells moving =
-      gather_cells(scan, radial, std::vector<std::uint8_t>{1, 1, 1, 0}, {.cell_size_m = 1.0}, kWorkers);
+      gathered(scan, radial, std::vector<std::uint8_t>{1, 1, 1, 0}, {.cell_size_m = 1.0}, kWorkers);
   ASSERT_EQ(moving.cells.size(), 2u);
   EXPECT_TRUE(moving.cells[0].centroid.isApprox(Vector3d(5.2, 0.2, 0.2), 1e-12));
   EXPECT_EQ(moving.cells[0].radial_mps, 2.0);
   EXPECT_EQ(moving.cells[0].count, 2u);
   EXPECT_EQ(moving.rows, (std::vector<std::uint32_t>{0, 1, 2}));
-  EXPECT_EQ(moving.cell_of, (std::vector<std::uint32_t>{0, 1, 0}));
+  EXPECT_EQ(moving.order.cell, (std::vector<std::uint32_t>{0, 1, 0}));
 }
 
 TEST(MovingCells, CellsFloorBelowZero) {
   const Scan scan = scan_of({{-0.1, 5, 0.1}, {0.1, 5, 0.1}});
-  EXPECT_EQ(gather_cells(scan, std::vector<double>{1, 1}, std::vector<std::uint8_t>{1, 1}, {}, kWorkers).cells.size(),
-            2u);
+  EXPECT_EQ(gathered(scan, std::vector<double>{1, 1}, std::vector<std::uint8_t>{1, 1}, {}, kWorkers).cells.size(), 2u);
 }
 
 TEST(MovingCells, NeighboursWithOneVelocityAreOneGroup) {
@@ -150,7 +156,7 @@ MovingCells cells_at(const std::vector<Vector3d>& places) {
     cell.count = 1;
     moving.cells.push_back(cell);
     moving.rows.push_back(10 * i);
-    moving.cell_of.push_back(i);
+    moving.order.cell.push_back(i);
   }
   return moving;
 }

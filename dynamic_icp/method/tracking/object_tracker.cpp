@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
@@ -23,8 +24,12 @@ constexpr double kPartSigmas = 3.0;
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
 constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
 
-double sweep_duration(const Scan& scan) {
-  return scan.times().empty() ? 0.0 : *std::max_element(scan.times().begin(), scan.times().end());
+double latest_time(const Scan& scan) {
+  double latest_s = 0.0;
+  for (const double time_s : scan.times()) {
+    latest_s = std::max(latest_s, std::abs(time_s));
+  }
+  return latest_s;
 }
 
 /// Whether a point that stands cannot be part of a body that makes it expect a radial velocity.
@@ -43,12 +48,13 @@ bool may_be_equal(const BoxEstimate& a, const BoxEstimate& b) {
   return apart.dot(covariance.inverse() * apart) < kPartSigmas * kPartSigmas;
 }
 
-/// The cells' means in world axes.
-void place_cells(TrackingInput& input) {
-  for (const MovingCell& cell : input.moving.cells) {
-    input.cell_points.push_back(input.sensor.T_world_sensor * cell.centroid);
-    input.cell_directions.push_back(input.sensor.direction_world(cell.direction, cell.time_s));
+bool are_finite(std::span<const double> values) {
+  // Without a way out, so that it becomes vectors.
+  bool finite = true;
+  for (const double value : values) {
+    finite &= std::abs(value) <= std::numeric_limits<double>::max();
   }
+  return finite;
 }
 
 }  // namespace
@@ -56,9 +62,10 @@ void place_cells(TrackingInput& input) {
 /// A track with what is known of it besides its motion.
 struct ObjectTracker::Entry {
   std::int64_t id;
-  Track track;           ///< at the mean time of its last detection
-  Track predicted;       ///< at the stamp of the present scan, with what that scan shows
-  BoxEstimate now = {};  ///< of the latter
+  Track track;                             ///< at the mean time of its last detection
+  Track predicted;                         ///< at the stamp of the present scan, with what that scan shows
+  BoxEstimate now = {};                    ///< of the latter
+  std::optional<double> predicted_s = {};  ///< that stamp
   bool confirmed = false;
   bool has_moved = false;  ///< beyond doubt
   double moved_s = 0.0;    ///< when it moved last
@@ -67,11 +74,20 @@ struct ObjectTracker::Entry {
   int missed = 0;
   std::vector<std::uint32_t> members = {};
 
-  /// The track at the stamp of a scan.
+  /// The track at the stamp of a scan. It is asked for several times a scan.
   void predict(double stamp_s, const TrackConfig& config) {
+    if (predicted_s == stamp_s) {
+      return;
+    }
     predicted = track;
     predicted.predict(stamp_s, config);
     now = predicted.estimate();
+    predicted_s = stamp_s;
+  }
+
+  void set_track(Track corrected) {
+    track = std::move(corrected);
+    predicted_s.reset();
   }
 };
 
@@ -88,8 +104,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   if (radial.size() != scan.size() || is_moving.size() != scan.size()) {
     throw std::invalid_argument("radial velocities and moving flags must have one value per point of the scan");
   }
-  if (!std::all_of(radial.begin(), radial.end(), [](double r) { return std::isfinite(r); }) ||
-      !T_world_sensor.matrix().allFinite()) {
+  if (!are_finite(radial) || !T_world_sensor.matrix().allFinite()) {
     throw std::invalid_argument("radial velocities and the pose of the sensor must be finite");
   }
   if (last_stamp_ && scan.stamp() <= *last_stamp_) {
@@ -107,38 +122,13 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
     ground_.update(normal, support->offset_m + normal.dot(T_world_sensor.translation()), T_world_sensor.translation());
   }
 
-  std::optional<RangeImage> view;
-  MovingCells moving;
-  std::vector<std::uint32_t> groups;
-  const Vector3d velocity_sensor = T_world_sensor.linear().transpose() * sensor.velocity_world;
-  workers.both([&] { view.emplace(scan, velocity_sensor, workers); },
-               [&] {
-                 moving = gather_cells(scan, radial, is_moving, config_.grouping, workers);
-                 groups = group_cells(moving.cells, config_.grouping);
-               });
-  TrackingInput input{scan,
-                      radial,
-                      is_moving,
-                      sensor,
-                      seconds_between(*first_stamp_, scan.stamp()),
-                      sweep_duration(scan),
-                      std::move(moving),
-                      std::move(groups),
-                      {},
-                      {},
-                      std::move(*view),
-                      GroundHeights(ground_.ground(), scan.points(), is_moving, T_world_sensor)};
-  place_cells(input);
-  std::vector<Expectation> expected;
-  for (Entry& entry : entries_) {
-    entry.predict(input.stamp_s, config_.track);
-    expected.emplace_back(entry.predicted, sensor, config_);
-  }
-  std::vector<std::int32_t> owner(input.moving.cells.size(), kNobody);
-  assign(input, expected, owner);
-  associate(input, expected, owner);
-  collect_members(input, expected, owner, workers);
-  initiate_tracks(input, owner, workers);
+  const TrackingInput input = prepare(scan, radial, is_moving, sensor, workers);
+  const std::vector<Expectation> expected = expectations(input.stamp_s, sensor, [](const Entry&) { return true; });
+  owner_.assign(input.moving.cells.size(), kNobody);
+  assign(input, expected, owner_);
+  associate(input, expected, owner_);
+  collect_members(input, expected, owner_, workers);
+  initiate_tracks(input, owner_, workers);
   delete_tracks(input);
   std::vector<TrackedObject> objects;
   for (const Entry& entry : entries_) {
@@ -147,17 +137,56 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   return objects;
 }
 
-void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
-                                  const Workers& workers, std::vector<std::uint8_t>& is_moving) const {
+TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> radial,
+                                     std::span<const std::uint8_t> is_moving, const SensorMotion& sensor,
+                                     const Workers& workers) {
+  const Vector3d velocity_sensor = sensor.T_world_sensor.linear().transpose() * sensor.velocity_world;
+  workers.both([&] { view_.draw(scan, velocity_sensor, workers); },
+               [&] {
+                 gather_cells(scan, radial, is_moving, config_.grouping, workers, moving_);
+                 groups_ = group_cells(moving_.cells, config_.grouping);
+                 heights_.emplace(ground_.ground(), scan.points(), is_moving, sensor.T_world_sensor);
+               });
+  cell_points_.clear();
+  cell_directions_.clear();
+  for (const MovingCell& cell : moving_.cells) {
+    cell_points_.push_back(sensor.T_world_sensor * cell.centroid);
+    cell_directions_.push_back(sensor.direction_world(cell.direction, cell.time_s));
+  }
+  return {scan,
+          radial,
+          is_moving,
+          sensor,
+          seconds_between(*first_stamp_, scan.stamp()),
+          latest_time(scan),
+          moving_,
+          groups_,
+          cell_points_,
+          cell_directions_,
+          view_,
+          *heights_};
+}
+
+/// Of the chosen entries, at the stamp of a scan.
+template <typename Choice>
+std::vector<Expectation> ObjectTracker::expectations(double stamp_s, const SensorMotion& sensor, const Choice& choice) {
   std::vector<Expectation> expected;
-  for (const Entry& entry : entries_) {
-    if (entry.confirmed) {
-      Track predicted = entry.track;
-      predicted.predict(seconds_between(*first_stamp_, scan.stamp()), config_.track);
-      expected.emplace_back(predicted, sensor, config_);
+  for (Entry& entry : entries_) {
+    if (choice(entry)) {
+      entry.predict(stamp_s, config_.track);
+      expected.emplace_back(entry.predicted, entry.now, sensor, config_);
     }
   }
-  flag_rows(scan, radial, sensor, expected, workers, is_moving);
+  return expected;
+}
+
+void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
+                                  const Workers& workers, std::vector<std::uint8_t>& is_moving) {
+  if (!entries_.empty()) {
+    const double stamp_s = seconds_between(*first_stamp_, scan.stamp());
+    flag_rows(scan, radial, sensor, expectations(stamp_s, sensor, [](const Entry& entry) { return entry.confirmed; }),
+              workers, is_moving);
+  }
 }
 
 void ObjectTracker::clear_carrier(const Scan& scan, const Workers& workers,
@@ -268,7 +297,7 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
     entry.members.clear();
   }
   for (std::size_t i = 0; i < input.moving.rows.size(); ++i) {
-    const std::int32_t k = owner[input.moving.cell_of[i]];
+    const std::int32_t k = owner[input.moving.order.cell[i]];
     if (k != kNobody) {
       entries_[static_cast<std::size_t>(k)].members.push_back(input.moving.rows[i]);
     }
@@ -290,7 +319,7 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
       entry.members.clear();
       return;
     }
-    entry.track = std::move(corrected);
+    entry.set_track(std::move(corrected));
     entry.predict(input.stamp_s, config_.track);
     entry.missed = 0;
     ++entry.seen;
@@ -325,7 +354,7 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
     }
   }
   std::vector<Entry> newborn;
-  std::vector<Expectation> expectations;
+  std::vector<Expectation> expected;
   std::vector<CellGroup> groups =
       vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
   std::vector<std::optional<Track>> tracks(groups.size());
@@ -343,13 +372,13 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
       newborn.push_back({0, track, track});
       newborn.back().predict(input.stamp_s, config_.track);
       newborn.back().members = std::move(groups[i].rows);
-      expectations.emplace_back(newborn.back().predicted, input.sensor, config_);
+      expected.emplace_back(newborn.back().predicted, newborn.back().now, input.sensor, config_);
     }
   }
   // Where many points are static, some that seem to move are errors of measurement.
   std::vector<std::size_t> contradictions(newborn.size(), 0);
-  visit_static_points(input, expectations, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
-    contradictions[i] += contradicts(expectations[i], direction, input.radial[row], config_) ? 1 : 0;
+  visit_static_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
+    contradictions[i] += contradicts(expected[i], direction, input.radial[row], config_) ? 1 : 0;
   });
   for (std::size_t i = 0; i < newborn.size(); ++i) {
     Entry& entry = newborn[i];

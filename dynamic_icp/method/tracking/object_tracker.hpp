@@ -43,7 +43,7 @@ class ObjectTracker {
   /// Sets `is_moving` of the rows that confirmed tracks expect to be theirs in a scan that is not deskewed: what
   /// crosses the line of sight has no radial velocity, and tells itself from what stands by its past alone.
   void flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
-                     const Workers& workers, std::vector<std::uint8_t>& is_moving) const;
+                     const Workers& workers, std::vector<std::uint8_t>& is_moving);
 
   /// Clears `is_moving` of the rows that are too near to their sensor to be objects, in a scan that is not deskewed.
   void clear_carrier(const Scan& scan, const Workers& workers, std::vector<std::uint8_t>& is_moving) const;
@@ -63,6 +63,10 @@ class ObjectTracker {
  private:
   struct Entry;
 
+  TrackingInput prepare(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
+                        const SensorMotion& sensor, const Workers& workers);
+  template <typename Choice>
+  std::vector<Expectation> expectations(double stamp_s, const SensorMotion& sensor, const Choice& choice);
   // `expectations`: of each of the entries, in their order.
   void assign(const TrackingInput& input, std::span<const Expectation> expectations,
               std::vector<std::int32_t>& owner) const;
@@ -86,6 +90,15 @@ class ObjectTracker {
   std::optional<Stamp> first_stamp_;
   std::optional<Stamp> last_stamp_;
   Eigen::Isometry3d T_world_last_ = Eigen::Isometry3d::Identity();
+
+  // Of the last scan, for their memory
+  RangeImage view_;
+  MovingCells moving_;
+  std::vector<std::uint32_t> groups_;  ///< of the cells
+  std::vector<Eigen::Vector3d> cell_points_;
+  std::vector<Eigen::Vector3d> cell_directions_;
+  std::vector<std::int32_t> owner_;  ///< of the cells
+  std::optional<GroundHeights> heights_;
 };
 
 }  // namespace dynamic_icp::tracking

@@ -14,10 +14,14 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr std::size_t kMinPointsOfAYaw = 5;
-constexpr std::size_t kMaxPointsOfAYaw = 200;
+constexpr int kMaxPointsOfAYaw = 200;
 constexpr double kCoarseStep_rad = 0.052;  // 3 degrees
 constexpr double kFineStep_rad = 0.0087;   // half a degree
 constexpr double kNearestToEdge_m = 0.05;  // closer than the noise of the range is not better
+
+/// Points in a plane, and a value for each, on the stack.
+using PlanePoints = Eigen::Array<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, kMaxPointsOfAYaw>;
+using PlaneValues = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPointsOfAYaw, 1>;
 
 /// The value that has `rank` others before it.
 double ranked(std::vector<double>& values, std::size_t rank) {
@@ -26,19 +30,53 @@ double ranked(std::vector<double>& values, std::size_t rank) {
   return *place;
 }
 
+constexpr std::size_t kFew = 8;
+
+/// Keeps the lowest values that came, ascending.
+struct Lowest {
+  std::array<double, kFew> values{};
+  std::size_t count = 0;
+
+  void add(double value, std::size_t most) {
+    if (count == most && !(value < values[count - 1])) {
+      return;
+    }
+    std::size_t place = count < most ? count++ : count - 1;
+    for (; place > 0 && value < values[place - 1]; --place) {
+      values[place] = values[place - 1];
+    }
+    values[place] = value;
+  }
+};
+
+/// span_along without `rank` points at either end, fewer than kFew.
+Interval span_without_few(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin,
+                          const Eigen::Vector3d& axis, std::size_t rank) {
+  Lowest low;
+  Lowest high;  // of the negative values
+  for (const Eigen::Vector3d& point : points) {
+    const double value = (point - origin).dot(axis);
+    low.add(value, rank + 1);
+    high.add(-value, rank + 1);
+  }
+  return {low.values[rank], -high.values[rank]};
+}
+
 /// Sum of 1 / d over the points, with the distance d of each to the nearest side of the rectangle around them.
-double closeness(const Eigen::Array2Xd& points, double yaw) {
+double closeness(const PlanePoints& points, double yaw) {
   const double c = std::cos(yaw);
   const double s = std::sin(yaw);
-  const Eigen::ArrayXd along = (c * points.row(0) + s * points.row(1)).transpose();
-  const Eigen::ArrayXd across = (c * points.row(1) - s * points.row(0)).transpose();
-  const Eigen::ArrayXd to_ends = (along - along.minCoeff()).min(along.maxCoeff() - along);
-  const Eigen::ArrayXd to_sides = (across - across.minCoeff()).min(across.maxCoeff() - across);
-  return to_ends.min(to_sides).max(kNearestToEdge_m).inverse().sum();
+  PlaneValues along = c * points.row(0).transpose() + s * points.row(1).transpose();
+  PlaneValues across = c * points.row(1).transpose() - s * points.row(0).transpose();
+  const Eigen::Array2d low(along.minCoeff(), across.minCoeff());
+  const Eigen::Array2d high(along.maxCoeff(), across.maxCoeff());
+  along = (along - low[0]).min(high[0] - along);
+  across = (across - low[1]).min(high[1] - across);
+  return along.min(across).max(kNearestToEdge_m).inverse().sum();
 }
 
 /// The best of the yaws within `range` of `middle`, a step apart.
-double best_yaw(const Eigen::Array2Xd& points, double middle, double range, double step) {
+double best_yaw(const PlanePoints& points, double middle, double range, double step) {
   const int steps = std::max(1, static_cast<int>(std::ceil(range / step)));
   double best = middle;
   double highest = closeness(points, middle);
@@ -139,12 +177,15 @@ Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector
   if (points.empty()) {
     return {};
   }
+  const auto rank = static_cast<std::size_t>(trim * static_cast<double>(points.size() - 1));
+  if (rank < kFew) {
+    return span_without_few(points, origin, axis, rank);
+  }
   std::vector<double> values;
   values.reserve(points.size());
   for (const Eigen::Vector3d& point : points) {
     values.push_back((point - origin).dot(axis));
   }
-  const auto rank = static_cast<std::size_t>(trim * static_cast<double>(values.size() - 1));
   const double low = ranked(values, rank);
   return {low, ranked(values, values.size() - 1 - rank)};
 }
@@ -155,7 +196,7 @@ std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, const Eig
     return std::nullopt;
   }
   const std::size_t stride = (points.size() + kMaxPointsOfAYaw - 1) / kMaxPointsOfAYaw;
-  Eigen::Array2Xd plane(2, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
+  PlanePoints plane(2, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
   for (Eigen::Index i = 0; i < plane.cols(); ++i) {
     // Relative to one of them: coordinates in the world may be large.
     plane.col(i) = level.leftCols<2>().transpose() * (points[static_cast<std::size_t>(i) * stride] - points.front());

@@ -45,9 +45,9 @@ Cell cell_of(const Eigen::Vector3d& point) { return cell_of(point.x(), point.y()
 
 std::size_t place(int column, int row) { return static_cast<std::size_t>(column * kRows + row); }
 
-/// Of up to kPixelBlock points: the columns, the places in the image and the squared ranges (m^2).
-void find_cells(std::span<const Eigen::Vector3d> points, std::uint16_t* columns, std::uint32_t* places,
-                float* squared) {
+/// Of up to kPixelBlock points: the columns, the places in the image and the squared ranges (m^2). Returns the highest
+/// row of the image among them.
+int find_cells(std::span<const Eigen::Vector3d> points, std::uint16_t* columns, std::uint32_t* places, float* squared) {
   std::array<double, kPixelBlock> x;
   std::array<double, kPixelBlock> y;
   std::array<double, kPixelBlock> z;
@@ -56,51 +56,57 @@ void find_cells(std::span<const Eigen::Vector3d> points, std::uint16_t* columns,
     y[i] = points[i].y();
     z[i] = points[i].z();
   }
-  std::array<Cell, kPixelBlock> cells;
+  int highest = 0;
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     for (std::size_t i = 0; i < points.size(); ++i) {
-      cells[i] = cell_of(x[i], y[i], z[i]);
+      const Cell cell = cell_of(x[i], y[i], z[i]);
+      columns[i] = static_cast<std::uint16_t>(cell.column);
+      places[i] = static_cast<std::uint32_t>(cell.column * kRows + cell.row);
+      highest = std::max(highest, cell.row);
       squared[i] = static_cast<float>(x[i] * x[i] + y[i] * y[i] + z[i] * z[i]);
     }
   });
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    columns[i] = static_cast<std::uint16_t>(cells[i].column);
-    places[i] = static_cast<std::uint32_t>(place(cells[i].column, cells[i].row));
-  }
+  return highest;
 }
 
 }  // namespace
 
 double RangeImage::cell_width() { return 8.0 / kColumns; }  // where the measure grows most slowly, at 45 degrees
 
-RangeImage::RangeImage(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers)
-    : nearest_squared_(static_cast<std::size_t>(kColumns * kRows), std::numeric_limits<float>::infinity()),
-      column_seen_(kColumns, 0),
-      columns_(scan.size()) {
-  std::vector<std::uint32_t> places(scan.size());
-  std::vector<float> squared(scan.size());
-  workers.for_blocks(scan.size(), kPixelBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
-    find_cells(std::span(scan.points()).subspan(begin, end - begin), &columns_[begin], &places[begin], &squared[begin]);
+void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers) {
+  const std::size_t rows = scan.size();
+  nearest_squared_.assign(static_cast<std::size_t>(kColumns * kRows), std::numeric_limits<float>::infinity());
+  column_seen_.assign(kColumns, 0);
+  columns_.resize(rows);
+  places_.resize(rows);
+  squared_.resize(rows);
+  highest_of_block_.resize(Workers::block_count(rows, kPixelBlock));
+  workers.for_blocks(rows, kPixelBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    highest_of_block_[block] = find_cells(std::span(scan.points()).subspan(begin, end - begin), &columns_[begin],
+                                          &places_[begin], &squared_[begin]);
   });
-  std::vector<std::uint16_t> measured_columns = columns_;
   if (scan.has_times()) {
-    workers.for_blocks(scan.size(), kPixelBlock, [&](std::size_t, std::size_t begin, std::size_t end) {
+    measured_columns_.resize(rows);
+    workers.for_blocks(rows, kPixelBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
       std::array<float, kPixelBlock> unit;
-      find_cells(std::span(scan.directions()).subspan(begin, end - begin), &measured_columns[begin], &places[begin],
-                 unit.data());
+      highest_of_block_[block] = find_cells(std::span(scan.directions()).subspan(begin, end - begin),
+                                            &measured_columns_[begin], &places_[begin], unit.data());
       for (std::size_t row = begin; row < end; ++row) {
         const double closing = scan.times()[row] * scan.directions()[row].dot(velocity_sensor);
-        const auto range = static_cast<float>(std::max(0.0, std::sqrt(static_cast<double>(squared[row])) - closing));
-        squared[row] = range * range;
+        const auto range = static_cast<float>(std::max(0.0, std::sqrt(static_cast<double>(squared_[row])) - closing));
+        squared_[row] = range * range;
       }
     });
   }
-  for (std::size_t row = 0; row < scan.size(); ++row) {
-    float& nearest = nearest_squared_[places[row]];
-    nearest = std::min(nearest, squared[row]);
-    column_seen_[measured_columns[row]] = 1;
-    highest_row_ = std::max(highest_row_, static_cast<int>(places[row] % kRows));
+  const std::vector<std::uint16_t>& measured = scan.has_times() ? measured_columns_ : columns_;
+  for (std::size_t row = 0; row < rows; ++row) {
+    float& nearest = nearest_squared_[places_[row]];
+    if (squared_[row] < nearest) {  // of neighbours in one cell few are: a store each would make them wait for it
+      nearest = squared_[row];
+    }
+    column_seen_[measured[row]] = 1;
   }
+  highest_row_ = highest_of_block_.empty() ? 0 : *std::max_element(highest_of_block_.begin(), highest_of_block_.end());
 }
 
 int RangeImage::column_count() { return kColumns; }
@@ -120,6 +126,9 @@ bool RangeImage::is_above_all(const Eigen::Vector3d& point) const { return cell_
 bool RangeImage::hides(const Eigen::Vector3d& point, double clearance_m) const {
   const Cell cell = cell_of(point);
   bool column_seen = false;
+  if (column_seen_.empty()) {
+    return true;
+  }
   for (const int step : {-1, 0, 1}) {
     column_seen =
         column_seen || 0 != column_seen_[static_cast<std::size_t>((cell.column + step + kColumns) % kColumns)];

@@ -20,8 +20,16 @@ namespace dynamic_icp::tracking {
 /// seen anywhere.
 class RangeImage {
  public:
+  /// Where nothing is seen.
+  RangeImage() = default;
+
   /// From a deskewed scan, as it was measured: `velocity_sensor` (m/s) is that of the sensor.
-  RangeImage(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers);
+  RangeImage(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers) {
+    draw(scan, velocity_sensor, workers);
+  }
+
+  /// The same in the memory of another scan.
+  void draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers);
 
   /// Whether what is at `point` (m, sensor frame when that direction was measured) is hidden, or would be: something at
   /// least `clearance_m` nearer is seen in its direction, or nothing is seen above and below it either, as beyond the
@@ -51,6 +59,12 @@ class RangeImage {
   std::vector<char> column_seen_;
   int highest_row_ = 0;
   std::vector<std::uint16_t> columns_;
+
+  // Of each row of the scan, as it was measured
+  std::vector<std::uint16_t> measured_columns_;  ///< where the scan took time
+  std::vector<std::uint32_t> places_;            ///< in the image
+  std::vector<float> squared_;                   ///< of the range, m^2
+  std::vector<int> highest_of_block_;            ///< row of the image
 };
 
 }  // namespace dynamic_icp::tracking

@@ -71,6 +71,10 @@ void Track::correct(const Detection& detection, double stamp_s, const TrackConfi
 }
 
 void Track::evaluate() {
+  if (hypotheses_.size() == 1) {
+    best_ = 0;
+    return;
+  }
   const auto better = [](const BoxFilter& a, const BoxFilter& b) { return a.log_likelihood() < b.log_likelihood(); };
   const BoxFilter best = *std::max_element(hypotheses_.begin(), hypotheses_.end(), better);
   if (detections_ >= kDecisionDetections) {
