@@ -5,6 +5,8 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
+
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/recording/formats/json_row.hpp"
 
@@ -33,23 +35,31 @@ std::optional<TwistRow> twist(const JsonRow& row) {
   return TwistRow{.angular = twist.vector("angular"), .linear = twist.vector("linear")};
 }
 
+/// A square matrix as a list of its rows.
+template <int kSize>
+Eigen::Matrix<double, kSize, kSize> square(const JsonRow& row, const char* key) {
+  Eigen::Matrix<double, kSize, kSize> matrix;
+  const JsonRow::Json& rows = row.list(key);
+  for (std::size_t r = 0; r < kSize; ++r) {
+    if (rows.size() != kSize || !rows[r].is_array() || rows[r].size() != kSize) {
+      row.fail(key, fmt::format("{0} lists of {0} numbers", kSize));
+    }
+    for (std::size_t c = 0; c < kSize; ++c) {
+      matrix(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = row.number(rows[r][c], key);
+    }
+  }
+  return matrix;
+}
+
 /// None where the file has null, and in runs of earlier versions.
 std::optional<Matrix6d> pose_covariance(const JsonRow& row) {
   constexpr const char* kKey = "pose_covariance";
-  if (!row.has(kKey) || row.get(kKey).is_null()) {
-    return std::nullopt;
-  }
-  Matrix6d covariance;
-  const JsonRow::Json& rows = row.list(kKey);
-  for (std::size_t r = 0; r < 6; ++r) {
-    if (rows.size() != 6 || !rows[r].is_array() || rows[r].size() != 6) {
-      row.fail(kKey, "6 lists of 6 numbers");
-    }
-    for (std::size_t c = 0; c < 6; ++c) {
-      covariance(static_cast<Eigen::Index>(r), static_cast<Eigen::Index>(c)) = row.number(rows[r][c], kKey);
-    }
-  }
-  return covariance;
+  return row.has(kKey) && !row.get(kKey).is_null() ? std::optional(square<6>(row, kKey)) : std::nullopt;
+}
+
+/// NaN in runs of earlier versions.
+Eigen::Matrix3d covariance_if_any(const JsonRow& row, const char* key) {
+  return row.has(key) ? square<3>(row, key) : Eigen::Matrix3d(Eigen::Matrix3d::Constant(kNaN));
 }
 
 std::vector<Vector6d> unobservable_directions(const JsonRow& row) {
@@ -103,13 +113,36 @@ std::optional<ObjectRow::Box> box(const JsonRow& row) {
       .centre = box.vector("center"), .size = box.vector("size"), .yaw_rad = 2.0 * std::atan2(xyzw.z(), xyzw.w())};
 }
 
+std::array<std::string, 6> faces(const JsonRow& box) {
+  constexpr const char* kFaces[] = {"front", "rear", "left", "right", "top", "bottom"};
+  std::array<std::string, 6> views;
+  for (std::size_t k = 0; k < views.size(); ++k) {
+    views[k] = box.has("faces") ? box.object("faces").text(kFaces[k]) : "unknown";
+  }
+  return views;
+}
+
+/// Of a method that tracks: only such objects have an age.
+std::optional<ObjectRow::Track> track(const JsonRow& row) {
+  if (!row.has("age_scans") || !row.has("box")) {
+    return std::nullopt;
+  }
+  const JsonRow box = row.object("box");
+  return ObjectRow::Track{.age_scans = row.integer("age_scans"),
+                          .tangential_observed = row.has("tangential_observed") && row.truth("tangential_observed"),
+                          .velocity_covariance = covariance_if_any(row, "velocity_covariance"),
+                          .centre_covariance = covariance_if_any(box, "center_covariance"),
+                          .faces = faces(box)};
+}
+
 ObjectRow object_row(const JsonRow& row) {
   return {.id = row.integer("id"),
           .velocity = row.vector("velocity"),
           .centroid = row.vector("centroid"),
           .extent = row.vector("extent"),
           .points = row.number("points"),
-          .box = box(row)};
+          .box = box(row),
+          .track = track(row)};
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -62,6 +63,16 @@ struct ObjectRow {
     double yaw_rad = 0.0;
   };
   std::optional<Box> box = std::nullopt;
+  /// What a method that tracks objects states beyond their boxes. NaN where an earlier version stated nothing.
+  struct Track {
+    std::int64_t age_scans = 0;
+    bool tangential_observed = false;     ///< whether the speed across the line of sight was measured
+    Eigen::Matrix3d velocity_covariance;  ///< (m/s)^2, sensor frame
+    Eigen::Matrix3d centre_covariance;    ///< m^2, sensor frame
+    /// Front, rear, left, right, top and bottom: "seen", "hidden" or "unknown".
+    std::array<std::string, 6> faces;
+  };
+  std::optional<Track> track = std::nullopt;
 };
 
 /// How the sensor moves at the stamp of a scan, m/s, sensor frame: by the twist where the run tells it, else the ego

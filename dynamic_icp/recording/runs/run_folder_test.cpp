@@ -54,6 +54,27 @@ TEST(RunFolder, ReadsAllThatARunWrote) {
   EXPECT_EQ(text_of(run.run, "configuration.preprocess.voxel_size_m"), "");
 }
 
+TEST(RunFolder, ReadsWhatATrackerStatesOfAnObject) {
+  const TestFolder folder;
+  SampleRun().write_run(folder);
+  EXPECT_FALSE(read_run(folder.path() / "run").objects[2][0].track) << "without an age it is not tracked";
+  const std::string box =
+      R"("age_scans":9,"tangential_observed":true,"velocity_covariance":[[1,2,3],[2,5,6],[3,6,9]],"box":{"center":[27,0,0],)"
+      R"("center_covariance":[[4,0,0],[0,5,0],[0,0,null]],"size":[4,2,1],"orientation_xyzw":[0,0,0,1],)"
+      R"("faces":{"front":"hidden","rear":"seen","left":"unknown","right":"seen","top":"seen","bottom":"unknown"}},)";
+  replace(folder, "run/objects.jsonl", R"("velocity":[12,0,0])", box + R"("velocity":[12,0,0])");
+  const std::optional<ObjectRow::Track> track = read_run(folder.path() / "run").objects[0][0].track;
+  ASSERT_TRUE(track);
+  EXPECT_EQ(track->age_scans, 9);
+  EXPECT_TRUE(track->tangential_observed);
+  EXPECT_EQ(track->velocity_covariance(1, 2), 6.0);
+  EXPECT_EQ(track->centre_covariance(1, 1), 5.0);
+  EXPECT_TRUE(std::isnan(track->centre_covariance(2, 2))) << "null";
+  EXPECT_EQ(track->faces, (std::array<std::string, 6>{"hidden", "seen", "unknown", "seen", "seen", "unknown"}));
+  replace(folder, "run/objects.jsonl", "[3,6,9]]", "[3,6]]");
+  EXPECT_NE(message_of(folder).find("3 lists of 3 numbers"), std::string::npos) << message_of(folder);
+}
+
 TEST(RunFolder, IsToldByTheFilesOfEveryRun) {
   const TestFolder folder;
   EXPECT_FALSE(is_run_folder(folder.path() / "run"));

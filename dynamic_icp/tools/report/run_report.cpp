@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/tools/report/object_details.hpp"
 #include "dynamic_icp/tools/report/run_data.hpp"
 #include "dynamic_icp/tools/report/run_facts.hpp"
 
@@ -65,6 +66,7 @@ PageContent run_report(const std::filesystem::path& folder, const ScanChoice& ch
 
   PageContent content;
   Json data = run_data(run, truth, name_of(run));
+  data["frames"]["object_details"] = object_details(run);
   data["scans"] = scans_data(0, kept, content);
   data["map"] = map_data(0, kept.map, content);
   content.report = {{"schema", 1},           {"kind", "run"},
