@@ -2,6 +2,8 @@
 import { colourings } from './colour/colourings.js';
 import { layers, toggled } from './layers.js';
 import { changeLimit } from './panels/legend.js';
+import { selectNext, toggleChase } from './panels/objects.js';
+import { zoomAbout } from './panels/plots.js';
 import { goToTrouble } from './panels/timeline.js';
 import { SIZE } from './panels/toolbar.js';
 import { otherTheme } from './theme.js';
@@ -26,6 +28,8 @@ export function keyBindings(report, store, player, view, showHelp) {
           act: (event) => goToTrouble(report, store, player, event.shiftKey ? -1 : 1) },
         { keys: ['>', '.'], shown: '.', meaning: 'play faster', act: () => player.faster(1) },
         { keys: ['<', ','], shown: ',', meaning: 'play slower', act: () => player.faster(-1) },
+        { keys: ['z', 'Z'], shown: 'Z Shift Z', meaning: 'plots: a shorter or longer stretch of time',
+          act: (event) => zoomAbout(report, store, event.shiftKey ? 0.5 : 2) },
       ],
     },
     {
@@ -35,6 +39,17 @@ export function keyBindings(report, store, player, view, showHelp) {
         { keys: ['v'], shown: 'V', meaning: 'free', act: camera('free') },
         { keys: ['c'], shown: 'C', meaning: 'from above', act: camera('top') },
         { keys: ['r'], shown: 'R', meaning: 'reset camera', act: () => view.resetCamera() },
+      ],
+    },
+    {
+      title: 'Objects and lengths',
+      bindings: [
+        { keys: ['x', 'X'], shown: 'X Shift X', meaning: 'select the next or previous object of the frame, the nearest first',
+          act: (event) => selectNext(report, store, event.shiftKey ? -1 : 1) },
+        { keys: ['w'], shown: 'W', meaning: 'follow the selected object', act: () => toggleChase(store) },
+        { keys: ['l'], shown: 'L', meaning: 'ruler: the distance between two clicks', act: () => store.set({ measuring: !state.measuring, ruler: [] }) },
+        { keys: ['Escape'], shown: 'Esc', meaning: 'no ruler; then: select nothing',
+          act: () => store.set(state.measuring ? { measuring: false, ruler: [] } : { object: null, chase: false, picked: null }) },
       ],
     },
     {
@@ -55,6 +70,7 @@ export function keyBindings(report, store, player, view, showHelp) {
     {
       title: 'Page',
       bindings: [
+        { keys: ['P'], shown: 'Shift P', meaning: 'save the view as PNG', act: () => view.savePicture() },
         { keys: ['t'], shown: 'T', meaning: 'toggle theme', act: () => store.set({ theme: otherTheme(state) }) },
         { keys: ['?', 'h'], shown: '?', meaning: 'this list', act: showHelp },
       ],

@@ -11,6 +11,7 @@ import { createComparisonSheet, createRunChips, createTableSheet } from './panel
 import { createHeader, firstRun } from './panels/header.js';
 import { createHelp } from './panels/help.js';
 import { createLegend, createPointReading } from './panels/legend.js';
+import { createObjectCard, createObjectSheet } from './panels/objects.js';
 import { createDistributionSheet, createPlotSheet } from './panels/plots.js';
 import { createStatus } from './panels/status.js';
 import { createConfigurationSheet, createSummarySheet } from './panels/summary.js';
@@ -34,17 +35,20 @@ function usualState(report) {
     colour: 'compensated', limit: null, layers: usualLayers(),
     camera: report.kind === 'run' ? 'follow' : 'free', eye: null, size: 2.5, speed: 1,
     tab: report.kind === 'benchmark' ? 'tables' : 'plots', hidden: new Set(), theme: null,
+    object: null, chase: false, zoom: null, folded: new Set(),
   };
 }
 
 function sheetsOf(report, store, player) {
   const plots = { id: 'plots', name: 'Plots', element: createPlotSheet(report, store, player) };
   const distributions = { id: 'distributions', name: 'CDF', element: createDistributionSheet(report, store) };
+  const hasObjects = report.kind === 'run' && report.runs[0].frames.objects.some((list) => list.length > 0);
+  const objects = hasObjects ? [{ id: 'objects', name: 'Objects', element: createObjectSheet(report, store, player) }] : [];
   const summary = { id: 'summary', name: report.kind === 'run' ? 'Summary' : 'Run', element: createSummarySheet(report, store) };
   const configuration = { id: 'configuration', name: 'Settings', element: createConfigurationSheet(report, store) };
   const several = report.kind === 'run' ? [] : [{ id: 'numbers', name: 'Metrics', element: createComparisonSheet(report, store) }];
   const tables = report.tables?.length ? [{ id: 'tables', name: 'Tables', element: createTableSheet(report) }] : [];
-  return [...tables, plots, distributions, ...several, summary, configuration];
+  return [...tables, plots, ...objects, distributions, ...several, summary, configuration];
 }
 
 /** Keeps the address in step with the state, not more often than browsers allow. */
@@ -84,9 +88,12 @@ function start() {
   }
   const usual = usualState(report);
   const fromLink = fitState(report, { ...usual, ...readFragment(location.hash) });
-  const store = createStore({ ...fromLink, systemTheme: 'light', playing: false, shown: null, picked: null, limits: {} });
+  const store = createStore({ ...fromLink, systemTheme: 'light', playing: false, shown: null, picked: null, limits: {}, measuring: false, ruler: [] });
   store.watch(['run'], (state) => store.set({ limits: usualLimits(runAt(report, state)) }));
-  store.watch(['group', 'run'], (state) => store.set({ frame: fitState(report, state).frame }));
+  store.watch(['group', 'run'], (state) => {
+    const { frame, object, chase } = fitState(report, state);
+    store.set({ frame, object, chase });
+  });
   followTheme(store);
 
   const player = createPlayer(report, store);
@@ -96,7 +103,9 @@ function start() {
   const help = createHelp(bindings);
   const link = () => `${location.href.split('#')[0]}#${writeFragment(store.state, usual)}`;
   const stage = element('div', { class: 'stage' }, view.element,
-    createStatus(report, store), createLegend(report, store), createPointReading(store));
+    createStatus(report, store), createLegend(report, store),
+    element('div', { class: 'readings' }, createPointReading(store), createObjectCard(report, store)));
+  store.watch(['camera'], ({ camera }) => stage.classList.toggle('from-above', camera === 'top'));
   const page = element('div', { class: 'page' },
     createHeader(report, store, { showHelp, link }),
     element('main', { class: 'columns' },

@@ -1,5 +1,5 @@
 // What is looked at: the runs that are shown over each other, the one in front, and its frames.
-import { categoryColour } from './colour/maps.js';
+import { CATEGORY_COUNT, categoryColour } from './colour/maps.js';
 import { frameCount, keptScan, lastFrame } from './runs.js';
 
 /** The groups of a page; a page of one run has one. */
@@ -13,7 +13,10 @@ export const runAt = (report, state) => report.runs[state.run];
 /** The runs shown over each other, with their colours. */
 export const runsShown = (report, state, ground) =>
   groupAt(report, state).runs
-    .map((index, k) => ({ index, run: report.runs[index], colour: categoryColour(k, ground), dash: k >= 8 }))
+    .map((index, k) => {
+      const place = report.runs[index].colour ?? k; // a method has one everywhere
+      return { index, run: report.runs[index], colour: categoryColour(place, ground), dash: place >= CATEGORY_COUNT };
+    })
     .filter(({ index }) => index === state.run || !state.hidden.has(index));
 
 /** The frame of another run over the same recording that belongs to a frame of the one in front: the same scan. */
@@ -37,7 +40,8 @@ export function fitState(report, state) {
   const runs = groups[group].runs;
   const withScans = runs.find((index) => report.runs[index].scans !== null);
   const run = runs.includes(state.run) ? state.run : withScans ?? runs[0] ?? 0;
-  return { ...state, group, run, frame: Math.min(state.frame, lastFrame(report.runs[run])) };
+  const object = report.runs[run].frames.objects.some((list) => list.some(([id]) => id === state.object)) ? state.object : null;
+  return { ...state, group, run, frame: Math.min(state.frame, lastFrame(report.runs[run])), object, chase: object !== null && state.chase === true };
 }
 
 /** A frame to begin with: the first whose scan has moving objects in it, some way into the drive. */

@@ -32,6 +32,19 @@ const wholeNumbers = {
   write: (set) => [...set].join(','),
   read: (text) => new Set(text.split(',').filter((entry) => /^\d{1,6}$/.test(entry)).map(Number)),
 };
+/** Two ascending numbers. */
+const span = {
+  write: (list) => list.map((value) => Number(value.toPrecision(6))).join(','),
+  read: (text) => {
+    const list = numberList(text);
+    return list.length === 2 && list.every(Number.isFinite) && list[0] < list[1] ? list : undefined;
+  },
+};
+const words = {
+  write: (set) => [...set].join(','),
+  read: (text) => new Set(text.split(',').filter((entry) => /^[a-z_-]{1,40}$/.test(entry))),
+};
+const flag = { write: (value) => (value ? '1' : '0'), read: (text) => (/^[01]$/.test(text) ? text === '1' : undefined) };
 const eye = {
   write: (list) => list.map((value) => Number(value.toFixed(3))).join(','),
   read: (text) => (isEye(numberList(text)) ? numberList(text) : undefined),
@@ -51,6 +64,10 @@ const kept = {
   speed: oneOf(SPEEDS),
   tab: word, // sheets differ from page to page: tabs.js shows the first for one it has not
   hidden: wholeNumbers,
+  object: wholeNumber,
+  chase: flag,
+  zoom: span, // of the plots
+  folded: words, // plots
   theme: oneOf(['light', 'dark']),
 };
 

@@ -1,6 +1,6 @@
 // The page as a reader meets it, opened from a file by a headless Chromium. Skipped with 77 where there is none.
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test, { after, before } from 'node:test';
@@ -184,7 +184,7 @@ test('every layer changes the picture, and back', async () => {
       await box.click();
       assert.ok(before.equals(await picture(page)), `${layer} and back`);
     }
-    assert.match(await page.locator('.labels').innerText(), /6 · \d+ m\/s/);
+    assert.match(await page.locator('.labels').innerText(), /6 · ~\d+ m\/s/);
     await page.keyboard.press('i');
     await picture(page);
     assert.doesNotMatch(await page.locator('.labels').innerText(), /m\/s/);
@@ -235,10 +235,176 @@ test('a click on a plot goes to that frame; hovering reads the values there', as
     await area.hover({ position: { x: 46, y: 30 } });
     assert.match(await page.textContent('[data-plot="iterations"] .chart-at'), /^time 0/);
     assert.equal(await page.textContent('[data-plot="ego_speed"] .reading b'), at15);
+    await page.keyboard.down('Shift'); // a drag with Shift scrubs
     await page.mouse.down();
     await page.mouse.move(box.x + 44 + ((box.width - 52) * 0.8) / 2.3, box.y + 30, { steps: 5 });
     await page.mouse.up();
+    await page.keyboard.up('Shift');
     await shown(page, 8);
+    assert.ok(await page.locator('.zoomed').isHidden());
+  });
+});
+
+test('a drag over a plot zooms all of them in time, a double click shows all again; so do keys', async () => {
+  await onPage(`${run()}#frame=5`, async (page) => {
+    const area = page.locator('[data-plot="iterations"] .chart-area');
+    const box = await area.boundingBox();
+    const at = (seconds) => box.x + 44 + ((box.width - 52) * seconds) / 2.3;
+    const speed = page.locator('[data-plot="ego_speed"] canvas');
+    const whole = await speed.screenshot();
+    await page.mouse.move(at(0.5), box.y + 30);
+    await page.mouse.down();
+    await page.mouse.move(at(1.5), box.y + 30, { steps: 5 });
+    assert.ok(await page.locator('[data-plot="iterations"] .selection').isVisible());
+    await page.mouse.up();
+    assert.match(await page.textContent('.zoomed'), /^Time 0\.5 to 1\.5 s/);
+    assert.ok(!whole.equals(await speed.screenshot()), 'other plots go along');
+    await shown(page, 5);
+    await area.click({ position: { x: 44 + (box.width - 52) / 2, y: 30 } }); // now 1.0 s
+    await shown(page, 10);
+    await page.waitForFunction(() => /zoom=0\.\d+,1\.\d+/.test(location.hash));
+    await area.dblclick({ position: { x: 44 + (box.width - 52) / 2, y: 30 } });
+    assert.ok(await page.locator('.zoomed').isHidden());
+    await page.keyboard.press('z');
+    assert.ok(await page.locator('.zoomed').isVisible());
+    await page.keyboard.press('Shift+Z');
+    assert.ok(await page.locator('.zoomed').isHidden());
+  });
+});
+
+test('plots can be folded, which the address keeps', async () => {
+  await onPage(`${run()}#frame=5`, async (page) => {
+    const fold = page.locator('[data-plot="ego_speed"] .fold');
+    await fold.click();
+    assert.equal(await fold.getAttribute('aria-expanded'), 'false');
+    assert.ok(await page.locator('[data-plot="ego_speed"] .chart-area').isHidden());
+    assert.ok(await page.locator('[data-plot="iterations"] .chart-area').isVisible());
+    assert.equal(await page.evaluate(() => document.activeElement.closest('.chart')?.dataset.plot), 'ego_speed', 'focus stays');
+    await page.waitForFunction(() => /folded=ego_speed/.test(location.hash));
+    await page.keyboard.press('Enter');
+    assert.ok(await page.locator('[data-plot="ego_speed"] .chart-area').isVisible());
+  });
+});
+
+/** A pixel of the view where an object's box is: the place of its label, a little below. */
+async function placeOf(page, id) {
+  const box = await page.locator(`.labels span:visible:text-matches("^${id} · ")`).boundingBox();
+  return [box.x + box.width / 2, box.y + box.height + 8];
+}
+
+test('objects: a key, a click in the view or on a row selects one, marks it, and tells what is known of it', async () => {
+  await onPage(`${run()}#frame=6`, async (page) => {
+    const plain = await picture(page);
+    assert.ok(await page.locator('.object-card').isHidden());
+    await page.keyboard.press('x');
+    const nearest = Number(/Object (\d+)/.exec(await page.textContent('.object-card'))[1]);
+    assert.ok(!plain.equals(await picture(page)));
+    const counts = await colours(page);
+    assert.ok((counts['194,0,122'] ?? 0) > 30, 'box and points in the colour of the selection');
+    await page.keyboard.press('x');
+    assert.doesNotMatch(await page.textContent('.object-card'), new RegExp(`Object ${nearest}\\D`));
+    await page.keyboard.press('Escape');
+    assert.ok(await page.locator('.object-card').isHidden());
+    assert.ok(plain.equals(await picture(page)));
+
+    await page.mouse.click(...await placeOf(page, 6));
+    assert.match(await page.textContent('.object-card'), /Object 6.*speed15 ± 0\.3 m\/s.*4\.4 × 1\.8 × 1\.5 m.*seen in\d+ scans.*age7 scans.*not observed/s);
+    await page.click('.object-card >> text=Track');
+    assert.match(await page.textContent('#sheet-objects'), /Object 6.*faces seenfront, left.*faces hiddenright/s);
+    assert.match(await page.getAttribute('[data-plot="track-speed"] canvas', 'aria-label'), /speed, ± 1 sigma from 15 to 15/);
+    assert.equal(await page.getAttribute('.tracks [aria-label="Object 6"]', 'aria-pressed'), 'true');
+    await page.waitForFunction(() => /object=6/.test(location.hash));
+
+    // By keyboard: from row to row, Enter selects, whose points are in the scan.
+    await page.focus('.tracks tbody button');
+    await page.keyboard.press('ArrowDown');
+    const second = await page.evaluate(() => document.activeElement.textContent);
+    await page.keyboard.press('Enter');
+    assert.match(await page.textContent('#sheet-objects h2'), new RegExp(`Object ${second}$`));
+    await page.click('.tracks >> text=m/s');
+    assert.equal(await page.getAttribute('.tracks th:has-text("m/s")', 'aria-sort'), 'descending');
+    const speeds = await page.$$eval('.tracks tbody tr', (rows) => rows.map((row) => parseFloat(row.children[3].textContent)));
+    assert.deepEqual(speeds, [...speeds].sort((a, b) => b - a));
+  });
+});
+
+test('the camera follows a selected object, and the sensor again', async () => {
+  await onPage(`${run()}#frame=6&object=6`, async (page) => {
+    await page.waitForSelector('.object-card:not([hidden])');
+    const bySensor = await picture(page);
+    await page.click('.object-card >> text=Follow');
+    assert.ok(!(await isSame(page, await picture(page), bySensor)));
+    const [x, y] = await placeOf(page, 6);
+    await page.keyboard.press('Shift+ArrowRight');
+    await shown(page, 16);
+    await picture(page);
+    const [x2, y2] = await placeOf(page, 6);
+    assert.ok(Math.hypot(x2 - x, y2 - y) < 25, `it stays where it is: ${x}, ${y} and ${x2}, ${y2}`);
+    await page.waitForFunction(() => /chase=1/.test(location.hash));
+    await page.keyboard.press('Shift+ArrowLeft');
+    await shown(page, 6);
+    await page.keyboard.press('w');
+    assert.ok(await isSame(page, await picture(page), bySensor));
+  });
+});
+
+test('boxes are neutral while colours tell the Doppler, and have those of their ids in the segmentation', async () => {
+  await onPage(`${run()}#frame=6&layers=boxes`, async (page) => {
+    const box = '59,69,84';
+    assert.ok((await colours(page))[box] > 30);
+    await page.keyboard.press('3');
+    assert.equal((await colours(page))[box] ?? 0, 0);
+    await page.keyboard.press('p'); // whose crosses have colours of their own
+    assert.ok((await colours(page))[box] > 30);
+  });
+});
+
+test('from above lengths are true: the ruler reads the same everywhere, and the axes say metres', async () => {
+  await onPage(`${run()}#frame=6&camera=top&layers=rings`, async (page) => {
+    await picture(page);
+    const axes = await page.locator('canvas.overlay').screenshot();
+    await page.keyboard.press('l');
+    assert.equal(await page.getAttribute('[aria-label^="Ruler"]', 'aria-pressed'), 'true');
+    const box = await page.locator('canvas.scene').boundingBox();
+    const [cx, cy] = [box.x + box.width / 2, box.y + box.height / 2];
+    // The sensor is in the middle; the circle of 40 m tells how many pixels are a metre.
+    const ring = await page.locator('.labels .ring:text-is("40 m")').boundingBox();
+    const perMetre = (ring.y + ring.height - cy) / 40;
+    assert.ok(perMetre > 1, `${perMetre} pixels a metre`);
+    await page.mouse.click(cx + 10 * perMetre, cy);
+    await page.mouse.click(cx + 30 * perMetre, cy);
+    const far = await page.locator('canvas.overlay').screenshot();
+    assert.ok(!axes.equals(far));
+    await page.keyboard.press('Escape');
+    assert.equal(await page.getAttribute('[aria-label^="Ruler"]', 'aria-pressed'), 'false');
+    assert.ok(axes.equals(await page.locator('canvas.overlay').screenshot()));
+    await page.keyboard.press('f');
+    await picture(page);
+    assert.ok(await page.locator('canvas.overlay').isHidden());
+  });
+});
+
+test('the view is saved as a PNG of the size it has', async () => {
+  await onPage(`${run()}#frame=6&camera=top`, async (page) => {
+    await picture(page);
+    const [download] = await Promise.all([page.waitForEvent('download'), page.click('[aria-label^="Save the view"]')]);
+    assert.match(download.suggestedFilename(), /^street_Dynamic-ICP-6\.png$/);
+    const png = readFileSync(await download.path());
+    assert.equal(png.toString('latin1', 1, 4), 'PNG');
+    const box = await page.locator('canvas.scene').boundingBox();
+    assert.deepEqual([png.readUInt32BE(16), png.readUInt32BE(20)], [Math.round(box.width), Math.round(box.height) + 30]);
+    const data = await pixels(page, png);
+    const seen = new Set();
+    for (let i = 0; i < data.length; i += 4) seen.add(data.readUInt32BE(i));
+    assert.ok(seen.size > 50, 'it is not blank');
+  });
+});
+
+test('the numbers one asks for first are on top, and the summary is a table', async () => {
+  await onPage(run(), async (page) => {
+    assert.match(await page.textContent('.headline'), /methoddynamic-icp.*scans24.*RTE6\.67 mm.*RRE0\.00200°.*status\d+ ok\d+ degenerate\d+ lost/s);
+    await page.click('.tabs >> text=Summary');
+    assert.deepEqual(await page.$$eval('.measures tr', (rows) => rows.map((row) => row.textContent)), ['RMSE', 'RTE6.67 mm', 'RRE0.00200°']);
   });
 });
 
@@ -343,7 +509,7 @@ test('a comparison lays runs over each other, marks the best, and brings one to 
     assert.match(await page.textContent('[data-plot="translation_error"]'), /dynamic-icp.*kiss-icp.*gicp/s);
     await page.click('.tabs >> text=Metrics');
     const best = await page.$$eval('.numbers .best', (cells) => cells.map((cell) => cell.textContent));
-    assert.deepEqual(best, ['★0.00667 m', '★0.00200°', '★102 1/s']);
+    assert.deepEqual(best, ['★6.67 mm', '★0.00200°', '★102 1/s']);
     await page.click('.tabs >> text=CDF');
     assert.match(await page.getAttribute('[data-plot="translation_error-distribution"] canvas', 'aria-label'), /kiss-icp from 0 to 100/);
     const all = await picture(page);
@@ -480,7 +646,7 @@ test('everything can be reached by the keyboard, has a name, and shows its focus
     assert.ok(!(await page.locator('dialog.help').isVisible()));
     await page.locator('[role=tab][aria-selected=true]').focus();
     await page.keyboard.press('ArrowRight');
-    assert.ok(await page.locator('#sheet-distributions').isVisible());
+    assert.ok(await page.locator('#sheet-objects').isVisible());
   });
 });
 

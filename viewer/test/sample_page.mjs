@@ -153,6 +153,7 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
   const truePoses = [];
   const egoVelocity = [];
   const objects = [];
+  const details = [];
   const kept = { frames: [], dt: [], whole: [], points: [], of: [] };
   const bytes = [];
   const wander = [0, 0, 0];
@@ -168,6 +169,8 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
       return { ...car, centre, velocity: [car.speed * Math.cos(pose.yaw), -car.speed * Math.sin(pose.yaw), 0], yaw: -pose.yaw };
     }).filter(({ centre }) => Math.hypot(...centre) < 90);
     objects.push(list.map(({ id, velocity, centre, extent, yaw }) => [id, ...velocity, ...centre, ...extent, (yaw * 180) / Math.PI, 40]));
+    // The tangential speed of what drives ahead is not observed; of each car two faces are seen.
+    details.push(list.map(({ speed }) => [k + 1, speed < 0, 'sushuu', 0.3, 2.5, 0.1, 0.4, 0.2]));
     if (scans && k % keepEvery === 0) {
       const list2 = scanOf(random, pose, start, k * PERIOD, list, points);
       kept.frames.push(k);
@@ -184,7 +187,7 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
   const plot = (id, title, unit_, list, { log = false, fromZero = true, whole = false } = {}) =>
     ({ id, title, unit: unit_, log, from_zero: fromZero, whole_numbers: whole, series: list.map(([n, values, broad = false]) => ({ name: n, values, broad })) });
   const errors = [
-    plot('translation_error', 'Translation error', 'm', [['frame to frame', series((k) => (k < 3 ? null : jitter(noise / 3)))]], { log: true, fromZero: false }),
+    plot('translation_error', 'Translation error', 'mm', [['frame to frame', series((k) => (k < 3 ? null : jitter((1000 * noise) / 3)))]], { log: true, fromZero: false }),
     plot('rotation_error', 'Rotation error', 'deg', [['frame to frame', series((k) => (k < 3 ? null : jitter(noise / 10)))]], { log: true, fromZero: false }),
   ];
   const stages = ['preprocess', 'ego_motion', 'dynamics', 'registration'].map((stage, s) => [stage, series(() => jitter(1 + s))]);
@@ -195,7 +198,7 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
     warnings: ['7 frames were degenerate: nothing holds the sensor along the way'],
     summary: [
       { key: 'frames', value: String(frames), meaning: 'scans processed', number: frames, better: null },
-      { key: 'rte_rmse_m', value: `${(noise / 3).toPrecision(3)} m`, meaning: 'translation error from scan to scan, root mean square', number: noise / 3, better: 'lower' },
+      { key: 'rte_rmse_m', value: `${((1000 * noise) / 3).toPrecision(3)} mm`, meaning: 'translation error from scan to scan, root mean square', number: noise / 3, better: 'lower' },
       { key: 'rre_rmse_deg', value: `${(noise / 10).toPrecision(3)}°`, meaning: 'rotation error from scan to scan, root mean square', number: noise / 10, better: 'lower' },
       { key: 'fps', value: '102 1/s', meaning: 'scans per second of computing time', number: 100 + seed, better: 'higher' },
     ],
@@ -206,7 +209,7 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
       index: series((k) => 100 + k), seconds: series((k) => Number((k * PERIOD).toFixed(3))), poses, ego_velocity: egoVelocity, status,
       reason: status.map((entry) => (entry === 'degenerate' ? 'planes alone do not hold the position' : entry === 'lost' ? 'nothing fits' : '')),
       lost_directions: status.map((entry) => (entry === 'degenerate' ? ['along x'] : [])),
-      objects,
+      objects, object_details: details,
     },
     truth: truth ? { poses: truePoses } : null,
     pictures: [{ title: 'Learned', caption: 'A square', svg: '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><rect width="40" height="40" fill="#0072b2"/></svg>' }],

@@ -5,7 +5,8 @@ import { closest, facingOf, headingInSensor, keptScan, lastNotAbove, troubledRan
 import { fromAnchor, toAnchor } from '../src/scene/camera_rig.js';
 import { placeBoxes } from '../src/scene/labels.js';
 import { pathSegments } from '../src/scene/paths.js';
-import { pointUnder } from '../src/scene/picking.js';
+import { rulerText } from '../src/scene/overlay.js';
+import { boxUnder, enters, pointUnder, rayThrough } from '../src/scene/picking.js';
 import { MOST_CROSSES, predictPoints } from '../src/scene/predicted_points.js';
 import { categoriesOf } from '../src/scene/scan_points.js';
 import { arrow, boxEdges, circle } from '../src/scene/shapes.js';
@@ -29,6 +30,44 @@ test('an arrow ends where the velocity leads in a second; what stands has none',
   near(ends.slice(0, 6), [1, 2, 3, 4, 6, 3]);
   assert.deepEqual(arrow([0, 0, 0], [0, 0, 0]), []);
   assert.ok(arrow([0, 0, 0], [0, 0, 5]).every(Number.isFinite));
+});
+
+test('an arrow that would be too long ends early, in two heads; a dashed one has gaps in its shaft', () => {
+  const long = arrow([0, 0, 0], [100, 0, 0], { most: 20 });
+  near(long.slice(0, 6), [0, 0, 0, 20, 0, 0]);
+  assert.equal(long.length / 6, 1 + 4 + 4);
+  assert.equal(arrow([0, 0, 0], [10, 0, 0], { most: 20 }).length / 6, 1 + 4);
+  const dashed = arrow([0, 0, 0], [10, 0, 0], { dashed: true });
+  const shaft = dashed.slice(0, dashed.length - 4 * 6);
+  assert.ok(shaft.length / 6 > 5);
+  near(shaft.slice(0, 3), [0, 0, 0]);
+  near(shaft.slice(-3), [10, 0, 0]);
+  for (let k = 6; k < shaft.length; k += 6) assert.ok(shaft[k] > shaft[k - 3] + 0.1, 'a gap before every dash');
+});
+
+test('a ray finds the box it enters first, turned boxes too', () => {
+  const box = (x, yaw = 0) => ({ id: x, centre: [x, 0, 0], extent: [4, 2, 1.5], yaw });
+  const ray = { from: [0, 0, 0], along: [1, 0, 0] };
+  assert.equal(enters(ray, box(10)), 8);
+  assert.ok(Math.abs(enters(ray, box(10, Math.PI / 2)) - 9) < 1e-9, 'across the ray it is 2 m deep');
+  assert.equal(enters(ray, { ...box(10), centre: [10, 1.5, 0] }), null);
+  assert.equal(enters(ray, box(-10)), null, 'behind');
+  assert.equal(enters({ from: [10, 0, 0], along: [0, 0, 1] }, box(10)), 0, 'from within');
+  assert.equal(boxUnder(ray, [box(30), box(10), box(-5)]).object.id, 10);
+  assert.equal(boxUnder(ray, []), null);
+});
+
+test('the ray through a pixel is that of the projection undone', () => {
+  // Without perspective: 100 pixels are 20 m, the eye looks along -z.
+  const fromClip = [10, 0, 0, 0, 0, 10, 0, 0, 0, 0, -5, 0, 3, 0, 0, 1];
+  const { from, along } = rayThrough(fromClip, { x: 75, y: 50, width: 100, height: 100 });
+  near(from, [8, 0, 5]);
+  near(along, [0, 0, -1]);
+});
+
+test('a ruler tells the distance and its parts', () => {
+  assert.equal(rulerText([1, 1, 0], [4, 5, 0]), '5 m (Δx 3, Δy 4 m)');
+  assert.equal(rulerText([0, 0, 0], [2, -1, 2]), '3 m (Δx 2, Δy −1, Δz 2 m)');
 });
 
 test('a circle closes and keeps its radius', () => {
@@ -60,7 +99,7 @@ test('of an object with many points some are predicted, from all over it', () =>
 });
 
 test('points take the colour of their object by its id; a label without object is moving', () => {
-  assert.deepEqual([...categoriesOf(scan.label, [12, 7], new Uint8Array(5))], [1, 3 + 4, 3 + 7, 2, 2]);
+  assert.deepEqual([...categoriesOf(scan.label, [10, 7], new Uint8Array(5))], [1, 3 + 4, 3 + 1, 2, 2]);
 });
 
 test('a path breaks where a pose is missing and knows the frame of every piece', () => {

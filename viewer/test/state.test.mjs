@@ -6,12 +6,14 @@ import { readFragment, writeFragment } from '../src/state.js';
 const usual = {
   group: 0, run: 0, frame: 0, colour: 'compensated', limit: null, layers: new Set(['boxes', 'ids']), camera: 'follow',
   eye: null, size: 2.5, speed: 1, tab: 'plots', hidden: new Set(), theme: null,
+  object: null, chase: false, zoom: null, folded: new Set(),
 };
 
 test('what is written is read again', () => {
   const state = {
     ...usual, group: 2, run: 5, frame: 77, colour: 'residual', limit: 0.05, layers: new Set(['map']), camera: 'free',
     eye: [1.25, -2, 3, 4, 5.5, -6.75], size: 4, speed: 0.25, tab: 'summary', hidden: new Set([3, 4]), theme: 'dark',
+    object: 12, chase: true, zoom: [1.5, 7.25], folded: new Set(['ego_speed', 'fitness']),
   };
   assert.deepEqual({ ...usual, ...readFragment(`#${writeFragment(state, usual)}`) }, state);
 });
@@ -35,10 +37,14 @@ test('what no control of the page can show falls back to what is usual', () => {
   assert.deepEqual(readFragment('#layers=quark&limit=0&size=0.1&speed=3&theme=pink&colour=toString&eye=,,,,,'), {});
   assert.deepEqual(readFragment('#limit=1e9&size=400&speed=-1&eye=1e300,0,0,0,0,0&layers=quark,map&theme=dark'),
     { layers: new Set(['map']), theme: 'dark' });
+  assert.deepEqual(readFragment('#zoom=3,1&object=-4&chase=yes&folded=<b>'), { folded: new Set() });
+  assert.deepEqual(readFragment('#zoom=1&object=x'), {});
   assert.deepEqual(readFragment('#limit=0.01&size=8&speed=0.1'), { limit: 0.01, size: 8, speed: 0.1 });
 });
 
-const run = (frames, scans = null) => ({ frames: { index: Array.from({ length: frames }, (_, k) => 10 + 2 * k) }, scans });
+const run = (frames, scans = null) => ({
+  frames: { index: Array.from({ length: frames }, (_, k) => 10 + 2 * k), objects: [[[7]], [[8], [9]]] }, scans,
+});
 const report = { runs: [run(5), run(9, {}), run(3)], groups: [{ name: 'a', runs: [0, 1] }, { name: 'b', runs: [2] }] };
 
 test('a link to what this page has not falls back to what it has', () => {
@@ -46,6 +52,11 @@ test('a link to what this page has not falls back to what it has', () => {
   const other = fitState(report, { ...usual, group: 1, run: 0, frame: 4 });
   assert.deepEqual([other.group, other.run, other.frame], [1, 2, 2]);
   assert.deepEqual([fitState(report, { ...usual, group: 7, run: 77 }).group, fitState(report, { ...usual, run: 77 }).run], [0, 1]);
+});
+
+test('an object that the run has not is not selected, nor followed', () => {
+  const fit = (object) => { const { object: id, chase } = fitState(report, { ...usual, object, chase: true }); return [id, chase]; };
+  assert.deepEqual([fit(9), fit(10), fit(null)], [[9, true], [null, false], [null, false]]);
 });
 
 test('another run is shown at the same scan', () => {

@@ -17,6 +17,7 @@ Theme theme(Ground ground) {
                .ink = "#1b2430",
                .muted = "#5d6878",
                .grid = "#e2e5ea",
+               .truth = "#5d6878",
                .series = {},
                .doppler = {}};
   } else {
@@ -25,6 +26,7 @@ Theme theme(Ground ground) {
                .ink = "#eef2f7",
                .muted = "#9aa6b6",
                .grid = "#293344",
+               .truth = "#9aa6b6",
                .series = {},
                .doppler = {}};
   }

@@ -18,6 +18,7 @@ struct Theme {
   std::string ink;         ///< titles, labels, the sensor
   std::string muted;       ///< tick labels, less important text
   std::string grid;
+  std::string truth;                 ///< the ground truth, which no series has the colour of
   std::vector<std::string> series;   ///< lines and objects, in the order of use
   std::vector<std::string> doppler;  ///< bins from -limit to +limit; an odd number
 };

@@ -39,6 +39,13 @@ RunSeries make_series(const Heading& heading, std::vector<Series> series) {
                     .series = std::move(series)}};
 }
 
+constexpr double kMillimetres = 1000.0;
+
+std::vector<double> scaled(std::vector<double> values, double factor) {
+  std::for_each(values.begin(), values.end(), [&](double& value) { value *= factor; });
+  return values;
+}
+
 RunSeries error_series(const Heading& heading, const std::vector<double>& errors) {
   RunSeries series = make_series(heading, {{"scan to scan", errors}});
   series.panel.logarithmic = spans_decades(errors);
@@ -113,14 +120,16 @@ bool has_values(const RunSeries& series) {
 std::vector<RunSeries> run_series(const runs::RunFiles& run, const std::optional<RunTruth>& truth) {
   std::vector<RunSeries> all = {ego_speed(run, truth)};
   if (truth) {
-    all.push_back(error_series({"translation_error", "RTE per scan", "RTE", "m"}, truth->translation_error));
+    all.push_back(error_series({"translation_error", "RTE per scan", "RTE", "mm"},
+                               scaled(truth->translation_error, kMillimetres)));
     all.push_back(error_series({"rotation_error", "RRE per scan", "RRE", "degrees"}, truth->rotation_error));
   }
   all.push_back(
       make_series({"iterations", "Iterations", "number", ""}, registration(run, &runs::FrameRow::iterations)));
   all.back().panel.whole_numbers = true;
-  all.push_back(
-      make_series({"inlier_rmse", "Inlier RMSE", "inlier RMSE", "m"}, registration(run, &runs::FrameRow::inlier_rmse)));
+  std::vector<Series> inlier_rmse = registration(run, &runs::FrameRow::inlier_rmse);
+  inlier_rmse.front().values = scaled(std::move(inlier_rmse.front().values), kMillimetres);
+  all.push_back(make_series({"inlier_rmse", "Inlier RMSE", "inlier RMSE", "mm"}, std::move(inlier_rmse)));
   all.push_back(
       make_series({"fitness", "Fitness", "share of points matched", ""}, registration(run, &runs::FrameRow::fitness)));
   all.push_back(make_series({"degeneracy", "Degeneracy: information ratio (eigenvalues)", "information ratio", ""},

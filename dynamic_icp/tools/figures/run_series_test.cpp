@@ -56,5 +56,20 @@ TEST(RunSeries, NothingRegisteredIsAGapAndNoPerfectMatch) {
   EXPECT_EQ(iterations[3], 50.0);
 }
 
+TEST(RunSeries, ErrorsAreInMillimetres) {
+  runs::FrameRow frame = frame_row("ok", "converged", 5.0);
+  frame.inlier_rmse = 0.0348;
+  const runs::RunFiles run = run_of({frame});
+  EXPECT_NEAR(values_of(run, "inlier_rmse").front(), 34.8, 1e-9);
+  const RunTruth truth{
+      .poses = {std::nullopt}, .speed = {1.0}, .translation_error = {0.0005}, .rotation_error = {0.01}};
+  for (const RunSeries& series : run_series(run, truth)) {
+    if (series.id == "translation_error") {
+      EXPECT_EQ(series.unit, "mm");
+      EXPECT_NEAR(series.panel.series.front().values.front(), 0.5, 1e-12);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dynamic_icp::figures

@@ -8,6 +8,7 @@
 
 #include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/tools/drawing/axes.hpp"
+#include "dynamic_icp/tools/drawing/run_colours.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -108,10 +109,17 @@ std::vector<drawing::Pixel> pixels_of(const drawing::Axes& axes, const std::vect
 
 /// The colour of each line; broad ones are what the others are compared with.
 std::vector<drawing::LegendEntry> legend_of(const Panel& panel, const drawing::Theme& theme) {
+  std::vector<std::string> names;
+  for (const Series& series : panel.series) {
+    if (!series.broad) {
+      names.push_back(series.name);
+    }
+  }
+  const std::vector<std::size_t> places = drawing::colours_of_runs(names);
   std::vector<drawing::LegendEntry> legend;
   std::size_t next = 0;
   for (const Series& series : panel.series) {
-    legend.push_back({series.name, series.broad ? theme.series[3] : theme.series[next++ % theme.series.size()]});
+    legend.push_back({series.name, series.broad ? theme.truth : theme.series[places[next++] % theme.series.size()]});
   }
   return legend;
 }

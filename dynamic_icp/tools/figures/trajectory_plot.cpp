@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "dynamic_icp/tools/drawing/axes.hpp"
+#include "dynamic_icp/tools/drawing/run_colours.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
@@ -15,7 +16,6 @@ constexpr double kPathLeft = 74.0;  // px around the drawing area
 constexpr double kPathRight = 18.0;
 constexpr double kTop = 58.0;
 constexpr double kBottom = 50.0;
-constexpr std::size_t kTruthColour = 3;    // in the order of the theme
 constexpr double kSmallestHeight = 130.0;  // px of the drawing area
 
 /// The range of one coordinate over all paths, with room around it.
@@ -46,18 +46,27 @@ std::vector<drawing::Pixel> thinned(const drawing::Axes& axes, const std::vector
   return kept;
 }
 
-/// Of the estimate with this number; the ground truth has the colour in between.
-const std::string& colour_of(const drawing::Theme& theme, std::size_t estimate) {
-  return theme.series[(estimate < kTruthColour ? estimate : estimate + 1) % theme.series.size()];
+/// Of each estimate.
+std::vector<std::string> colours_of(const PathMap& paths, const drawing::Theme& theme) {
+  std::vector<std::string> names;
+  for (const NamedPath& path : paths.estimates) {
+    names.push_back(path.name);
+  }
+  std::vector<std::string> colours;
+  for (const std::size_t place : drawing::colours_of_runs(names)) {
+    colours.push_back(theme.series[place % theme.series.size()]);
+  }
+  return colours;
 }
 
 std::vector<drawing::LegendEntry> legend_of(const PathMap& paths, const drawing::Theme& theme) {
   std::vector<drawing::LegendEntry> legend;
+  const std::vector<std::string> colours = colours_of(paths, theme);
   for (std::size_t k = 0; k < paths.estimates.size(); ++k) {
-    legend.push_back({paths.estimates[k].name, colour_of(theme, k)});
+    legend.push_back({paths.estimates[k].name, colours[k]});
   }
   if (!paths.ground_truth.empty()) {
-    legend.push_back({"ground truth", theme.series[kTruthColour]});
+    legend.push_back({"ground truth", theme.truth});
   }
   return legend;
 }
@@ -88,15 +97,14 @@ drawing::Svg trajectory_plot(const PathMap& paths, const drawing::Theme& theme, 
   svg.text({kPathLeft, 26.0}, paths.title, {.colour = theme.ink, .size = 15.0, .bold = true});
   axes.draw(svg, theme);
   if (!paths.ground_truth.empty()) {
-    svg.polyline(thinned(axes, paths.ground_truth),
-                 {.stroke = theme.series[kTruthColour], .width = 7.0, .opacity = 0.55});
+    svg.polyline(thinned(axes, paths.ground_truth), {.stroke = theme.truth, .width = 7.0, .opacity = 0.55});
   }
   std::optional<drawing::Pixel> start;
   for (std::size_t k = 0; k < paths.estimates.size(); ++k) {
     const std::vector<drawing::Pixel> estimate = thinned(axes, paths.estimates[k].positions);
-    svg.polyline(estimate, {.stroke = colour_of(theme, k), .width = 2.2});
+    svg.polyline(estimate, {.stroke = legend[k].colour, .width = 2.2});
     if (!estimate.empty()) {
-      svg.circle(estimate.back(), 4.5, {.fill = colour_of(theme, k), .title = "end"});
+      svg.circle(estimate.back(), 4.5, {.fill = legend[k].colour, .title = "end"});
       start = start.value_or(estimate.front());
     }
   }

@@ -11,6 +11,7 @@
 #include "dynamic_icp/tools/benchmark/results.hpp"
 #include "dynamic_icp/tools/benchmark/tables.hpp"
 #include "dynamic_icp/tools/benchmark/variants.hpp"
+#include "dynamic_icp/tools/drawing/run_colours.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
 #include "dynamic_icp/tools/report/run_data.hpp"
 #include "dynamic_icp/tools/report/run_facts.hpp"
@@ -82,7 +83,20 @@ class RunList {
     return runs_.size() - 1;
   }
 
+  /// Also gives the runs their colours, by their names.
   [[nodiscard]] Json take(std::vector<std::string>& notes) {
+    std::vector<std::string> names;
+    for (const Json& run : runs_) {
+      if (const std::string name = run["name"]; std::find(names.begin(), names.end(), name) == names.end()) {
+        names.push_back(name);
+      }
+    }
+    const std::vector<std::size_t> colours = drawing::colours_of_runs(names);
+    for (Json& run : runs_) {
+      const auto place = std::find(names.begin(), names.end(), run["name"].get<std::string>()) - names.begin();
+      run["colour"] = colours[static_cast<std::size_t>(place)];
+    }
+
     if (thinned_ > 0) {
       notes.push_back(
           fmt::format("{} of {} runs show {} of their scans, evenly spread, in paths and plots; tables and "

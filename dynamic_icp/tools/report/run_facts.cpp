@@ -116,10 +116,13 @@ std::vector<std::string> warnings_of(const RunFiles& run) {
 std::vector<SummaryRow> summary_of(const RunFiles& run) {
   std::vector<SummaryRow> rows;
   for (const auto& [key, value] : run.summary) {
+    if (key == "assumptions") {
+      continue;  // stands among the warnings
+    }
     const double* number = std::get_if<double>(&value);
     rows.push_back({.key = key,
                     .value = value_with_unit(run.summary, key),
-                    .meaning = std::string(meaning_of(key)),
+                    .meaning = meaning_of(key),
                     .number = number != nullptr ? *number : std::numeric_limits<double>::quiet_NaN(),
                     .better = better_of(key)});
   }

@@ -59,7 +59,7 @@ TEST(RunReport, HoldsWhatTheContractNames) {
   EXPECT_EQ(run["facts"], json::parse(R"([["method","dynamic-icp"],["preset","default"],["version","0.1.0"]])"));
   EXPECT_EQ(run["command"], "dynamic-icp run drive");
   EXPECT_EQ(run["summary"][2]["key"], "rte_rmse_m");
-  EXPECT_EQ(run["summary"][2]["value"], "0 m");
+  EXPECT_EQ(run["summary"][2]["value"], "0 mm");
   EXPECT_EQ(run["summary"][2]["number"], 0.0);
   EXPECT_EQ(run["summary"][2]["better"], "lower");
   EXPECT_TRUE(run["summary"][1]["better"].is_null()) << "more scans are no better ones";

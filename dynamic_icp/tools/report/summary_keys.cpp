@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/report/summary_keys.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include <fmt/format.h>
@@ -25,6 +26,9 @@ constexpr Meaning kMeanings[] = {
     {"rre_median_deg", "RRE median"},
     {"ate_rmse_m", "ATE RMSE (SE(3) aligned)"},
     {"path_length_m", "path length"},
+    {"nees_rotation", "NEES of the rotation (1: as uncertain as stated)"},
+    {"nees_translation", "NEES of the translation (1: as uncertain as stated)"},
+    {"beyond_4_sigma", "errors beyond 4 sigma, share"},
     {"mean_iterations", "registration iterations, mean"},
     {"convergence_rate", "converged registrations"},
     {"ms_mean", "time per scan, mean; reading and writing excluded"},
@@ -42,6 +46,13 @@ constexpr Meaning kMeanings[] = {
 
 bool has_part(std::string_view key, std::string_view part) { return key.find(part) != std::string_view::npos; }
 
+constexpr double kMillimetres = 1000.0;
+
+/// Errors from scan to scan are a matter of millimetres, those of a whole drive only below a metre.
+bool in_millimetres(std::string_view key, double number) {
+  return key.ends_with("_m") && (key.starts_with("rte_") || (key.starts_with("ate_") && std::abs(number) < 1.0));
+}
+
 /// Four significant digits, whole numbers in full, no trailing zeros.
 std::string rounded(double number) {
   return number == std::round(number) && std::abs(number) < 1e15 ? fmt::format("{:.0f}", number)
@@ -56,8 +67,11 @@ std::string value_with_unit(const runs::Settings& summary, std::string_view key)
     const std::string text = runs::text_of(summary, key);
     return text.empty() ? "-" : text;
   }
-  if (has_part(key, "_ratio") || has_part(key, "_rate")) {
+  if (has_part(key, "_ratio") || has_part(key, "_rate") || key == "beyond_4_sigma") {
     return rounded(100.0 * *number) + " %";
+  }
+  if (in_millimetres(key, *number)) {
+    return rounded(kMillimetres * *number) + " mm";
   }
   const std::string_view unit = key.ends_with("_m")      ? " m"
                                 : key.ends_with("_deg")  ? "°"
@@ -67,15 +81,20 @@ std::string value_with_unit(const runs::Settings& summary, std::string_view key)
   return fmt::format("{}{}", rounded(*number), unit);
 }
 
-std::string_view meaning_of(std::string_view key) {
+std::string meaning_of(std::string_view key) {
   for (const Meaning& meaning : kMeanings) {
     if (meaning.key == key) {
-      return meaning.text;
+      return std::string(meaning.text);
     }
   }
-  return key.starts_with("statuses.")  ? "scans with this status"
-         : key.starts_with("reasons.") ? "scans with this reason for their status"
-                                       : "";
+  for (const std::string_view group : {"statuses.", "reasons."}) {
+    if (key.starts_with(group)) {
+      std::string word(key.substr(group.size()));
+      std::replace(word.begin(), word.end(), '_', ' ');
+      return "scans: " + word;
+    }
+  }
+  return "";
 }
 
 }  // namespace dynamic_icp::report

@@ -14,6 +14,6 @@ namespace dynamic_icp::report {
 std::string value_with_unit(const runs::Settings& summary, std::string_view key);
 
 /// What a key of summary.json says, in a few words; empty for keys that are not known.
-std::string_view meaning_of(std::string_view key);
+std::string meaning_of(std::string_view key);
 
 }  // namespace dynamic_icp::report

@@ -38,15 +38,24 @@ export function quantile(values, share, otherwise) {
 
 const rounder = (limit, least) => Math.max(least, LIMITS[Math.min(LIMITS.length - 1, lastNotAbove(LIMITS, limit * 0.999) + 1)]);
 
-/** Limits that suit a run: by its own speed and by those of its objects. */
+const SHARE_SHOWN = 0.98; // of the values; a few wrong ones must not make all others look alike
+const FASTEST = 70; // m/s, of anything on a road
+
+/** Of an object row: speed (m/s), and what of it a Doppler would show. */
+const speedsOf = ([, vx, vy, vz, cx, cy, cz]) =>
+  ({ whole: Math.hypot(vx, vy, vz), radial: Math.abs(vx * cx + vy * cy + vz * cz) / Math.hypot(cx, cy, cz) });
+
+/** Limits that suit a run: by its own speed and by those of its objects. `arrow`: m, of arrows as long as the displacement in 1 s. */
 export function usualLimits(run) {
   const speeds = run.frames.index.map((_, frame) => speedOf(run, frame));
-  const objects = run.frames.objects.flat().map(([, vx, vy, vz]) => Math.hypot(vx, vy, vz));
+  const objects = run.frames.objects.flat().map(speedsOf);
+  const shown = (values, otherwise) => Math.min(FASTEST, quantile(values, SHARE_SHOWN, otherwise));
   return {
-    compensated: rounder(quantile(objects, 0.9, 5), 2),
-    doppler: rounder(quantile(speeds, 0.95, 5), 2),
+    compensated: rounder(shown(objects.map(({ radial }) => radial), 5), 2),
+    doppler: rounder(shown(speeds, 5), 2),
     kind: 1,
     residual: 0.2,
     height: 10,
+    arrow: Math.max(5, shown(objects.map(({ whole }) => whole), FASTEST)),
   };
 }

@@ -3,6 +3,7 @@ import { button, chooser, element, iconButton } from '../dom.js';
 import { groupAt, groupsOf, runAt } from '../session.js';
 import { otherTheme } from '../theme.js';
 import { copyText } from './copy.js';
+import { createHeadline } from './headline.js';
 
 export function createHeader(report, store, { showHelp, link }) {
   const groups = groupsOf(report);
@@ -10,7 +11,6 @@ export function createHeader(report, store, { showHelp, link }) {
   const groupList = chooser('Sequence', groups.map(({ name }, k) => ({ value: String(k), text: name })),
     (value) => store.set({ group: Number(value), run: firstRun(report, Number(value)), hidden: new Set(), limit: null }));
   const runList = chooser('Run in front', [], (value) => store.set({ run: Number(value), limit: null }));
-  const facts = element('p', { class: 'facts' });
   const warnings = button('', 'Show the warnings', () => store.set({ tab: 'summary' }), { class: 'warning-count' });
   const theme = iconButton('theme', 'Light or dark (T)', () => store.set({ theme: otherTheme(store.state) }));
   const share = button('Copy link', 'Copy a link to exactly this view', () => copyText(link(), share));
@@ -22,9 +22,6 @@ export function createHeader(report, store, { showHelp, link }) {
     groupList.set(state.group);
     runList.offer(group.runs.map((index) => ({ value: String(index), text: report.runs[index].name })));
     runList.set(state.run);
-    facts.replaceChildren(...run.facts.map(([name, value]) =>
-      element('span', {}, `${name} `, element('b', { text: value }))));
-    facts.title = run.facts.map((fact) => fact.join(' ')).join(', ');
     const count = run.warnings.length + report.notes.length;
     warnings.textContent = `⚠ ${count}`;
     warnings.hidden = count === 0;
@@ -34,7 +31,7 @@ export function createHeader(report, store, { showHelp, link }) {
     element('h1', { text: report.title, title: report.title }),
     several && groups.length > 1 ? groupList.element : null,
     several ? runList.element : null,
-    facts,
+    createHeadline(report, store),
     element('div', { class: 'top-actions' }, warnings, share, theme, help));
 }
 

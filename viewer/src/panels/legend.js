@@ -59,6 +59,9 @@ export function createLegend(report, store) {
           entry(marks.predicted, `at the next scan (up to ${MOST_CROSSES} an object)`, 'cross')));
       }
     }
+    if (run.frames.object_details && state.layers.has('arrows')) {
+      parts.push(element('div', { class: 'legend-hint', text: 'dashed, ~: tangential speed not observed' }));
+    }
     if (run.truth && state.layers.has('truth')) parts.push(element('div', { class: 'legend-entries' }, entry('var(--ink)', 'ground truth', 'band')));
     legend.replaceChildren(...parts);
     legend.hidden = parts.length === 0;

@@ -11,10 +11,42 @@ function command(text) {
   return section('Command', element('div', { class: 'command' }, element('pre', { text }), copy));
 }
 
-const summaryTable = (summary) => element('table', { class: 'summary' }, element('tbody', {},
-  ...summary.map(({ key, value, meaning }) => element('tr', {},
-    element('th', { scope: 'row' }, element('span', { text: meaning || key }), meaning ? element('code', { text: key }) : null),
-    element('td', { text: value })))));
+/** What has several statistics stands in one row: name, first part of the keys, last part. */
+const MEASURES = [
+  ['RTE', 'rte_', '_m'], ['RRE', 'rre_', '_deg'], ['ATE, SE(3) aligned', 'ate_', '_m'], ['time per scan', 'ms_', ''],
+];
+const STATISTICS = [['rmse', 'RMSE'], ['mean', 'mean'], ['median', 'median'], ['p95', 'p95']];
+
+/**
+ * The summary as a table of measures by statistics, and what is in no such row.
+ * @returns {{rows: {name: string, cells: (object|undefined)[]}[], rest: object[]}}
+ */
+export function byMeasure(summary) {
+  const rest = new Map(summary.map((entry) => [entry.key, entry]));
+  const rows = MEASURES.map(([name, first, last]) => ({
+    name,
+    cells: STATISTICS.map(([statistic]) => {
+      const key = `${first}${statistic}${last}`;
+      const entry = rest.get(key);
+      rest.delete(key);
+      return entry;
+    }),
+  })).filter(({ cells }) => cells.some(Boolean));
+  return { rows, rest: [...rest.values()] };
+}
+
+function summaryTables(summary) {
+  const { rows, rest } = byMeasure(summary);
+  const used = STATISTICS.map((_, k) => k).filter((k) => rows.some(({ cells }) => cells[k]));
+  return [
+    rows.length ? element('div', { class: 'scroll' }, element('table', { class: 'measures' },
+      element('thead', {}, element('tr', {}, element('th'), ...used.map((k) => element('th', { scope: 'col', text: STATISTICS[k][1] })))),
+      element('tbody', {}, ...rows.map(({ name, cells }) => element('tr', {}, element('th', { scope: 'row', text: name }),
+        ...used.map((k) => element('td', { text: cells[k]?.value ?? '', title: cells[k] ? cells[k].meaning || cells[k].key : null }))))))) : null,
+    element('table', { class: 'summary' }, element('tbody', {}, ...rest.map(({ key, value, meaning }) => element('tr', {},
+      element('th', { scope: 'row', title: key, text: meaning || key }), element('td', { text: value }))))),
+  ].filter(Boolean);
+}
 
 const picture = ({ title, caption, svg }) => section(title, element('figure', {},
   element('img', { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`, alt: title }),
@@ -27,7 +59,7 @@ export function createSummarySheet(report, store) {
     sheet.replaceChildren(...[
       report.kind === 'run' ? null : element('h2', { class: 'run-name', text: run.name }),
       run.warnings.length ? section('Warnings', list(run.warnings, 'warnings')) : null,
-      section('Summary', summaryTable(run.summary)),
+      section('Summary', ...summaryTables(run.summary)),
       ...run.pictures.map(picture),
       section('Run', pairTable([['recording', run.name], ...run.facts])),
       report.notes.length ? section('Notes', list(report.notes, 'notes')) : null,

@@ -7,7 +7,7 @@ import { runAt } from '../session.js';
 export const CAMERAS = [
   { id: 'follow', name: 'Follow', help: 'Camera behind the sensor, goes and turns with it (F)' },
   { id: 'free', name: 'Free', help: 'Camera stays where it is put (V)' },
-  { id: 'top', name: 'Top', help: 'Seen from above, goes with the sensor (C)' },
+  { id: 'top', name: 'Top', help: 'Seen from above without perspective, with axes in metres; goes with the sensor (C)' },
 ];
 
 export const SIZE = { least: 1, most: 8, step: 0.5 };
@@ -42,11 +42,13 @@ export function createToolbar(report, store, view) {
   store.watch(['camera'], (state) => {
     cameras.forEach((entry, k) => entry.setAttribute('aria-pressed', String(CAMERAS[k].id === state.camera)));
   });
+  const ruler = button('Ruler', 'Ruler: click two places of the view (L)', () => store.set({ measuring: !store.state.measuring, ruler: [] }));
+  store.watch(['measuring'], ({ measuring }) => ruler.setAttribute('aria-pressed', String(measuring)));
   const noScans = report.runs.every((run) => run.scans === null);
   return element('div', { class: 'toolbar', role: 'toolbar', 'aria-label': 'View' },
     element('label', { class: 'field', hidden: noScans }, element('span', { text: 'Colour' }), colour.element),
     element('div', { class: 'segments', role: 'group', 'aria-label': 'Camera' }, ...cameras),
     button('Reset', 'Reset camera (R)', () => view.resetCamera()),
-    layerMenu(report, store),
+    layerMenu(report, store), ruler, button('PNG', 'Save the view as PNG (Shift P)', () => view.savePicture()),
     element('label', { class: 'field size', hidden: noScans && report.runs.every((run) => run.map === null) }, element('span', { text: 'Points' }), size));
 }

@@ -15,6 +15,7 @@ const FONT = '11px system-ui, "DejaVu Sans", sans-serif';
  * @property {string} colour a CSS colour or the name of a CSS variable
  * @property {ArrayLike<number>} xs ascending
  * @property {ArrayLike<number|null>} ys
+ * @property {ArrayLike<number|null>} [sigma] standard deviations, drawn as a band about the line
  * @property {boolean} [broad] a broad pale line, for what others are compared with
  * @property {boolean} [dash]
  */
@@ -32,15 +33,22 @@ const FONT = '11px system-ui, "DejaVu Sans", sans-serif';
 
 const resolved = (colour) => (colour.startsWith('--') ? cssColour(colour) : colour);
 
+const DRAG = 5; // px; less is a click
+
 /**
+ * A click picks, a drag zooms, a drag with Shift picks all along, a double click shows all again.
  * @param {Plot} plot
- * @param {(x: number) => void} [pick] clicked or dragged to this x
+ * @param {object} [use]
+ * @param {(x: number) => void} [use.pick] clicked at this x
+ * @param {(span: [number, number]|null) => void} [use.zoom] wants to see this stretch of x, or all
+ * @param {{is: boolean, toggle: () => void}} [use.fold] whether it shows nothing but its title, and how that is changed
  */
-export function createChart(plot, pick) {
+export function createChart(plot, { pick, zoom, fold } = {}) {
   const canvas = element('canvas', { role: 'img', 'aria-label': describe(plot), tabindex: pick ? 0 : null });
   const cursor = element('div', { class: 'cursor', hidden: true });
   const hoverLine = element('div', { class: 'cursor hover', hidden: true });
-  const area = element('div', { class: pick ? 'chart-area picks' : 'chart-area' }, canvas, hoverLine, cursor);
+  const selection = element('div', { class: 'selection', hidden: true });
+  const area = element('div', { class: pick ? 'chart-area picks' : 'chart-area', hidden: fold?.is }, canvas, selection, hoverLine, cursor);
   const at = element('span', { class: 'chart-at' });
   const values = plot.series.map((series) => {
     const swatch = element('i', { class: series.broad ? 'swatch broad' : series.dash ? 'swatch dash' : 'swatch' });
@@ -49,12 +57,17 @@ export function createChart(plot, pick) {
   });
   const figure = element('figure', { class: 'chart', data: { plot: plot.id ?? '' } },
     element('figcaption', {},
+      fold ? element('button', {
+        type: 'button', class: 'fold', 'aria-expanded': String(!fold.is), 'aria-label': `${fold.is ? 'Show' : 'Hide'} the plot: ${plot.title}`,
+        text: fold.is ? '▸' : '▾', on: { click: fold.toggle },
+      }) : null,
       element('span', { class: 'chart-title', text: plot.title }),
       element('span', { class: 'chart-unit', text: plot.unit }),
       ...values.map((entry) => entry.element), at), area);
 
   let x = null;
   let y = null;
+  let span = null; // [low, high] of x that is shown, null for all
   let now = null; // x of the current frame
   let hovered = null;
 
@@ -109,7 +122,27 @@ export function createChart(plot, pick) {
     }
   }
 
-  function drawSeries(pen, { colour, xs, ys, broad, dash }) {
+  /** Bands of one standard deviation: a piece for each stretch of values without a gap. */
+  function drawBand(pen, { colour, xs, ys, sigma }) {
+    pen.fillStyle = resolved(colour);
+    pen.globalAlpha = 0.2;
+    const isKnown = (k) => k < ys.length && ys[k] !== null && sigma[k] !== null;
+    for (let from = 0; from < ys.length; ++from) {
+      if (!isKnown(from)) continue;
+      let to = from;
+      while (isKnown(to + 1)) ++to;
+      pen.beginPath();
+      for (let k = from; k <= to; ++k) pen.lineTo(x.place(xs[k]), y.place(ys[k] + sigma[k]));
+      for (let k = to; k >= from; --k) pen.lineTo(x.place(xs[k]), y.place(ys[k] - sigma[k]));
+      pen.fill();
+      from = to;
+    }
+    pen.globalAlpha = 1;
+  }
+
+  function drawSeries(pen, series) {
+    const { colour, xs, ys, broad, dash } = series;
+    if (series.sigma) drawBand(pen, series);
     pen.strokeStyle = pen.fillStyle = resolved(colour);
     pen.globalAlpha = broad ? 0.4 : 1;
     pen.lineWidth = broad ? 4.5 : 1.4;
@@ -128,6 +161,12 @@ export function createChart(plot, pick) {
     pen.globalAlpha = 1;
   }
 
+  /** The values within the stretch that is shown; of others the scale need not know. */
+  function valuesShown({ xs, ys, sigma }) {
+    const seen = Array.from(ys, (value, k) => (!span || (xs[k] >= span[0] && xs[k] <= span[1]) ? value : null));
+    return sigma ? [seen, seen.map((value, k) => (value === null || sigma[k] === null ? null : value + sigma[k]))] : [seen];
+  }
+
   function draw() {
     const width = area.clientWidth;
     const height = area.clientHeight;
@@ -137,9 +176,9 @@ export function createChart(plot, pick) {
     canvas.height = Math.round(height * ratio);
     const pen = canvas.getContext('2d');
     pen.scale(ratio, ratio);
-    x = createScale({ ...plot.x, from: EDGE.left, to: width - EDGE.right });
+    x = createScale({ ...plot.x, ...(span ? { low: span[0], high: span[1] } : {}), from: EDGE.left, to: width - EDGE.right });
     y = createScale({
-      ...valueRange(plot.series.map((series) => series.ys), plot.y), ...plot.yRange, log: plot.y.log, whole: plot.y.whole,
+      ...valueRange(plot.series.flatMap(valuesShown), plot.y), ...plot.yRange, log: plot.y.log, whole: plot.y.whole,
       from: height - EDGE.bottom, to: EDGE.top,
     });
     drawMarks(pen, height);
@@ -156,8 +195,8 @@ export function createChart(plot, pick) {
 
   function placeCursors() {
     if (!x) return;
-    cursor.hidden = now === null;
-    if (now !== null) cursor.style.transform = `translateX(${x.place(now)}px)`;
+    cursor.hidden = now === null || now < x.low || now > x.high;
+    if (!cursor.hidden) cursor.style.transform = `translateX(${x.place(now)}px)`;
     hoverLine.hidden = hovered === null;
     if (hovered !== null) hoverLine.style.transform = `translateX(${x.place(hovered)}px)`;
   }
@@ -166,18 +205,43 @@ export function createChart(plot, pick) {
     const value = x.value(event.clientX - canvas.getBoundingClientRect().left);
     return Math.min(x.high, Math.max(x.low, value));
   };
+  let pressed = null; // {at: px, x: value, picks: bool}, from a press to its release
+  const isDragged = (event) => Math.abs(event.clientX - pressed.at) >= DRAG;
+  const endDrag = () => {
+    pressed = null;
+    selection.hidden = true;
+  };
   area.addEventListener('pointermove', (event) => {
     if (!x) return;
     hovered = valueAt(event);
-    if (pick && event.buttons === 1) pick(hovered);
+    if (pressed?.picks) {
+      pick(hovered);
+    } else if (pressed) {
+      const [left, right] = [x.place(pressed.x), x.place(hovered)].sort((a, b) => a - b);
+      selection.hidden = !isDragged(event);
+      Object.assign(selection.style, { left: `${left}px`, width: `${right - left}px` });
+    }
     describeAt(hovered);
     placeCursors();
   });
   area.addEventListener('pointerdown', (event) => {
     if (!x || !pick || event.button !== 0) return;
     if (event.pointerType === 'mouse') area.setPointerCapture(event.pointerId);
-    pick(valueAt(event));
+    pressed = { at: event.clientX, x: valueAt(event), picks: event.shiftKey || !zoom };
+    if (pressed.picks) pick(pressed.x);
   });
+  area.addEventListener('pointerup', (event) => {
+    if (!pressed) return;
+    const { x: from, picks } = pressed;
+    const dragged = isDragged(event);
+    endDrag();
+    if (picks) return;
+    const to = valueAt(event);
+    if (dragged) zoom([Math.min(from, to), Math.max(from, to)]);
+    else pick(to);
+  });
+  area.addEventListener('pointercancel', endDrag);
+  if (zoom) area.addEventListener('dblclick', () => zoom(null));
   area.addEventListener('pointerleave', () => {
     hovered = null;
     describeAt(now);
@@ -188,6 +252,11 @@ export function createChart(plot, pick) {
   return {
     element: figure,
     draw,
+    /** @param {[number, number]|null} shown stretch of x, null for all */
+    setSpan(shown) {
+      span = shown;
+      draw();
+    },
     /** @param {number|null} value x of the current frame */
     setNow(value) {
       now = value;

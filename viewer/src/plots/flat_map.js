@@ -2,6 +2,7 @@
 import { element } from '../dom.js';
 import { frameCount, poseOf } from '../runs.js';
 import { runAt, runsShown, sameScan } from '../session.js';
+import { save } from '../scene/save_picture.js';
 import { cssColour, groundOf } from '../theme.js';
 
 const MARGIN = 36;
@@ -56,5 +57,6 @@ export function createFlatMap(report, store) {
       new ResizeObserver(draw).observe(holder);
     },
     resetCamera() {},
+    savePicture() { canvas.toBlob((blob) => save(blob, 'trajectory.png')); },
   };
 }

@@ -1,12 +1,16 @@
 // The camera: behind the sensor, free, or from above. What a link keeps is the place of eye and target relative to what
 // the camera goes with.
-import { PerspectiveCamera, Vector3 } from 'three';
+//
+// From above there is no perspective: lengths can be read off. The controls move one camera all the same; how far it is
+// from its target is how much is seen.
+import { OrthographicCamera, PerspectiveCamera } from 'three';
 import { OrbitControls } from 'three/examples/jsm/controls/OrbitControls.js';
 
 export const CAMERA_MODES = ['follow', 'free', 'top'];
 
 const BEHIND = [-22, 0, 11, 10, 0, -1];
 const ABOVE = [0, -0.02, 95, 0, 0, 0];
+const SKY = 1000; // m over the target, of the camera from above
 
 const turned = ([x, y, z], yaw) => [Math.cos(yaw) * x - Math.sin(yaw) * y, Math.sin(yaw) * x + Math.cos(yaw) * y, z];
 
@@ -28,6 +32,8 @@ export function toAnchor(mode, anchor, place) {
 export function createCameraRig(canvas, changed) {
   const camera = new PerspectiveCamera(55, 1, 0.3, 5000);
   camera.up.set(0, 0, 1);
+  const flat = new OrthographicCamera(-1, 1, 1, -1, 0.3, 2 * SKY);
+  flat.up.set(0, 1, 0);
   const controls = new OrbitControls(camera, canvas);
   controls.minDistance = 1;
   controls.maxDistance = 4000;
@@ -49,14 +55,32 @@ export function createCameraRig(canvas, changed) {
     controls.update();
     silent = false;
   }
-  /** All of the way, seen from the south and above. */
+  /** The camera from above, over the target of the other. */
+  function fromAbove() {
+    const half = camera.position.distanceTo(controls.target) * Math.tan((camera.fov * Math.PI) / 360);
+    const { x, y, z } = controls.target;
+    Object.assign(flat, { left: -half * camera.aspect, right: half * camera.aspect, top: half, bottom: -half });
+    flat.position.set(x, y, z + SKY);
+    flat.lookAt(x, y, z);
+    flat.updateProjectionMatrix();
+    flat.updateMatrixWorld();
+    return flat;
+  }
+  /** All of the trajectory, seen from the south and above. */
   function overview() {
     const away = Math.max(20, bounds.radius * 1.15 / Math.tan((camera.fov * Math.PI) / 360) / Math.min(1, camera.aspect));
     const [x, y, z] = bounds.centre;
     return [x, y - 0.45 * away, z + 0.9 * away, x, y, z];
   }
   return {
-    camera,
+    /** What to draw with. */
+    camera: () => (mode === 'top' ? fromAbove() : camera),
+    /** What is seen from above: m in the world, y up; null with perspective. */
+    seenFromAbove() {
+      if (mode !== 'top') return null;
+      const { left, right, top, bottom, position: { x, y } } = fromAbove();
+      return { left: x + left, right: x + right, low: y + bottom, high: y + top };
+    },
     /** Eye and target, six numbers, for `setMode` and links. */
     eye: relative,
     setMode(newMode, eye) {
@@ -83,7 +107,5 @@ export function createCameraRig(canvas, changed) {
       camera.fov = width < height ? (360 / Math.PI) * Math.atan(Math.tan((27.5 * Math.PI) / 180) * Math.min(1.6, height / width)) : 55;
       camera.updateProjectionMatrix();
     },
-    distance: () => camera.position.distanceTo(controls.target),
-    target: () => new Vector3().copy(controls.target),
   };
 }

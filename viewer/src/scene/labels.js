@@ -44,7 +44,7 @@ export function createLabels() {
       pool.forEach((span, k) => {
         const label = labels[k];
         if (label) place.copy(world.fromArray(label.place).applyMatrix4(toWorld)).project(camera);
-        span.hidden = !label || Math.abs(place.z) >= 1 || Math.abs(place.x) >= 1.05 || Math.abs(place.y) >= 1.05;
+        span.hidden = !label || Math.abs(place.z) >= 1 || Math.abs(place.x) >= 1 || Math.abs(place.y) >= 1;
         if (span.hidden) return;
         if (span.textContent !== label.text) span.textContent = label.text;
         span.className = label.kind ?? '';
@@ -56,7 +56,9 @@ export function createLabels() {
       // All sizes are read before anything is moved, so that the page is laid out once.
       const boxes = seen.map(({ span, x, y, rank, distance }) => {
         const { offsetWidth, offsetHeight } = span;
-        return { left: x - offsetWidth / 2, top: y - offsetHeight, width: offsetWidth, height: offsetHeight, rank, distance };
+        // Those at the edge are moved in rather than cut off.
+        const left = Math.min(Math.max(0, x - offsetWidth / 2), Math.max(0, width - offsetWidth));
+        return { left, top: Math.max(0, y - offsetHeight), width: offsetWidth, height: offsetHeight, rank, distance };
       });
       placeBoxes(boxes).forEach((stands, k) => {
         seen[k].span.hidden = !stands;

@@ -1,4 +1,4 @@
-// Which point of a scan is under the pointer.
+// Which point of a scan, and which box, is under the pointer.
 
 /**
  * @param {Float32Array} positions
@@ -23,6 +23,57 @@ export function pointUnder(positions, count, matrix, { x, y, width, height, reac
       least = cost;
       found = i;
     }
+  }
+  return found;
+}
+
+/** A place in clip space through a matrix (column by column), as a point. */
+function throughMatrix(matrix, [x, y, z]) {
+  const row = (k) => matrix[k] * x + matrix[k + 4] * y + matrix[k + 8] * z + matrix[k + 12];
+  const w = row(3);
+  return [row(0) / w, row(1) / w, row(2) / w];
+}
+
+/**
+ * The line of sight through a pixel.
+ * @param {ArrayLike<number>} fromClip clip space to the frame that is wanted, 16 numbers, column by column
+ * @returns {{from: number[], along: number[]}} the direction has unit length
+ */
+export function rayThrough(fromClip, { x, y, width, height }) {
+  const [cx, cy] = [(2 * x) / width - 1, 1 - (2 * y) / height];
+  const from = throughMatrix(fromClip, [cx, cy, -1]);
+  const to = throughMatrix(fromClip, [cx, cy, 1]);
+  const way = to.map((value, k) => value - from[k]);
+  const length = Math.hypot(...way);
+  return { from, along: way.map((value) => value / length) };
+}
+
+/** How far along a ray it enters a box turned by yaw about z; null where it misses it. */
+export function enters({ from, along }, { centre, extent, yaw }) {
+  const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
+  const turned = ([x, y, z]) => [cos * x + sin * y, -sin * x + cos * y, z];
+  const start = turned(from.map((value, k) => value - centre[k]));
+  const way = turned(along);
+  let [first, last] = [0, Infinity];
+  for (let axis = 0; axis < 3; ++axis) {
+    const half = 0.5 * extent[axis];
+    if (Math.abs(way[axis]) < 1e-12) {
+      if (Math.abs(start[axis]) > half) return null;
+      continue;
+    }
+    const [a, b] = [(-half - start[axis]) / way[axis], (half - start[axis]) / way[axis]];
+    first = Math.max(first, Math.min(a, b));
+    last = Math.min(last, Math.max(a, b));
+  }
+  return first <= last ? first : null;
+}
+
+/** The first of the boxes that a ray enters. @returns {{object: object, distance: number} | null} */
+export function boxUnder(ray, objects) {
+  let found = null;
+  for (const object of objects) {
+    const distance = enters(ray, object);
+    if (distance !== null && (!found || distance < found.distance)) found = { object, distance };
   }
   return found;
 }

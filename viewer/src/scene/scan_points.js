@@ -5,7 +5,7 @@ import {
   Points, RGBAFormat, ShaderMaterial, Vector2,
 } from 'three';
 import { UNKNOWN } from '../bytes.js';
-import { CATEGORY_COUNT, categoryColour, lookupTable, markColours, rgb } from '../colour/maps.js';
+import { ID_COLOURS, idColour, idColourIndex, lookupTable, markColours, rgb } from '../colour/maps.js';
 
 const vertexShader = `
 attribute float doppler;
@@ -26,8 +26,9 @@ varying vec3 colour;
 void main() {
   vec4 seen = modelViewMatrix * vec4(position, 1.0);
   gl_Position = projectionMatrix * seen;
-  // Near points grow a little, far ones stay visible.
-  gl_PointSize = size * clamp(pixelsPerUnit / -seen.z, 0.75, 2.2);
+  // Near points grow a little, far ones stay visible; without perspective all are of one size.
+  float scale = projectionMatrix[3][3] < 0.5 ? clamp(pixelsPerUnit / -seen.z, 0.75, 2.2) : 1.0;
+  gl_PointSize = size * scale;
   float kind = category < 0.5 ? shown.x : category < 1.5 ? shown.y : shown.z;
   if (kind < 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0); // outside of what is drawn
   if (source == 2) {
@@ -52,6 +53,26 @@ void main() {
   gl_FragColor = vec4(colour, 1.0);
 }`;
 
+// Larger discs behind the points of one object: a rim about all of it, while each point keeps the colour that tells
+// something.
+const rimVertexShader = `
+attribute float label;
+uniform float size;
+uniform float selected;
+void main() {
+  gl_Position = projectionMatrix * modelViewMatrix * vec4(position, 1.0);
+  gl_Position.z += 0.002 * gl_Position.w;
+  gl_PointSize = 2.2 * size + 5.0;
+  if (abs(label - selected) > 0.5) gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
+}`;
+const rimFragmentShader = `
+uniform vec3 selectedColour;
+void main() {
+  vec2 away = gl_PointCoord - 0.5;
+  if (dot(away, away) > 0.25) discard;
+  gl_FragColor = vec4(selectedColour, 1.0);
+}`;
+
 // The tables hold colours as the screen shows them; nothing turns them into light and back.
 function texture(bytes, filter) {
   const made = new DataTexture(bytes, bytes.length / 4, 1, RGBAFormat);
@@ -67,19 +88,16 @@ function categoryTable(ground) {
   const marks = markColours(ground);
   const table = new Uint8Array(4 * 16);
   const colours = [marks.unused, marks.still, marks.moving];
-  for (let k = 0; k < CATEGORY_COUNT; ++k) colours.push(categoryColour(k, ground));
+  for (let k = 0; k < ID_COLOURS; ++k) colours.push(idColour(k, ground));
   colours.forEach((colour, k) => table.set([...rgb(colour), 255], 4 * k));
   return table;
 }
-
-/** Which colour an object has: by its id, so that it stays the same from scan to scan. */
-export const objectColourIndex = (id) => ((Math.trunc(id) % CATEGORY_COUNT) + CATEGORY_COUNT) % CATEGORY_COUNT;
 
 /** What the shader takes a label for: 0 not used, 1 static, 2 moving, 3 + colour of the object. */
 export function categoriesOf(labels, objectIds, into) {
   for (let i = 0; i < labels.length; ++i) {
     const label = labels[i];
-    into[i] = label < 3 ? label : objectIds[label - 3] === undefined ? 2 : 3 + objectColourIndex(objectIds[label - 3]);
+    into[i] = label < 3 ? label : objectIds[label - 3] === undefined ? 2 : 3 + idColourIndex(objectIds[label - 3]);
   }
   return into;
 }
@@ -93,10 +111,15 @@ export function createScanPoints() {
     source: { value: 0 }, range: { value: new Vector2(-1, 1) }, ground: { value: 0 }, size: { value: 2 },
     pixelsPerUnit: { value: 20 }, shown: { value: [1, 1, 1] }, roundFrom: { value: 2.6 },
     map: { value: null }, categories: { value: null }, unknownColour: { value: new Color() },
+    selected: { value: -1 }, selectedColour: { value: new Color() },
   };
   const points = new Points(geometry, new ShaderMaterial({ uniforms, vertexShader, fragmentShader }));
   points.frustumCulled = false;
   points.visible = false;
+  const rim = new Points(geometry, new ShaderMaterial({ uniforms, vertexShader: rimVertexShader, fragmentShader: rimFragmentShader }));
+  rim.frustumCulled = false;
+  rim.visible = false;
+  points.add(rim);
 
   function reserve(count) {
     if (count <= capacity) return;
@@ -107,6 +130,7 @@ export function createScanPoints() {
     add('position', 3, Float32Array);
     for (const name of ['doppler', 'compensated', 'residual']) add(name, 1, Float32Array);
     add('category', 1, Uint8Array);
+    add('label', 1, Uint8Array);
   }
 
   /** Puts `count` of the values, evenly picked, into an attribute. */
@@ -145,7 +169,13 @@ export function createScanPoints() {
       fill('position', scan.positions, count);
       for (const name of ['doppler', 'compensated', 'residual']) fill(name, scan[name], count);
       fill('category', categoriesOf(scan.label, objectIds, categoryBuffer.subarray(0, scan.count)), count);
+      fill('label', scan.label, count);
       geometry.setDrawRange(0, count);
+    },
+    /** @param {number|null} label of the points that stand out: 3 + place of their object in the list of the scan's frame */
+    standOut(label) {
+      uniforms.selected.value = label ?? -1;
+      rim.visible = label !== null;
     },
     /** @param {{source: number, map: string}} colouring @param {[number, number]} range */
     colourBy(colouring, range, ground) {
@@ -156,6 +186,7 @@ export function createScanPoints() {
       const map = colouring.map === 'categories' ? 'sequential' : colouring.map;
       uniforms.map.value = texture(lookupTable(map, ground), LinearFilter);
       uniforms.categories.value = texture(categoryTable(ground), NearestFilter);
+      uniforms.selectedColour.value = asVector(markColours(ground).selected);
       uniforms.unknownColour.value = asVector(markColours(ground).unknown);
     },
     /** Height of the ground in the sensor frame, m. */

@@ -15,7 +15,7 @@ uniform float now;
 uniform float opacity;
 uniform float pale;
 varying vec4 colour;
-const float NEAREST = -0.31; // just beyond the camera's near plane
+const float NEAREST = -0.31; // just beyond the near plane of the cameras
 
 void main() {
   vec4 a = modelViewMatrix * vec4(start, 1.0);

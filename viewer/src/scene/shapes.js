@@ -2,6 +2,8 @@
 
 const EDGES = [[0, 1], [1, 3], [3, 2], [2, 0], [4, 5], [5, 7], [7, 6], [6, 4], [0, 4], [1, 5], [2, 6], [3, 7]];
 
+const sum = (a, b, share) => a.map((value, k) => value + share * b[k]);
+
 /** The twelve edges of a box turned by yaw (rad) about z. */
 export function boxEdges({ centre, extent, yaw }) {
   const [cos, sin] = [Math.cos(yaw), Math.sin(yaw)];
@@ -14,14 +16,24 @@ export function boxEdges({ centre, extent, yaw }) {
   return EDGES.flatMap(([from, to]) => [...corner(from), ...corner(to)]);
 }
 
-const sum = (a, b, share) => a.map((value, k) => value + share * b[k]);
+/** Ends of the dashes of a line. @param {number} piece m, of a dash and of a gap */
+export function dashes(from, to, piece = 0.4) {
+  const way = to.map((value, k) => value - from[k]);
+  const count = Math.max(1, Math.round((Math.hypot(...way) / piece + 1) / 2));
+  return Array.from({ length: count }, (_, k) => [(2 * k) / (2 * count - 1), (2 * k + 1) / (2 * count - 1)])
+    .flatMap((shares) => shares.flatMap((share) => sum(from, way, share)));
+}
 
-/** A shaft with four barbs, as long as the way in `seconds`. Nothing below 0.1 m. */
-export function arrow(from, velocity, seconds = 1) {
+/**
+ * A shaft with four barbs, as long as the displacement in `seconds`. Nothing below 0.1 m.
+ * `dashed`: the shaft is; it ends in two heads where it would be longer than `most` (m).
+ */
+export function arrow(from, velocity, { seconds = 1, dashed = false, most = Infinity } = {}) {
   const way = velocity.map((value) => value * seconds);
-  const length = Math.hypot(...way);
-  if (!(length > 0.1)) return [];
-  const along = way.map((value) => value / length);
+  const whole = Math.hypot(...way);
+  if (!(whole > 0.1)) return [];
+  const length = Math.min(whole, most);
+  const along = way.map((value) => value / whole);
   const level = Math.hypot(along[0], along[1]);
   const across = level > 1e-6 ? [-along[1] / level, along[0] / level, 0] : [1, 0, 0];
   const up = [
@@ -31,9 +43,15 @@ export function arrow(from, velocity, seconds = 1) {
   ];
   const tip = sum(from, along, length);
   const barb = Math.min(1.2, 0.3 * length);
-  const neck = sum(tip, along, -barb);
   const barbs = [[across, 0.45], [across, -0.45], [up, 0.3], [up, -0.3]];
-  return [from, tip, ...barbs.flatMap(([side, share]) => [tip, sum(neck, side, share * barb)])].flat();
+  const headAt = (place) => {
+    const neck = sum(place, along, -barb);
+    return barbs.flatMap(([side, share]) => [place, sum(neck, side, share * barb)]).flat();
+  };
+  return [
+    ...(dashed ? dashes(from, tip) : [...from, ...tip]), ...headAt(tip),
+    ...(length < whole ? headAt(sum(tip, along, -0.7 * barb)) : []),
+  ];
 }
 
 /** A level circle about the origin. */

@@ -2,19 +2,23 @@
 import { Color, LinearSRGBColorSpace, Matrix4, Quaternion, Scene, Vector3, WebGLRenderer } from 'three';
 import { canInflate } from '../bytes.js';
 import { colouring, quantile } from '../colour/colourings.js';
-import { markColours } from '../colour/maps.js';
+import { mapStops } from '../colour/maps.js';
 import { element } from '../dom.js';
+import { shortNumber } from '../format.js';
 import { readMap, readScan } from '../page_data.js';
 import { facingOf, frameCount, headingInSensor, keptScan, objectOf, originOf, poseOf } from '../runs.js';
 import { createScanCache } from '../scan_cache.js';
 import { groupAt, runAt, runsShown, sameScan } from '../session.js';
+import { headingInWorld, nearestOf, objectAt, tracksOf, yawOf } from '../tracks.js';
 import { cssColour, groundOf } from '../theme.js';
 import { createCameraRig } from './camera_rig.js';
 import { createLabels } from './labels.js';
 import { createObjects } from './objects.js';
+import { createOverlay } from './overlay.js';
 import { createPaths } from './paths.js';
-import { pointUnder } from './picking.js';
+import { boxUnder, pointUnder, rayThrough } from './picking.js';
 import { createPredictedPoints } from './predicted_points.js';
+import { pictureOf, save } from './save_picture.js';
 import { createScanPoints } from './scan_points.js';
 import { createRings, createSensor, createStaticMap } from './surroundings.js';
 
@@ -77,7 +81,8 @@ export function createView(report, store) {
   renderer.setPixelRatio(context.software ? 1 : Math.min(window.devicePixelRatio, MOST_PIXELS_PER_POINT));
 
   const labels = createLabels();
-  const holder = element('div', { class: 'scene-holder' }, canvas, labels.element);
+  const overlay = createOverlay();
+  const holder = element('div', { class: 'scene-holder' }, canvas, overlay.elements[0], labels.element, overlay.elements[1]);
   const scene = new Scene();
   const points = createScanPoints();
   const predicted = createPredictedPoints();
@@ -127,12 +132,17 @@ export function createView(report, store) {
   function drawNow() {
     const { clientWidth: width, clientHeight: height } = holder;
     if (width === 0 || height === 0) return;
-    renderer.render(scene, rig.camera);
-    const { layers, picked } = store.state;
+    const camera = rig.camera();
+    renderer.render(scene, camera);
+    const { layers, picked, object, ruler } = store.state;
     labels.draw([
-      ...(layers.has('ids') ? objects.labels(current.objects, picked?.object) : []),
+      ...(layers.has('ids') ? objects.labels(current.objects, object) : []),
       ...(layers.has('rings') ? rings.labels() : []),
-    ], objects.object.matrix, rig.camera, width, height);
+    ], objects.object.matrix, camera, width, height);
+    overlay.draw({
+      axes: rig.seenFromAbove(), ruler,
+      picked: picked && new Vector3(...picked.place).applyMatrix4(points.object.matrix).toArray(),
+    }, camera, width, height);
     holder.dataset.frame = current.frame;
     holder.dataset.draws = Number(holder.dataset.draws ?? 0) + 1;
   }
@@ -144,8 +154,17 @@ export function createView(report, store) {
     points.colourBy(chosen, chosen.map === 'diverging' ? [-most, most] : [0, most], ground);
   }
 
+  /** The points of the selected object, in the scan that is shown. */
+  function standOut() {
+    const place = current.scanObjects.findIndex(({ id }) => id === store.state.object);
+    points.standOut(place < 0 ? null : 3 + place);
+  }
+
   function drawObjects() {
-    objects.show(current.objects, ground);
+    const { colour, layers, object, limits } = store.state;
+    // Boxes have the colours of ids where points have them too, else a neutral one: a colour says one thing at a time.
+    const byId = colour === 'kind' && !layers.has('predicted');
+    objects.show(current.objects, { ground, byId, selected: object, longest: limits.arrow ?? Infinity });
     const run = runAt(report, store.state);
     const velocity = run.frames.ego_velocity.slice(3 * current.frame, 3 * current.frame + 3);
     sensor.show(velocity.every((value) => value !== null) ? velocity : null, cssColour('--ink'));
@@ -171,6 +190,7 @@ export function createView(report, store) {
     const frame = place === null ? null : run.scans.frames[place];
     const listed = frame === null ? [] : (run.frames.objects[frame] ?? []).map(objectOf);
     current.scanObjects = listed;
+    standOut();
     showPoints(true);
     predicted.show(scan, listed, place === null ? 0 : run.scans.dt[place] ?? 0);
     if (scan && scan.count > 0) {
@@ -196,6 +216,24 @@ export function createView(report, store) {
     return headings.get(runIndex);
   }
 
+  function sensorAnchor(matrix, heading) {
+    const [x, y] = matrix.elements; // the sensor's x axis in the world
+    return { place: matrix.elements.slice(12, 15), yaw: Math.atan2(y, x) + heading };
+  }
+
+  /** What the camera goes with when it follows an object: the object, or where it was last; else null. */
+  function chased(run, frame) {
+    const { chase, object } = store.state;
+    const track = chase && object !== null ? tracksOf(run).get(object) : null;
+    if (!track) return null;
+    const nearest = nearestOf(run, track, frame);
+    const pose = poseOf(run.frames.poses, nearest.frame);
+    if (!pose) return null;
+    const centre = new Vector3(...nearest.centre).applyMatrix4(poseMatrix(pose, origin));
+    const heading = headingInWorld(run, nearest.frame, nearest);
+    return { place: centre.toArray(), yaw: heading === null ? yawOf(pose) + nearest.yaw : (heading * Math.PI) / 180 };
+  }
+
   async function showFrame() {
     const ticket = ++tickets;
     const { run: runIndex, frame, playing } = store.state;
@@ -218,17 +256,18 @@ export function createView(report, store) {
     // Something newer may be drawn already; something older may not stand in the way of what follows.
     if (ticket < current.ticket || runIndex !== store.state.run) return;
     const isNewScan = scan !== current.scan || run !== current.run;
-    current = { ...current, ticket, frame, place, scan, run, objects: (run.frames.objects[frame] ?? []).map(objectOf) };
+    const list = (run.frames.objects[frame] ?? []).map((_, k) => objectAt(run, frame, k));
+    // Who tracks nothing states nothing of what was observed.
+    const shownObjects = list.map((object) => ({ ...object, observed: object.details?.observed ?? true }));
+    current = { ...current, ticket, frame, place, scan, run, objects: shownObjects };
     if (isNewScan) showScan(run, place, scan);
     const pose = poseOf(run.frames.poses, frame);
     const matrix = pose ? poseMatrix(pose, origin) : new Matrix4();
     for (const object of atFrame) object.matrix.copy(matrix);
     drawObjects();
     paths.drive((other) => sameScan(run, frame, other));
-    if (pose) {
-      const [x, y] = matrix.elements; // the sensor's x axis in the world
-      rig.moveAnchor({ place: matrix.elements.slice(12, 15), yaw: Math.atan2(y, x) + heading });
-    }
+    const anchor = chased(run, frame) ?? (pose && sensorAnchor(matrix, heading));
+    if (anchor) rig.moveAnchor(anchor);
     store.set({ shown: { frame, place, scanFrame: place === null ? null : run.scans.frames[place], trouble } });
     draw();
   }
@@ -279,17 +318,25 @@ export function createView(report, store) {
     drawNow(); // at once, or the emptied canvas shows for a moment
   }
 
-  /** What is known of the point under the pointer: rows for the read-out, or null. */
-  function pick(event) {
+  /** A matrix from the frame of something in the scene to clip space. */
+  function toClip(part) {
+    const camera = rig.camera();
+    camera.updateMatrixWorld();
+    return new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).multiply(part.matrix);
+  }
+
+  function pixelOf(event) {
+    const box = canvas.getBoundingClientRect();
+    return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height, reach: 10 };
+  }
+
+  /** What is known of the point under the pointer, or null. */
+  function pickPoint(pixel) {
     const { scan } = current;
     if (!scan || !points.object.visible) return null;
-    const box = canvas.getBoundingClientRect();
-    rig.camera.updateMatrixWorld();
-    const matrix = new Matrix4().multiplyMatrices(rig.camera.projectionMatrix, rig.camera.matrixWorldInverse).multiply(points.object.matrix);
     const { layers } = store.state;
     const isShown = (i) => layers.has(scan.label[i] === 0 ? 'unused' : scan.label[i] === 1 ? 'still' : 'moving');
-    const i = pointUnder(scan.positions, scan.count, matrix.elements,
-      { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height, reach: 10 }, isShown);
+    const i = pointUnder(scan.positions, scan.count, toClip(points.object).elements, pixel, isShown);
     return i < 0 ? null : {
       place: Array.from(scan.positions.slice(3 * i, 3 * i + 3)), doppler: scan.doppler[i],
       compensated: scan.compensated[i], residual: scan.residual[i], label: scan.label[i],
@@ -297,11 +344,46 @@ export function createView(report, store) {
     };
   }
 
+  /** The point and the object under the pointer: an object by its points, or by its box where no point lies before that. */
+  function pick(event) {
+    const pixel = pixelOf(event);
+    const picked = pickPoint(pixel);
+    if (picked && picked.object !== null) return { picked, object: picked.object };
+    const ray = rayThrough(toClip(objects.object).invert().elements, pixel);
+    const box = objects.boxes.visible ? boxUnder(ray, current.objects) : null;
+    const before = picked && box && new Vector3(...picked.place).applyMatrix4(points.object.matrix)
+      .applyMatrix4(objects.object.matrix.clone().invert()).distanceTo(new Vector3(...ray.from)) < box.distance;
+    return box && !before ? { picked: null, object: box.object.id } : { picked, object: null };
+  }
+
+  /** The place of the world under the pointer: of a point of the scan, else on the ground below the sensor. */
+  function placeUnder(event) {
+    const pixel = pixelOf(event);
+    const picked = pickPoint(pixel);
+    if (picked) return new Vector3(...picked.place).applyMatrix4(points.object.matrix).toArray();
+    const { from, along } = rayThrough(toClip(rings.object).invert().elements, pixel);
+    const distance = (groundHeight - from[2]) / along[2];
+    if (!(distance > 0 && distance < 5000)) return null;
+    return new Vector3(...from).addScaledVector(new Vector3(...along), distance).applyMatrix4(rings.object.matrix).toArray();
+  }
+
+  function measure(event) {
+    const place = placeUnder(event);
+    const { ruler } = store.state;
+    if (place) store.set({ ruler: ruler.length === 1 ? [ruler[0], place] : [place] });
+  }
+
   let pressedAt = null;
-  canvas.addEventListener('pointerdown', (event) => { pressedAt = [event.clientX, event.clientY]; });
+  canvas.addEventListener('pointerdown', (event) => {
+    pressedAt = [event.clientX, event.clientY];
+    canvas.classList.add('by-pointer'); // keys that follow draw no frame about it
+  });
+  canvas.addEventListener('blur', () => canvas.classList.remove('by-pointer'));
   canvas.addEventListener('pointerup', (event) => {
     const moved = pressedAt && Math.hypot(event.clientX - pressedAt[0], event.clientY - pressedAt[1]);
-    if (moved !== null && moved < 4) store.set({ picked: pick(event) });
+    if (moved === null || moved >= 4 || event.button !== 0) return;
+    if (store.state.measuring) measure(event);
+    else store.set(pick(event));
   });
   canvas.addEventListener('webglcontextrestored', draw);
 
@@ -318,7 +400,14 @@ export function createView(report, store) {
     });
     store.watch(['colour', 'limit', 'limits', 'theme', 'systemTheme'], () => { colourPoints(); draw(); });
     store.watch(['group', 'run', 'hidden', 'theme', 'systemTheme'], () => { showRuns(); drawObjectsIfAny(); draw(); });
-    store.watch(['picked'], draw);
+    store.watch(['picked', 'ruler'], draw);
+    store.watch(['object'], () => {
+      standOut();
+      drawObjectsIfAny();
+      draw();
+    });
+    store.watch(['colour', 'layers', 'limits'], () => { drawObjectsIfAny(); draw(); });
+    store.watch(['measuring'], ({ measuring }) => canvas.classList.toggle('measures', measuring));
     store.watch(['run', 'layers'], showMap);
     store.watch(['layers', 'run'], showLayers);
     store.watch(['size'], ({ size }) => {
@@ -339,6 +428,15 @@ export function createView(report, store) {
     store.watch(['group'], (_, changed) => {
       if (changed && store.state.camera === 'free' && current.ticket > 0) rig.reset();
     });
+    let before = chaseOf(store.state);
+    store.watch(['chase', 'object'], async (state) => {
+      if (chaseOf(state) === before) return;
+      before = chaseOf(state);
+      await showFrame(); // the anchor is another
+      rig.reset();
+      keepEye();
+      draw();
+    });
     let mode = store.state.camera;
     store.watch(['camera'], ({ camera }) => {
       if (camera === mode) return;
@@ -349,6 +447,8 @@ export function createView(report, store) {
     });
     new ResizeObserver(resize).observe(holder);
   };
+
+  const chaseOf = ({ chase, object }) => (chase ? object : null);
 
   function drawObjectsIfAny() {
     if (!current.run) return;
@@ -363,6 +463,22 @@ export function createView(report, store) {
       rig.reset();
       keepEye();
       draw();
+    },
+    /** Saves what is seen. */
+    async savePicture() {
+      const { colour, limit, limits, frame } = store.state;
+      const chosen = colouring(colour);
+      const most = limit ?? limits[chosen.id];
+      const run = runAt(report, store.state);
+      const bar = run.scans && chosen.map !== 'categories'
+        ? { gradient: mapStops(chosen.map, ground), ends: [chosen.map === 'diverging' ? `−${shortNumber(most)}` : '0', `${shortNumber(most)} ${chosen.unit}`] } : null;
+      const { clientWidth: width, clientHeight: height } = holder;
+      drawNow(); // a canvas keeps its picture only until the browser has shown it
+      const blob = await pictureOf(
+        { canvases: [canvas, ...overlay.elements], labels: [...labels.element.children].filter((span) => !span.hidden), width, height },
+        { bar, text: `${run.scans ? `${chosen.name} · ` : ''}${report.title} · frame ${frame}` },
+        { ground: cssColour('--scene'), ink: cssColour('--ink') });
+      save(blob, `${report.title.replace(/[^\w-]+/g, '_').slice(0, 60) || 'report'}-${frame}.png`);
     },
   };
 }
