@@ -7,7 +7,8 @@ import { createScale, tickText } from '../plots/scale.js';
 import { cssColour } from '../theme.js';
 
 const FONT = '11px system-ui, "DejaVu Sans", sans-serif';
-const AXES = [['x', [1, 0, 0], '--axis-x'], ['y', [0, 1, 0], '--axis-y'], ['z', [0, 0, 1], '--axis-z']];
+const AXES = [['x', [1, 0, 0]], ['y', [0, 1, 0]], ['z', [0, 0, 1]]];
+const COLOURS = ['scene', 'ink', 'rings', 'ruler', 'selected', 'axis-x', 'axis-y', 'axis-z'];
 const GIZMO = { size: 64, arm: 21 };
 
 function penOf(canvas, width, height) {
@@ -24,22 +25,22 @@ function penOf(canvas, width, height) {
 }
 
 /** A text with a halo, so that it is read on any ground. */
-function label(pen, text, x, y) {
+function label(pen, colours, text, x, y) {
   pen.lineWidth = 4;
-  pen.strokeStyle = cssColour('--scene');
+  pen.strokeStyle = colours.scene;
   pen.strokeText(text, x, y);
-  pen.fillStyle = cssColour('--ink');
+  pen.fillStyle = colours.ink;
   pen.fillText(text, x, y);
 }
 
 /** @param {{left: number, right: number, low: number, high: number}} seen m */
-function drawAxes(pen, seen, width, height) {
+function drawAxes(pen, colours, seen, width, height) {
   const x = createScale({ low: seen.left, high: seen.right, from: 0, to: width });
   const y = createScale({ low: seen.low, high: seen.high, from: height, to: 0 });
   const columns = x.ticks(Math.max(2, Math.floor(width / 90)));
   const rows = y.ticks(Math.max(2, Math.floor(height / 60)));
   pen.lineWidth = 1;
-  pen.strokeStyle = cssColour('--rings');
+  pen.strokeStyle = colours.rings;
   pen.globalAlpha = 0.45;
   pen.beginPath();
   for (const tick of columns) {
@@ -57,15 +58,15 @@ function drawAxes(pen, seen, width, height) {
   pen.textAlign = 'center';
   pen.textBaseline = 'bottom';
   for (const tick of columns) {
-    if (x.place(tick) > 50 && x.place(tick) < width - 50) label(pen, tickText(tick, columns), x.place(tick), height - 3);
+    if (x.place(tick) > 50 && x.place(tick) < width - 50) label(pen, colours, tickText(tick, columns), x.place(tick), height - 3);
   }
   pen.textAlign = 'right';
-  label(pen, 'x (m)', width - 5, height - 3);
+  label(pen, colours, 'x (m)', width - 5, height - 3);
   pen.textAlign = 'left';
   pen.textBaseline = 'middle';
-  for (const tick of rows) if (y.place(tick) > 60 && y.place(tick) < height - 24) label(pen, tickText(tick, rows), 4, y.place(tick));
+  for (const tick of rows) if (y.place(tick) > 60 && y.place(tick) < height - 24) label(pen, colours, tickText(tick, rows), 4, y.place(tick));
   pen.textBaseline = 'bottom';
-  label(pen, 'y (m)', 4, height - 3);
+  label(pen, colours, 'y (m)', 4, height - 3);
 }
 
 /** What a ruler says: the distance, and what of it goes up. @param {number[]} from m @param {number[]} to m */
@@ -75,8 +76,8 @@ export function rulerText(from, to) {
   return `${shortNumber(Math.hypot(dx, dy, dz), 4)} m (Δx ${shortNumber(dx, 3)}, Δy ${shortNumber(dy, 3)}${up ? '' : ' m'}${up})`;
 }
 
-function drawRuler(pen, places, text) {
-  pen.strokeStyle = pen.fillStyle = cssColour('--ruler');
+function drawRuler(pen, colours, places, text) {
+  pen.strokeStyle = pen.fillStyle = colours.ruler;
   pen.lineWidth = 2;
   if (places.length === 2) {
     pen.beginPath();
@@ -93,7 +94,7 @@ function drawRuler(pen, places, text) {
   pen.textAlign = 'center';
   pen.textBaseline = 'bottom';
   pen.font = `600 ${FONT}`;
-  label(pen, text, (places[0][0] + places[1][0]) / 2, (places[0][1] + places[1][1]) / 2 - 6);
+  label(pen, colours, text, (places[0][0] + places[1][0]) / 2, (places[0][1] + places[1][1]) / 2 - 6);
   pen.font = FONT;
 }
 
@@ -101,13 +102,18 @@ export function createOverlay() {
   const canvas = element('canvas', { class: 'overlay', 'aria-hidden': 'true', hidden: true });
   const gizmo = element('canvas', { class: 'gizmo', 'aria-hidden': 'true', title: 'Axes of the trajectory’s frame' });
   const vector = new Vector3();
+  let colours = {};
+  let turned = ''; // how the cross of axes was last drawn
 
   function drawGizmo(camera) {
+    const turn = camera.quaternion.toArray().map((value) => value.toFixed(3)).join();
+    if (turn === turned) return;
+    turned = turn;
     const pen = penOf(gizmo, GIZMO.size, GIZMO.size);
     const middle = GIZMO.size / 2;
-    const arms = AXES.map(([name, direction, colour]) => {
+    const arms = AXES.map(([name, direction]) => {
       vector.fromArray(direction).transformDirection(camera.matrixWorldInverse);
-      return { name, colour: cssColour(colour), x: middle + GIZMO.arm * vector.x, y: middle - GIZMO.arm * vector.y, toEye: vector.z };
+      return { name, colour: colours[`axis-${name}`], x: middle + GIZMO.arm * vector.x, y: middle - GIZMO.arm * vector.y, toEye: vector.z };
     }).sort((a, b) => a.toEye - b.toEye);
     pen.textAlign = 'center';
     pen.textBaseline = 'middle';
@@ -122,13 +128,18 @@ export function createOverlay() {
       pen.beginPath();
       pen.arc(x, y, 7, 0, 2 * Math.PI);
       pen.fill();
-      pen.fillStyle = cssColour('--scene');
+      pen.fillStyle = colours.scene;
       pen.fillText(name, x, y + 0.5);
     }
   }
 
   return {
     elements: [canvas, gizmo],
+    /** Reads the colours of the theme; asking for them at every drawing would cost more than the drawing. */
+    setTheme() {
+      colours = Object.fromEntries(COLOURS.map((name) => [name, cssColour(`--${name}`)]));
+      turned = '';
+    },
     /**
      * @param {object} shown
      * @param {ReturnType<ReturnType<typeof import('./camera_rig.js').createCameraRig>['seenFromAbove']>} shown.axes
@@ -145,17 +156,17 @@ export function createOverlay() {
         vector.fromArray(place).project(camera);
         return Math.abs(vector.z) < 1 ? [(0.5 + 0.5 * vector.x) * width, (0.5 - 0.5 * vector.y) * height] : null;
       };
-      if (axes) drawAxes(pen, axes, width, height);
+      if (axes) drawAxes(pen, colours, axes, width, height);
       const at = picked && pixelOf(picked);
       if (at) {
-        pen.strokeStyle = cssColour('--selected');
+        pen.strokeStyle = colours.selected;
         pen.lineWidth = 2;
         pen.beginPath();
         pen.arc(...at, 7, 0, 2 * Math.PI);
         pen.stroke();
       }
       const ends = ruler.map(pixelOf);
-      if (ends.every(Boolean)) drawRuler(pen, ends, ruler.length === 2 ? rulerText(...ruler) : '');
+      if (ends.every(Boolean)) drawRuler(pen, colours, ends, ruler.length === 2 ? rulerText(...ruler) : '');
     },
   };
 }

@@ -356,15 +356,20 @@ export function createView(report, store) {
     return box && !before ? { picked: null, object: box.object.id } : { picked, object: null };
   }
 
-  /** The place of the world under the pointer: of a point of the scan, else on the ground below the sensor. */
+  /** The place of the world under the pointer: of a point of the scan, else on the ground below the sensor. From above all is level. */
   function placeUnder(event) {
     const pixel = pixelOf(event);
     const picked = pickPoint(pixel);
-    if (picked) return new Vector3(...picked.place).applyMatrix4(points.object.matrix).toArray();
+    const level = rig.seenFromAbove() !== null;
+    if (picked) {
+      const [x, y, z] = new Vector3(...picked.place).applyMatrix4(points.object.matrix).toArray();
+      return [x, y, level ? 0 : z];
+    }
     const { from, along } = rayThrough(toClip(rings.object).invert().elements, pixel);
     const distance = (groundHeight - from[2]) / along[2];
     if (!(distance > 0 && distance < 5000)) return null;
-    return new Vector3(...from).addScaledVector(new Vector3(...along), distance).applyMatrix4(rings.object.matrix).toArray();
+    const [x, y, z] = new Vector3(...from).addScaledVector(new Vector3(...along), distance).applyMatrix4(rings.object.matrix).toArray();
+    return [x, y, level ? 0 : z];
   }
 
   function measure(event) {
@@ -394,6 +399,7 @@ export function createView(report, store) {
       renderer.setClearColor(new Color().setRGB(...cssColour('--scene', true)));
       predicted.setGround(ground);
       map.setGround(ground);
+      overlay.setTheme();
       rings.show(groundHeight, cssColour('--rings'));
       drawObjectsIfAny();
       draw();
