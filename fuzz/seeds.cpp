@@ -15,6 +15,7 @@
 
 #include "testing/bags_by_hand.hpp"
 #include "testing/db3_by_hand.hpp"
+#include "testing/ros_bytes.hpp"
 
 namespace dynamic_icp::fuzz {
 namespace {
@@ -104,9 +105,26 @@ class Seeds {
         R"("rotation":{"w":1,"x":0,"y":0,"z":0}},"linear_velocity":{"x":1,"y":2,"z":3},"class":"car"}]}]})");
     write_texts();
     write_bags();
+    write_messages();
   }
 
  private:
+  /// The first byte says of which type and encoding a message is (messages.cpp).
+  void write_messages() {
+    const ros::Cloud cloud = ros::float_cloud(7, "lidar", {"x", "y", "z", "v"}, {{1, 2, 3, 4}, {5, 6, 7, 8}});
+    write("messages", '\0' + cloud.bytes(ros::Wire::kRos1));
+    write("messages", '\1' + cloud.bytes(ros::Wire::kCdrLittle));
+    write("messages", '\1' + cloud.bytes(ros::Wire::kCdrBig));
+    write("messages", "\4\x0A\2\x08\5\x12\1l\x25" + std::string("\4\0\0\0", 4) + "\x2A\5\x0A\1x\x18\7\x32\4abcd");
+    write("messages",
+          "\5{\"timestamp\":{\"sec\":1,\"nsec\":2},\"frame_id\":\"l\",\"point_stride\":4,\"fields\":[{\"name\":\"x\","
+          "\"offset\":0,\"type\":7}],\"data\":\"AACAPw==\"}");
+    ros::Writer transform(ros::Wire::kCdrLittle);
+    transform.put(std::uint32_t{1}).header(1, "a").text("b").pose(Eigen::Isometry3d::Identity());
+    write("messages", '\x0D' + transform.bytes());
+    write("messages", '\x12' + ros::Writer(ros::Wire::kRos1).header(1, "imu").doubles(37, 0.5).bytes());
+  }
+
   void write_bags() {
     const std::vector<by_hand::Channel> channels = {{1, "/p", "sensor_msgs/msg/PointCloud2", "", "cdr"},
                                                     {2, "/i", "sensor_msgs/msg/Imu", "", "cdr"}};
