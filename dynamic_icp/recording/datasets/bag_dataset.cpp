@@ -167,7 +167,7 @@ class BagDataset final : public Dataset {
                       options.sensors.front()));
     }
     for (const std::string& name : TopicChoice(*bag_, path_, options).choose(assumptions_)) {
-      topics_.push_back({.name = name});
+      topics_.emplace_back().name = name;
     }
     find_stamps();
     for (CloudTopic& topic : topics_) {
