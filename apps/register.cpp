@@ -38,7 +38,9 @@ RawScan read_scan_file(const std::string& path, Stamp stamp, const datasets::Inp
   const bool is_known = ending == ".bin" || ending == ".pcd" || ending == ".ply" || ending == ".npz" ||
                         ending == ".npy" || ending == ".csv" || ending == ".txt" || ending == ".xyz" ||
                         ending == ".asc";
-  if (settings.open.format == "auto" && !is_known && std::filesystem::is_regular_file(path)) {
+  const bool is_file = std::filesystem::is_regular_file(path);
+  const bool is_empty = is_file && ending == ".bin" && std::filesystem::file_size(path) == 0;  // a scan without points
+  if (settings.open.format == "auto" && is_file && (!is_known || is_empty)) {
     of_file.open.format = "dicp";
   }
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(path, of_file);

@@ -200,8 +200,8 @@ const std::vector<Expected>& expectations() {
       {"duplicate stamps", "dicp", Left::kNothingRead, "ref_poses.txt", "line 4: the time stamp 0.200000000 occurs a"},
       {"duplicate stamps", kRecords, Left::kNothingRead, "copy_FILE", "carries the same time stamp as"},
       {"duplicate stamps", "npz pcd-ascii pcd-binary pcd-compressed ply", Left::kNothingRead, "copy_FILE",
-       "carries the same number as"},
-      {"duplicate stamps", "npy-pair", Left::kNothingRead, "_dop.npy", "carries the same number as"},
+       "carries the same time stamp as"},
+      {"duplicate stamps", "npy-pair", Left::kNothingRead, "_dop.npy", "carries the same time stamp as"},
       {"duplicate stamps", "aevascenes", Left::kNothingRead, "sequence.json",
        "frames: two frames have the timestamp_ns"},
 

@@ -161,9 +161,9 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
   if (points == nullptr || states_part_of(options.fields, *points)) {
     if (states_more) {
       throw UsageError(
-          fmt::format("{}: its columns have names ({}): state them as --field doppler=NAME, not by their "
+          fmt::format("{}: its columns have names ({}): state them as {}, not by their "
                       "order",
-                      origin.string(), fmt::join(scan.names(), ", ")));
+                      origin.string(), fmt::join(scan.names(), ", "), to_paste("field", "doppler=NAME")));
     }
     return reading;
   }
@@ -179,9 +179,9 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
   reading.rows.array = *points;
   if (states_more) {
     if (options.columns.size() != width) {
-      throw UsageError(fmt::format("{}: has {} columns, but {} are stated ({}); state for instance --columns {}",
-                                   array.origin, width, options.columns.size(), fmt::join(options.columns, ","),
-                                   numbers_as_columns(array)));
+      throw UsageError(fmt::format("{}: has {} columns, but {} are stated ({}); state for instance {}", array.origin,
+                                   width, options.columns.size(), fmt::join(options.columns, ","),
+                                   to_paste("columns", numbers_as_columns(array))));
     }
     reading.rows.names = options.columns;
     return reading;
@@ -204,8 +204,8 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
         fmt::format("{}: the four columns of '{}' are taken as x, y, z, Doppler", origin.string(), *points));
     return reading;
   }
-  throw DataError(fmt::format("{}: has {} columns without names; state what they are, e.g. with --columns {}",
-                              array.origin, width, numbers_as_columns(array)));
+  throw DataError(fmt::format("{}: has {} columns without names; state what they are, e.g. with {}", array.origin,
+                              width, to_paste("columns", numbers_as_columns(array))));
 }
 
 namespace {
@@ -250,7 +250,8 @@ std::string field_options(const NamedColumns& scan, const std::map<std::string, 
     take_axes({*find_name(scan, "x"), *find_name(scan, "y"), *find_name(scan, "z")});
   } else if (!axes.empty()) {
     take_axes(axes);
-    options = fmt::format(" --field x={} --field y={} --field z={}", axes[0], axes[1], axes[2]);
+    options = fmt::format(" {} {} {}", to_paste("field", "x=" + axes[0]), to_paste("field", "y=" + axes[1]),
+                          to_paste("field", "z=" + axes[2]));
   } else {
     for (const std::string& name : scan.names()) {
       const formats::NpyArray candidate = scan.read(name);
@@ -259,9 +260,9 @@ std::string field_options(const NamedColumns& scan, const std::map<std::string, 
         const std::vector<std::vector<double>> columns = columns_of_array(candidate);
         points = points_of(columns[0], columns[1], columns[2]);
         array = name;
-        options = fmt::format(" --field points={}", name);
+        options = " " + to_paste("field", "points=" + name);
         if (width > kPlainColumns && !has_doppler_beside(scan, fields)) {
-          return options + fmt::format(" --columns {}", proposed_columns(columns));
+          return options + " " + to_paste("columns", proposed_columns(columns));
         }
         if (width == kPlainColumns) {
           return options;  // the fourth is the Doppler, or there is one beside it
@@ -287,7 +288,7 @@ std::string field_options(const NamedColumns& scan, const std::map<std::string, 
   if (names.empty()) {
     return "";  // there is no Doppler, whatever the points are
   }
-  return options + fmt::format(" --field doppler={}", names[likely_doppler(points, columns).value_or(0)]);
+  return options + " " + to_paste("field", "doppler=" + names[likely_doppler(points, columns).value_or(0)]);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/recording/datasets/likely_doppler.hpp"
+#include "dynamic_icp/recording/datasets/open_options.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -190,9 +191,9 @@ std::string sentence_of(const std::vector<fs::path>& files, const RecordShape& s
                                                   multiples(sizes, shape.bytes()), sizes.size(), shape.bytes());
   return fmt::format(
       "{}: looks like records of {} {} a point{}: {}, and the numbers repeat at that length; state what "
-      "they are, e.g. with --columns {}{}",
-      files.front().string(), shape.numbers, type_name(shape.type), instead, sizes_say, shape.columns,
-      shape.type == NpyType::kFloat64 ? " --dtype float64" : "");
+      "they are, e.g. with {}{}",
+      files.front().string(), shape.numbers, type_name(shape.type), instead, sizes_say,
+      to_paste("columns", shape.columns), shape.type == NpyType::kFloat64 ? " " + to_paste("dtype", "float64") : "");
 }
 
 }  // namespace

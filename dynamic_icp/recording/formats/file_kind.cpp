@@ -64,8 +64,8 @@ constexpr std::string_view kSentences[] = {
     "is an SQLite database; if it is of a ROS 2 bag, format rosbag2 reads it",
     "is a PLY file",
     "is a PCD file",
-    "is a LAS or LAZ file, which is not read; write each scan as text with 'pdal translate IN.las OUT.csv "
-    "--writers.text.precision=6', where the Doppler is one of its extra dimensions",
+    "is a LAS or LAZ file, which is not read; write each scan as text with 'pdal translate IN.las OUT.csv', where the "
+    "Doppler is one of its extra dimensions",
     "is an E57 file, which is not read; write each scan with Python: import numpy, pye57; numpy.savez('00000.npz', "
     "**pye57.E57('IN.e57').read_scan_raw(0))",
     "is an HDF5 file, which is not read; write each scan with Python: import h5py, numpy; numpy.savez('00000.npz', "
