@@ -30,6 +30,7 @@ if(DYNAMIC_ICP_BUILD_IO OR DYNAMIC_ICP_NEEDS_TOOLS)
     set_target_properties(liblzf::lzf PROPERTIES IMPORTED_LOCATION ${DYNAMIC_ICP_LIBLZF_LIBRARY}
       INTERFACE_INCLUDE_DIRECTORIES ${DYNAMIC_ICP_LIBLZF_INCLUDE_DIR})
   endif()
+  find_package(ZLIB REQUIRED)
   # What bags are packed with, and what ROS 2 keeps them in. libzstd, liblz4 and libbz2 come without CMake files.
   find_package(SQLite3 REQUIRED)
   set(libraries zstd lz4 bz2)
@@ -48,7 +49,6 @@ endif()
 
 if(DYNAMIC_ICP_NEEDS_TOOLS)
   find_package(PNG REQUIRED)
-  find_package(ZLIB REQUIRED)
   # Embree 3 (Debian 12, Ubuntu 22.04) and Embree 4 (newer) differ in the name of their package and header.
   find_package(embree 4 QUIET)
   if(embree_FOUND)

@@ -39,7 +39,7 @@ target_link_libraries(dynamic_icp_core PRIVATE fmt::fmt pthread)
 if(DYNAMIC_ICP_BUILD_IO)
   dynamic_icp_library(io recording dynamic_icp_core)
   target_link_libraries(dynamic_icp_io PRIVATE fmt::fmt yaml-cpp::yaml-cpp libzip::zip liblzf::lzf
-    SQLite::SQLite3 dynamic_icp::zstd dynamic_icp::lz4 dynamic_icp::bz2)
+    SQLite::SQLite3 ZLIB::ZLIB dynamic_icp::zstd dynamic_icp::lz4 dynamic_icp::bz2)
 endif()
 
 if(DYNAMIC_ICP_INSTALL)
