@@ -10,6 +10,7 @@ export const layers = [
   { id: 'path', name: 'Trajectory', key: 'j', on: true },
   { id: 'truth', name: 'Ground truth', key: 'g', on: true },
   { id: 'map', name: 'Static map', key: 'm', on: false },
+  { id: 'traces', name: 'Moving points of the drive', key: 'q', on: false },
   { id: 'rings', name: 'Range rings', key: 'o', on: true },
   { id: 'sensor', name: 'Sensor and ego velocity', key: 'e', on: true },
 ];
@@ -18,7 +19,7 @@ export const usualLayers = () => new Set(layers.filter(({ on }) => on).map(({ id
 
 /** Those that a run has something for. */
 export const layersOf = (report, run) => layers.filter(({ id }) =>
-  id === 'map' ? run.map !== null
+  id === 'map' || id === 'traces' ? Boolean(run[id])
     : id === 'truth' ? run.truth !== null
       : ['still', 'moving', 'unused', 'predicted'].includes(id) ? run.scans !== null
         : ['boxes', 'arrows', 'ids'].includes(id) ? run.frames.objects.some((list) => list.length > 0)

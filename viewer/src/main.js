@@ -27,14 +27,21 @@ import { keptKeys, readFragment, writeFragment } from './state.js';
 import { createStore } from './store.js';
 import { followTheme } from './theme.js';
 
+/** Ablations are many and much alike: they are shown when they are asked for, unless there is nothing else. */
+function ablationsOf(report) {
+  const isAblation = (run) => run.facts.some(([name, value]) => name === 'ablation' && value !== 'none');
+  const found = report.runs.map((_, k) => k).filter((k) => isAblation(report.runs[k]));
+  return new Set(found.length < report.runs.length ? found : []);
+}
+
 /** What a page shows when its address says nothing. */
 function usualState(report) {
   const run = firstRun(report, 0);
   return {
     group: 0, run, frame: report.kind === 'run' ? firstFrame(report.runs[run]) : lastFrame(report.runs[run]),
-    colour: 'compensated', limit: null, layers: usualLayers(),
-    camera: report.kind === 'run' ? 'follow' : 'free', eye: null, size: 2.5, speed: 1,
-    tab: report.kind === 'benchmark' ? 'tables' : 'plots', hidden: new Set(), theme: null,
+    colour: 'compensated', limit: null, layers: report.kind === 'run' ? usualLayers() : new Set(['path', 'truth']),
+    camera: report.kind === 'run' ? 'follow' : 'top', eye: null, size: 2.5, speed: 1,
+    tab: 'plots', hidden: ablationsOf(report), theme: null,
     object: null, chase: false, zoom: null, folded: new Set(),
   };
 }
@@ -46,9 +53,7 @@ function sheetsOf(report, store, player) {
   const objects = hasObjects ? [{ id: 'objects', name: 'Objects', element: createObjectSheet(report, store, player) }] : [];
   const summary = { id: 'summary', name: report.kind === 'run' ? 'Summary' : 'Run', element: createSummarySheet(report, store) };
   const configuration = { id: 'configuration', name: 'Settings', element: createConfigurationSheet(report, store) };
-  const several = report.kind === 'run' ? [] : [{ id: 'numbers', name: 'Metrics', element: createComparisonSheet(report, store) }];
-  const tables = report.tables?.length ? [{ id: 'tables', name: 'Tables', element: createTableSheet(report) }] : [];
-  return [...tables, plots, ...objects, distributions, ...several, summary, configuration];
+  return [plots, ...objects, distributions, summary, configuration];
 }
 
 /** Keeps the address in step with the state, not more often than browsers allow. */
@@ -74,6 +79,10 @@ function show(page) {
   document.body.classList.add('with-viewer');
 }
 
+/** What is decided by where runs are compared comes first, as wide as the page. */
+const createResults = (report, store) => element('section', { class: 'results', 'aria-label': 'Tables' },
+  report.tables?.length ? createTableSheet(report) : null, createComparisonSheet(report, store));
+
 /** A benchmark of which nothing but its tables is left. */
 const pageWithoutRuns = (report) => element('div', {},
   element('header', { class: 'top' }, element('h1', { text: report.title })),
@@ -88,7 +97,7 @@ function start() {
   }
   const usual = usualState(report);
   const fromLink = fitState(report, { ...usual, ...readFragment(location.hash) });
-  const store = createStore({ ...fromLink, systemTheme: 'light', playing: false, shown: null, picked: null, limits: {}, measuring: false, ruler: [] });
+  const store = createStore({ ...fromLink, systemTheme: 'light', playing: false, shown: null, picked: null, limits: {}, measuring: false, ruler: [], highlight: null });
   store.watch(['run'], (state) => store.set({ limits: usualLimits(runAt(report, state)) }));
   store.watch(['group', 'run'], (state) => {
     const { frame, object, chase } = fitState(report, state);
@@ -106,8 +115,10 @@ function start() {
     createStatus(report, store), createLegend(report, store),
     element('div', { class: 'readings' }, createPointReading(store), createObjectCard(report, store)));
   store.watch(['camera'], ({ camera }) => stage.classList.toggle('from-above', camera === 'top'));
-  const page = element('div', { class: 'page' },
+  const single = report.kind === 'run';
+  const page = element('div', { class: single ? 'page' : 'page several' },
     createHeader(report, store, { showHelp, link }),
+    single ? null : createResults(report, store),
     element('main', { class: 'columns' },
       element('section', { class: 'view', 'aria-label': 'View' },
         createToolbar(report, store, view), report.kind === 'run' ? null : createRunChips(report, store),

@@ -23,5 +23,5 @@ async function bytesOf(id) {
 /** Kept scan `place` of a run. @returns {Promise<import('./bytes.js').Scan>} */
 export const readScan = async (run, place) => decodeScan(await bytesOf(`scan-${run}-${place}`));
 
-/** The static map of a run. */
-export const readMap = async (run) => decodeMap(await bytesOf(`map-${run}`));
+/** A map of a run: 'map' of what is static, 'traces' of what moves. */
+export const readMap = async (name, run) => decodeMap(await bytesOf(`${name}-${run}`));

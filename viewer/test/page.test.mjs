@@ -175,7 +175,7 @@ test('every layer changes the picture, and back', async () => {
   await onPage(`${run()}#frame=6`, async (page) => {
     const before = await picture(page);
     await page.click('.menu summary');
-    for (const layer of ['still', 'moving', 'unused', 'boxes', 'arrows', 'predicted', 'path', 'truth', 'map', 'rings', 'sensor']) {
+    for (const layer of ['still', 'moving', 'unused', 'boxes', 'arrows', 'predicted', 'path', 'truth', 'map', 'traces', 'rings', 'sensor']) {
       const box = page.locator(`[data-layer="${layer}"]`);
       const labels = await page.locator('.labels').innerText();
       await box.click();
@@ -503,13 +503,32 @@ test('hostile texts are shown as texts', async () => {
   });
 });
 
-test('a comparison lays runs over each other, marks the best, and brings one to the front', async () => {
+test('a comparison: the table first, sorted by any column; runs over each other, one brought to the front', async () => {
   await onPage(write('comparison', samples.comparison()), async (page) => {
     assert.equal((await page.$$('.chip')).length, 3);
-    assert.match(await page.textContent('[data-plot="translation_error"]'), /dynamic-icp.*kiss-icp.*gicp/s);
-    await page.click('.tabs >> text=Metrics');
     const best = await page.$$eval('.numbers .best', (cells) => cells.map((cell) => cell.textContent));
     assert.deepEqual(best, ['★6.67 mm', '★0.00200°', '★102 1/s']);
+    assert.deepEqual(await page.$$eval('.numbers .second', (cells) => cells.map((cell) => cell.textContent)), ['40.0 mm', '0.0120°', '102 1/s']);
+    const table = await page.locator('.results').boundingBox();
+    assert.ok(table.y < 100 && table.width > 1200, 'on top, as wide as the page');
+    const names = () => page.$$eval('.numbers tbody th', (cells) => cells.map((cell) => cell.textContent));
+    const sort = page.locator('.numbers th button:has-text("translation error")');
+    await sort.click();
+    assert.deepEqual(await names(), ['dynamic-icp', 'kiss-icp', 'gicp']);
+    await sort.click();
+    assert.deepEqual(await names(), ['gicp', 'kiss-icp', 'dynamic-icp']);
+    assert.equal(await page.getAttribute('.numbers th:has-text("translation error")', 'aria-sort'), 'descending');
+
+    assert.match(await page.getAttribute('[data-plot="translation_error"] canvas', 'aria-label'), /dynamic-icp.*kiss-icp.*gicp/s);
+    // What is on the canvas itself: whatever else moves with the pointer is no part of it.
+    const drawnPlot = async () =>
+      Buffer.from((await page.$eval('[data-plot="translation_error"] canvas', (canvas) => canvas.toDataURL())).split(',')[1], 'base64');
+    await page.locator('[data-plot="translation_error"]').scrollIntoViewIfNeeded();
+    const plain = await drawnPlot();
+    await page.hover('.chip:has-text("gicp")');
+    assert.ok(!(await isSame(page, await drawnPlot(), plain)), 'a run that is pointed at stands out');
+    await page.hover('h1');
+    assert.ok(await isSame(page, await drawnPlot(), plain));
     await page.click('.tabs >> text=CDF');
     assert.match(await page.getAttribute('[data-plot="translation_error-distribution"] canvas', 'aria-label'), /kiss-icp from 0 to 100/);
     const all = await picture(page);
@@ -523,15 +542,31 @@ test('a comparison lays runs over each other, marks the best, and brings one to 
   });
 });
 
+test('a method has the colour its page says, and ablations are shown when they are asked for', async () => {
+  const content = samples.comparison();
+  content.parts[0].run.colour = 6;
+  content.parts[2].run.facts.push(['ablation', 'no-planes']);
+  await onPage(write('ablation', content), async (page) => {
+    assert.deepEqual(await page.$$eval('.chip input', (boxes) => boxes.map((box) => box.checked)), [true, true, false]);
+    assert.equal(await page.$eval('.chip .swatch', (swatch) => swatch.style.getPropertyValue('--swatch')), '#6b4fa0');
+    await page.click('[aria-label="Show gicp"]');
+    await page.waitForFunction(() => /hidden=(&|$)/.test(location.hash));
+    await page.reload();
+    await page.waitForSelector('.chip');
+    assert.deepEqual(await page.$$eval('.chip input', (boxes) => boxes.map((box) => box.checked)), [true, true, true]);
+  });
+});
+
 test('a benchmark shows its tables and each of its sequences', async () => {
   await onPage(write('benchmark', samples.benchmark()), async (page) => {
-    assert.match(await page.textContent('#sheet-tables'), /Accuracy.*tunnel.*★0\.007/s);
+    assert.match(await page.textContent('.results'), /Accuracy.*tunnel.*★0\.007/s);
     const street = await picture(page);
     await page.selectOption('[aria-label="Sequence"]', '1');
     assert.ok(!street.equals(await picture(page)));
-    await page.click('.tabs >> text=Metrics');
-    assert.match(await page.textContent('#sheet-numbers'), /tunnel.*24/s);
+    assert.match(await page.textContent('.results section + section, .results .text-sheet:last-child'), /tunnel.*24/s);
     assert.equal((await page.$$('.chip')).length, 2);
+    await page.click('.warning-count');
+    assert.match(await page.textContent('#sheet-summary'), /^[^]*degenerate/);
   });
 });
 

@@ -7,7 +7,7 @@ import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import test, { after } from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { decodeBase64, decodeScan, inflate } from '../src/bytes.js';
+import { decodeBase64, decodeMap, decodeScan, inflate } from '../src/bytes.js';
 import { findBrowser, openPage, skipIfMissing } from './browser.mjs';
 
 const FRAMES = 12;
@@ -45,6 +45,18 @@ test('the page holds what docs/report.md says', () => {
   for (const plot of run.plots) for (const { name, values } of plot.series) assert.equal(values.length, FRAMES, `${plot.id} ${name}`);
   assert.ok(frames.objects.flat().length > 0 && frames.objects.flat().every((row) => row.length === 12));
   assert.equal(run.truth.poses.length, 7 * FRAMES);
+  assert.deepEqual(frames.object_details.map((list) => list.length), frames.objects.map((list) => list.length));
+  for (const [age, observed, faces, ...sigmas] of frames.object_details.flat()) {
+    assert.ok(age >= 1 && typeof observed === 'boolean' && /^[shu]{6}$/.test(faces) && sigmas.length === 5);
+    for (const sigma of sigmas) assert.ok(sigma === null || sigma >= 0);
+  }
+  assert.equal(run.plots.find(({ id }) => id === 'translation_error').unit, 'mm');
+});
+
+test('traces are where objects were', async () => {
+  const traces = decodeMap(await inflate(decodeBase64(/id="traces-0">([^<]*)</.exec(html)[1])));
+  assert.equal(traces.count, run.traces.points);
+  assert.ok(traces.count > 100);
 });
 
 test('what stands has no Doppler left without the own motion, what moves has that of its object', async () => {

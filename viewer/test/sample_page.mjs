@@ -212,7 +212,8 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
       objects, object_details: details,
     },
     truth: truth ? { poses: truePoses } : null,
-    pictures: [{ title: 'Learned', caption: 'A square', svg: '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><rect width="40" height="40" fill="#0072b2"/></svg>' }],
+    pictures: [{ title: 'Learned', caption: 'A square', svg: '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><rect width="40" height="40" fill="#0072b2"/></svg>',
+      svg_dark: '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><rect width="40" height="40" fill="#56b4e9"/></svg>' }],
     plots: [
       plot('ego_speed', 'Ego speed', 'm/s', [['estimate', series((k) => Math.hypot(...egoVelocity.slice(3 * k, 3 * k + 3)))],
         ...(truth ? [['truth', series(() => SPEED), true]] : [])], { fromZero: false }),
@@ -225,17 +226,21 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
       plot('degeneracy', 'Information ratio', '', [['smallest / largest', series((k) => (status[k] === 'degenerate' ? 1e-5 : 0.02) * (0.5 + random()))]], { log: true, fromZero: false }),
     ],
     scans: scans ? kept : null,
-    map: null,
+    map: null, traces: null,
     ...texts,
   };
   let staticMap = null;
+  let traces = null;
   if (map) {
     const list = [];
     for (const pose of true_) for (let i = 0; i < 200; ++i) list.push(surfacePoint(random, pose, start));
     run.map = { points: list.length, cell: 0.4 };
     staticMap = mapBytes(list, 0.02, start);
+    const moving = true_.flatMap((_, k) => cars(start).map((car) => [car.x + car.speed * k * PERIOD, car.y, start[2] - 1]));
+    run.traces = { points: moving.length, cell: 0.1 };
+    traces = mapBytes(moving, 0.02, start);
   }
-  return { run, scans: bytes, map: staticMap };
+  return { run, scans: bytes, map: staticMap, traces };
 }
 
 const escapeText = (text) => text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('>', '&gt;');
@@ -252,9 +257,10 @@ export function pageOf({ kind, title, parts, groups, tables, notes = [] }, viewe
     schema: 1, kind, title, generator: 'dynamic-icp 0.1.0', notes, runs: parts.map(({ run }) => run),
     ...(groups ? { groups } : {}), ...(tables ? { tables } : {}),
   };
-  const bytes = parts.flatMap(({ scans, map }, r) => [
+  const bytes = parts.flatMap(({ scans, map, traces }, r) => [
     ...scans.map((scan, k) => `<script type="text/plain" id="scan-${r}-${k}">${base64(scan)}</script>`),
     ...(map ? [`<script type="text/plain" id="map-${r}">${base64(map)}</script>`] : []),
+    ...(traces ? [`<script type="text/plain" id="traces-${r}">${base64(traces)}</script>`] : []),
   ]);
   return `<!DOCTYPE html>
 <html lang="en">

@@ -10,6 +10,7 @@
 
 #include "dynamic_icp/method/window/error_by_direction.hpp"
 #include "dynamic_icp/tools/drawing/axes.hpp"
+#include "dynamic_icp/tools/drawing/markup.hpp"
 #include "dynamic_icp/tools/drawing/raster.hpp"
 #include "dynamic_icp/tools/figures/field_summary.hpp"
 
@@ -25,6 +26,8 @@ constexpr double kFieldHeight = 130.0;
 constexpr double kBeside = 78.0;
 constexpr double kAbove = 44.0;
 constexpr double kBelow = 96.0;
+
+constexpr double kMillimetres = 1000.0;
 
 /// What a panel shows: numbers over the directions, and how they are coloured.
 struct ShownField {
@@ -66,7 +69,8 @@ void draw_field_scale(drawing::Svg& svg, const drawing::Theme& theme, const draw
   svg.image(box, scale);
   for (const double share : {0.0, 0.5, 1.0}) {
     const double value = shown.least + share * (shown.most - shown.least);
-    svg.text({box.left + share * box.width, box.bottom() + 16.0}, fmt::format("{:.3f} m/s", value),
+    svg.text({box.left + share * box.width, box.bottom() + 16.0},
+             drawing::compact_number(kMillimetres * value) + " mm/s",
              {.colour = theme.muted,
               .size = 12.0,
               .anchor = share == 0.0   ? drawing::Anchor::kStart

@@ -23,7 +23,7 @@ TEST(FieldPlot, ShowsTheErrorAsTheSensorLooksOut) {
       }
     }
     EXPECT_NE(svg.find(drawing::base64(drawing::png(expected))), std::string::npos) << "left is left";
-    EXPECT_NE(svg.find("-0.100 m/s"), std::string::npos);
+    EXPECT_NE(svg.find("-100 mm/s"), std::string::npos);
     EXPECT_NE(svg.find("standard deviation"), std::string::npos);
   }
 }

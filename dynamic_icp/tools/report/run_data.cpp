@@ -152,13 +152,16 @@ Json plots_data(const RunFiles& run, const std::optional<figures::RunTruth>& tru
 Json pictures(const RunFiles& run) {
   Json list = Json::array();
   if (const auto calibration = runs::read_calibration_of(run.folder)) {
-    const drawing::Svg svg = figures::field_plot(*calibration, drawing::theme(drawing::Ground::kLight));
+    const auto drawn = [&](drawing::Ground ground) {
+      return figures::field_plot(*calibration, drawing::theme(ground)).element();
+    };
     list.push_back(
         {{"title", "What was learned of the sensor"},
          {"caption",
           "The error of the Doppler by direction at 30 m and medium intensity, mean of the faces. What looks like a "
           "velocity of the sensor is known by the planes only."},
-         {"svg", svg.element()}});
+         {"svg", drawn(drawing::Ground::kLight)},
+         {"svg_dark", drawn(drawing::Ground::kDark)}});
   }
   return list;
 }
@@ -186,7 +189,8 @@ Json run_data(const RunFiles& run, const std::optional<figures::RunTruth>& truth
           {"plots", plots_data(run, truth, kept)},
           {"pictures", pictures(run)},
           {"scans", nullptr},
-          {"map", nullptr}};
+          {"map", nullptr},
+          {"traces", nullptr}};
 }
 
 }  // namespace dynamic_icp::report

@@ -34,11 +34,12 @@ Json scans_data(std::size_t run, RunScans& kept, PageContent& content) {
   return data;
 }
 
-Json map_data(std::size_t run, std::optional<KeptMap>& map, PageContent& content) {
+/// The entry of a map of a run; its blob goes to `content`, called by `name` and the number of the run.
+Json map_data(const char* name, std::size_t run, std::optional<KeptMap>& map, PageContent& content) {
   if (!map) {
     return nullptr;
   }
-  content.blobs.emplace_back(fmt::format("map-{}", run), std::move(map->blob));
+  content.blobs.emplace_back(fmt::format("{}-{}", name, run), std::move(map->blob));
   return {{"points", map->points}, {"cell", rounded(map->cell_m, 3)}};
 }
 
@@ -68,7 +69,8 @@ PageContent run_report(const std::filesystem::path& folder, const ScanChoice& ch
   Json data = run_data(run, truth, name_of(run));
   data["frames"]["object_details"] = object_details(run);
   data["scans"] = scans_data(0, kept, content);
-  data["map"] = map_data(0, kept.map, content);
+  data["map"] = map_data("map", 0, kept.map, content);
+  data["traces"] = map_data("traces", 0, kept.traces, content);
   content.report = {{"schema", 1},           {"kind", "run"},
                     {"title", name_of(run)}, {"generator", generator()},
                     {"notes", notes},        {"runs", Json::array({std::move(data)})}};

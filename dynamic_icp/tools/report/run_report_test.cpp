@@ -102,7 +102,8 @@ TEST(RunReport, HoldsWhatTheContractNames) {
     EXPECT_EQ(scans["whole"][k], true);
   }
   EXPECT_EQ(read_map_blob(page.data.at("map-0")).size(), run["map"]["points"]);
-  EXPECT_EQ(page.data.size(), drive.frames + 2) << "report, map and scans, nothing else";
+  EXPECT_EQ(read_map_blob(page.data.at("traces-0")).size(), run["traces"]["points"]);
+  EXPECT_EQ(page.data.size(), drive.frames + 3) << "report, map, traces and scans, nothing else";
 }
 
 TEST(RunReport, NeedsNothingFromOutside) {
@@ -170,6 +171,7 @@ TEST(RunReport, WithoutRecordingThereAreNoScansButANote) {
   const ReadPage page = read_page(html_of(folder));
   EXPECT_TRUE(page.report["runs"][0]["scans"].is_null());
   EXPECT_TRUE(page.report["runs"][0]["map"].is_null());
+  EXPECT_TRUE(page.report["runs"][0]["traces"].is_null());
   EXPECT_TRUE(page.report["runs"][0]["truth"].is_null());
   ASSERT_EQ(page.report["notes"].size(), 2u);
   EXPECT_NE(page.report["notes"][0].get<std::string>().find("No scans are shown"), std::string::npos);

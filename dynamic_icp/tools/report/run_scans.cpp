@@ -21,6 +21,7 @@ namespace {
 using runs::RunFiles;
 
 constexpr double kMapShare = 0.1;        // of the budget
+constexpr double kTracesShare = 0.02;    // of the budget
 constexpr double kWholeShare = 0.25;     // of the budget, for scans that nobody asked for
 constexpr double kBytesPerPoint = 10.0;  // of a thinned scan, until one tells
 constexpr double kMapBytesPerPoint = 8.0;
@@ -66,17 +67,19 @@ class ScanReader {
   Prepared now_;
 };
 
-void add_static_points(StaticMap& map, const RunFiles& run, std::size_t frame, const figures::ShownScan& scan) {
+/// Adds the points of a scan whose labels are wanted.
+void add_points(StaticMap& map, const RunFiles& run, std::size_t frame, const figures::ShownScan& scan,
+                bool (*is_wanted)(std::uint8_t label)) {
   if (run.frames[frame].status == "lost") {
     return;  // where this scan stands is a guess
   }
-  std::vector<Eigen::Vector3d> still;
+  std::vector<Eigen::Vector3d> wanted;
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    if (scan.labels[i] == figures::kStatic) {
-      still.push_back(scan.points[i]);
+    if (is_wanted(scan.labels[i])) {
+      wanted.push_back(scan.points[i]);
     }
   }
-  map.add(still, run.trajectory[frame].T_world_sensor);
+  map.add(wanted, run.trajectory[frame].T_world_sensor);
 }
 
 std::optional<KeptMap> finish(StaticMap& map, std::size_t budget_bytes) {
@@ -227,15 +230,17 @@ std::vector<std::string> notes_of(const RunFiles& run, const RunScans& kept, con
   return notes;
 }
 
-/// Fills a page with scans and the map of their static points, within a budget.
+/// Fills a page with scans, the map of their static points and the traces of moving ones, within a budget.
 class PageScans {
  public:
   PageScans(const RunFiles& run, const datasets::Dataset& recording, double budget_bytes, const Workers& workers)
       : run_(run),
         reader_(run, recording, workers),
         map_bytes_(kMapShare * budget_bytes),
-        scan_bytes_(budget_bytes - map_bytes_),
-        map_(static_cast<std::size_t>(map_bytes_ / kMapBytesPerPoint)) {
+        traces_bytes_(kTracesShare * budget_bytes),
+        scan_bytes_(budget_bytes - map_bytes_ - traces_bytes_),
+        map_(static_cast<std::size_t>(map_bytes_ / kMapBytesPerPoint)),
+        traces_(static_cast<std::size_t>(traces_bytes_ / kMapBytesPerPoint)) {
     for (const runs::FrameRow& frame : run.frames) {
       points_.push_back(points_of(frame));
     }
@@ -268,7 +273,8 @@ class PageScans {
     std::size_t share = 0;
     for (const std::size_t frame : plan.frames) {
       const figures::ShownScan& scan = reader_.read(frame);
-      add_static_points(map_, run_, frame, scan);
+      add_points(map_, run_, frame, scan, [](std::uint8_t label) { return label == figures::kStatic; });
+      add_points(traces_, run_, frame, scan, [](std::uint8_t label) { return label > figures::kStatic; });
       if (kept_.contains(frame)) {
         continue;
       }
@@ -288,6 +294,7 @@ class PageScans {
       result.scans.push_back(std::move(scan));
     }
     result.map = finish(map_, static_cast<std::size_t>(map_bytes_));
+    result.traces = finish(traces_, static_cast<std::size_t>(traces_bytes_));
     return result;
   }
 
@@ -315,8 +322,10 @@ class PageScans {
   const RunFiles& run_;
   ScanReader reader_;
   double map_bytes_;
+  double traces_bytes_;
   double scan_bytes_;
   StaticMap map_;
+  StaticMap traces_;                 ///< of what moves
   std::vector<std::size_t> points_;  ///< of each scan in the recording
   double bytes_per_point_ = kBytesPerPoint;
   Spending on_whole_;

@@ -41,6 +41,7 @@ struct KeptMap {
 struct RunScans {
   std::vector<KeptScan> scans;     ///< ascending
   std::optional<KeptMap> map;      ///< empty when the run tells no static points
+  std::optional<KeptMap> traces;   ///< the same of all points that move, wherever they were; empty when none do
   std::vector<std::string> notes;  ///< what was left out
 };
 

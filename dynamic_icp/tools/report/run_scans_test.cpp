@@ -27,7 +27,7 @@ RunScans scans_of(const WallDrive& drive, const ScanChoice& choice, int threads 
 }
 
 std::size_t bytes_of(const RunScans& kept) {
-  std::size_t bytes = kept.map ? kept.map->blob.size() : 0;
+  std::size_t bytes = (kept.map ? kept.map->blob.size() : 0) + (kept.traces ? kept.traces->blob.size() : 0);
   for (const KeptScan& scan : kept.scans) {
     bytes += scan.blob.size();
   }
@@ -116,6 +116,24 @@ TEST(RunScans, MapIsTheStaticWorld) {
   }
 }
 
+TEST(RunScans, TracesAreWhereTheCarWas) {
+  const WallDrive drive;
+  const RunScans kept = scans_of(drive, {});
+  ASSERT_TRUE(kept.traces);
+  const std::vector<Eigen::Vector3d> traces = read_map_blob(kept.traces->blob);
+  EXPECT_EQ(traces.size(), kept.traces->points);
+  std::vector<std::size_t> seen(drive.frames, 0);
+  for (const Eigen::Vector3d& p : traces) {
+    const double frame = (p.x() - WallDrive::car_x(0.0)) / (0.1 * WallDrive::kCar_mps);
+    EXPECT_NEAR(frame, std::round(frame), 0.01) << p.transpose();
+    EXPECT_LT(std::abs(p.y()), 1.01);
+    ++seen.at(static_cast<std::size_t>(std::lround(frame)));
+  }
+  for (const std::size_t count : seen) {
+    EXPECT_GT(count, 50u) << "of every scan";
+  }
+}
+
 TEST(RunScans, StayWithinTheBudget) {
   WallDrive drive;
   drive.frames = 20;
@@ -180,6 +198,7 @@ TEST(RunScans, AreTheSameForAnyNumberOfThreads) {
     EXPECT_EQ(one.scans[k].blob, four.scans[k].blob);
   }
   EXPECT_EQ(one.map->blob, four.map->blob);
+  EXPECT_EQ(one.traces->blob, four.traces->blob);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@ import { element } from '../dom.js';
 import { toggled } from '../layers.js';
 import { groupAt, runsShown } from '../session.js';
 import { groundOf } from '../theme.js';
+import { sortableTable } from './sortable.js';
 
 /** The chips of the runs of a group: a click brings a run to the front, the box shows or hides it. */
 export function createRunChips(report, store) {
@@ -13,7 +14,11 @@ export function createRunChips(report, store) {
       const swatch = element('i', { class: dash ? 'swatch dash' : 'swatch' });
       swatch.style.setProperty('--swatch', colour);
       const front = index === state.run;
-      return element('span', { class: front ? 'chip front' : 'chip' },
+      const highlight = (index_) => () => store.set({ highlight: index_ });
+      return element('span', {
+        class: front ? 'chip front' : 'chip',
+        on: { pointerenter: highlight(index), pointerleave: highlight(null), focusin: highlight(index), focusout: highlight(null) },
+      },
         element('input', {
           type: 'checkbox', checked: front || !state.hidden.has(index), disabled: front, 'aria-label': `Show ${run.name}`,
           on: { change: () => store.set({ hidden: toggled(store.state.hidden, index) }) },
@@ -39,6 +44,12 @@ export function bestOf(numbers, better) {
   return numbers.map((value) => value === best);
 }
 
+/** Which of the runs come after the best, where there are more than two. */
+function secondOf(numbers, best, better) {
+  const rest = numbers.map((value, k) => (best[k] ? null : value));
+  return best.some(Boolean) && numbers.length > 2 ? bestOf(rest, better) : numbers.map(() => false);
+}
+
 const cell = (text, best, second = false) => element('td', { class: best ? 'best' : second ? 'second' : null }, best ? element('span', { class: 'star', title: 'best', text: '★' }) : null, text);
 
 export function createComparisonSheet(report, store) {
@@ -48,19 +59,27 @@ export function createComparisonSheet(report, store) {
     const runs = group.runs.map((index) => report.runs[index]);
     const rows = new Map();
     for (const run of runs) for (const entry of run.summary) if (!rows.has(entry.key)) rows.set(entry.key, entry);
+    // A run a row: what is compared stands below each other and can be sorted. First what has a better and a worse.
+    const measures = [...rows.values()].sort((a, b) => Number(!a.better) - Number(!b.better));
+    const cells = new Map(measures.map(({ key, better }) => {
+      const entries = runs.map((run) => run.summary.find((entry) => entry.key === key));
+      const numbers = entries.map((entry) => entry?.number ?? null);
+      const best = bestOf(numbers, better);
+      const second = secondOf(numbers, best, better);
+      return [key, { entries, best, second }];
+    }));
+    const table = runs.map((run, k) => {
+      const texts = measures.map(({ key }) => cells.get(key).entries[k]?.value ?? '–');
+      return {
+        texts: [run.name, ...texts],
+        row: element('tr', {}, element('th', { scope: 'row', text: run.name }),
+          ...measures.map(({ key }, m) => cell(texts[m], cells.get(key).best[k], cells.get(key).second[k]))),
+      };
+    });
     sheet.replaceChildren(
       element('h2', { text: group.name }),
-      element('div', { class: 'scroll' }, element('table', { class: 'numbers' },
-        element('thead', {}, element('tr', {}, element('th', { text: '' }),
-          ...runs.map((run) => element('th', { scope: 'col', text: run.name })))),
-        element('tbody', {}, ...[...rows.values()].map(({ key, meaning, better }) => {
-          const entries = runs.map((run) => run.summary.find((entry) => entry.key === key));
-          const best = bestOf(entries.map((entry) => entry?.number ?? null), better);
-          return element('tr', {},
-            element('th', { scope: 'row', title: key, text: meaning || key }),
-            ...entries.map((entry, k) => cell(entry?.value ?? '–', best[k])));
-        })))),
-      element('p', { class: 'muted', text: '★ best of the runs that have this number' }));
+      element('div', { class: 'scroll' }, sortableTable(['run', ...measures.map(({ key, meaning }) => (meaning || key).split(';')[0])], table, { class: 'numbers' })),
+      element('p', { class: 'muted', text: '★ best, underlined second of the runs that have this number' }));
   });
   return sheet;
 }
@@ -69,9 +88,10 @@ export function createComparisonSheet(report, store) {
 export function createTableSheet(report) {
   return element('div', { class: 'text-sheet' }, ...report.tables.map(({ title, caption, columns, rows, best, second }) =>
     element('section', {}, element('h2', { text: title }),
-      element('div', { class: 'scroll' }, element('table', { class: 'numbers' },
-        element('thead', {}, element('tr', {}, ...columns.map((text) => element('th', { scope: 'col', text })))),
-        element('tbody', {}, ...rows.map((row, r) => element('tr', {}, ...row.map((text, c) =>
-          (c === 0 ? element('th', { scope: 'row', text }) : cell(text, best?.[r]?.[c] ?? false, second?.[r]?.[c] ?? false)))))))),
+      element('div', { class: 'scroll' }, sortableTable(columns, rows.map((row, r) => ({
+        texts: row,
+        row: element('tr', {}, ...row.map((text, c) =>
+          (c === 0 ? element('th', { scope: 'row', text }) : cell(text, best?.[r]?.[c] ?? false, second?.[r]?.[c] ?? false)))),
+      })), { class: 'numbers' })),
       caption ? element('p', { class: 'muted', text: caption }) : null)));
 }

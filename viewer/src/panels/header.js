@@ -11,7 +11,10 @@ export function createHeader(report, store, { showHelp, link }) {
   const groupList = chooser('Sequence', groups.map(({ name }, k) => ({ value: String(k), text: name })),
     (value) => store.set({ group: Number(value), run: firstRun(report, Number(value)), hidden: new Set(), limit: null }));
   const runList = chooser('Run in front', [], (value) => store.set({ run: Number(value), limit: null }));
-  const warnings = button('', 'Show the warnings', () => store.set({ tab: 'summary' }), { class: 'warning-count' });
+  const warnings = button('', 'Show the warnings', () => {
+    store.set({ tab: 'summary' });
+    document.getElementById('sheet-summary')?.scrollIntoView({ block: 'nearest' });
+  }, { class: 'warning-count' });
   const theme = iconButton('theme', 'Light or dark (T)', () => store.set({ theme: otherTheme(store.state) }));
   const share = button('Copy link', 'Copy a link to exactly this view', () => copyText(link(), share));
   const help = button('?', 'Keys and hints (?)', showHelp);

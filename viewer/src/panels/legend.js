@@ -62,6 +62,9 @@ export function createLegend(report, store) {
     if (run.frames.object_details && state.layers.has('arrows')) {
       parts.push(element('div', { class: 'legend-hint', text: 'dashed, ~: tangential speed not observed' }));
     }
+    if (run.traces && state.layers.has('traces') && chosen.map !== 'categories') {
+      parts.push(element('div', { class: 'legend-entries' }, entry(marks.moving, 'moving points of the drive')));
+    }
     if (run.truth && state.layers.has('truth')) parts.push(element('div', { class: 'legend-entries' }, entry('var(--ink)', 'ground truth', 'band')));
     legend.replaceChildren(...parts);
     legend.hidden = parts.length === 0;

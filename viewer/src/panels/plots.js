@@ -25,6 +25,7 @@ function chartSheet(store, keys, plotsOf, use, empty) {
     sheet.replaceChildren(...(charts.length ? charts.map((chart) => chart.element) : [element('p', { class: 'muted', text: empty })]));
     if (focused) charts.find((chart) => chart.element.dataset.plot === focused)?.element.querySelector('.fold').focus();
   });
+  store.watch(['highlight'], ({ highlight }) => charts.forEach((chart) => chart.highlight(highlight)));
   return { sheet, each: (act) => charts.forEach(act) };
 }
 

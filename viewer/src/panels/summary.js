@@ -1,6 +1,7 @@
 // The sheets of one run: its numbers, warnings and command; its configuration.
 import { button, element, pairTable } from '../dom.js';
 import { runAt } from '../session.js';
+import { groundOf } from '../theme.js';
 import { copyText } from './copy.js';
 
 const section = (title, ...children) => element('section', {}, element('h2', { text: title }), ...children);
@@ -48,21 +49,21 @@ function summaryTables(summary) {
   ].filter(Boolean);
 }
 
-const picture = ({ title, caption, svg }) => section(title, element('figure', {},
-  element('img', { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(svg)}`, alt: title }),
+const picture = ({ title, caption, svg, svg_dark: dark }, ground) => section(title, element('figure', {},
+  element('img', { src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(ground === 'dark' && dark ? dark : svg)}`, alt: title }),
   element('figcaption', { class: 'muted', text: caption })));
 
 export function createSummarySheet(report, store) {
   const sheet = element('div', { class: 'text-sheet' });
-  store.watch(['run'], (state) => {
+  store.watch(['run', 'theme', 'systemTheme'], (state) => {
     const run = runAt(report, state);
     sheet.replaceChildren(...[
       report.kind === 'run' ? null : element('h2', { class: 'run-name', text: run.name }),
       run.warnings.length ? section('Warnings', list(run.warnings, 'warnings')) : null,
-      section('Summary', ...summaryTables(run.summary)),
-      ...run.pictures.map(picture),
-      section('Run', pairTable([['recording', run.name], ...run.facts])),
       report.notes.length ? section('Notes', list(report.notes, 'notes')) : null,
+      section('Summary', ...summaryTables(run.summary)),
+      ...run.pictures.map((entry) => picture(entry, groundOf(state))),
+      section('Run', pairTable([['recording', run.name], ...run.facts])),
       run.command ? command(run.command) : null,
       element('p', { class: 'muted', text: `Page made by ${report.generator}` }),
     ].filter(Boolean));

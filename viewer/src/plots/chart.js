@@ -18,6 +18,7 @@ const FONT = '11px system-ui, "DejaVu Sans", sans-serif';
  * @property {ArrayLike<number|null>} [sigma] standard deviations, drawn as a band about the line
  * @property {boolean} [broad] a broad pale line, for what others are compared with
  * @property {boolean} [dash]
+ * @property {number} [run] whose line it is, where several are compared
  */
 
 /**
@@ -68,6 +69,7 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
   let x = null;
   let y = null;
   let span = null; // [low, high] of x that is shown, null for all
+  let highlighted = null; // the run whose line is drawn strong while others are pale
   let now = null; // x of the current frame
   let hovered = null;
 
@@ -144,8 +146,9 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
     const { colour, xs, ys, broad, dash } = series;
     if (series.sigma) drawBand(pen, series);
     pen.strokeStyle = pen.fillStyle = resolved(colour);
-    pen.globalAlpha = broad ? 0.4 : 1;
-    pen.lineWidth = broad ? 4.5 : 1.4;
+    const isBehind = highlighted !== null && series.run !== highlighted;
+    pen.globalAlpha = isBehind ? 0.15 : broad ? 0.4 : 1;
+    pen.lineWidth = broad ? 4.5 : highlighted !== null && !isBehind ? 2.4 : 1.4;
     pen.lineJoin = 'round';
     pen.setLineDash(dash ? [5, 3] : []);
     pen.beginPath();
@@ -255,6 +258,11 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
     /** @param {[number, number]|null} shown stretch of x, null for all */
     setSpan(shown) {
       span = shown;
+      draw();
+    },
+    /** @param {number|null} run see `Series.run`; null: all are alike */
+    highlight(run) {
+      highlighted = plot.series.some((series) => series.run === run) ? run : null;
       draw();
     },
     /** @param {number|null} value x of the current frame */

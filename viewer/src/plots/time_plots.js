@@ -50,7 +50,7 @@ export function plotsOfRuns(shown) {
       id, title: first.series.length > 1 ? `${first.title}, ${lead}` : first.title, unit: first.unit, xName: 'scan',
       y: { ...looks(first), log, fromZero: first.from_zero && !log },
       x: { low, high: Math.max(high, low + 1), whole: true },
-      series: having.map(({ run, colour, dash }, k) => ({ name: run.name, colour, dash, xs: run.frames.index, ys: values[k] })),
+      series: having.map(({ index, run, colour, dash }, k) => ({ name: run.name, run: index, colour, dash, xs: run.frames.index, ys: values[k] })),
     };
   });
 }

@@ -83,7 +83,7 @@ export function createCameraRig(canvas, changed) {
     },
     /** Eye and target, six numbers, for `setMode` and links. */
     eye: relative,
-    setMode(newMode, eye) {
+    setMode(newMode, eye, all = false) {
       const before = { eye: camera.position.toArray(), target: controls.target.toArray() };
       const had = mode;
       mode = CAMERA_MODES.includes(newMode) ? newMode : 'follow';
@@ -91,9 +91,15 @@ export function createCameraRig(canvas, changed) {
       controls.screenSpacePanning = mode === 'top';
       if (eye) place(eye);
       else if (mode === 'free' && had !== 'free') place([...before.eye, ...before.target]);
-      else this.reset();
+      else this.reset(all);
     },
-    reset() { place(mode === 'follow' ? BEHIND : mode === 'top' ? ABOVE : overview()); },
+    /** @param {boolean} [all] from above: all of the trajectory */
+    reset(all = false) {
+      const { centre: [x, y, z], radius } = bounds;
+      const away = radius * 1.25 / Math.tan((camera.fov * Math.PI) / 360) / Math.min(1, camera.aspect);
+      const above = all ? [...toAnchor('top', anchor, [x, y - 0.0002 * away, z + away]), ...toAnchor('top', anchor, [x, y, z])] : ABOVE;
+      place(mode === 'follow' ? BEHIND : mode === 'top' ? above : overview());
+    },
     /** The sensor went on: so does the camera. */
     moveAnchor(next) {
       const eye = relative();

@@ -28,7 +28,7 @@ function createPath(poses, count, origin, colour, look) {
   const { ends, until } = pathSegments(poses, count, origin);
   const lines = createSegments(look);
   lines.show(ends, until.flatMap(() => rgb(colour).map((value) => value / 255)), until);
-  return { object: lines.object, drive: lines.setNow, dispose: lines.dispose };
+  return { object: lines.object, drive: lines.setNow, fade: lines.fade, dispose: lines.dispose };
 }
 
 export function createPaths() {
@@ -52,9 +52,11 @@ export function createPaths() {
         const path = createPath(reference.truth.poses, frameCount(reference), origin, truthColour,
           { width: 6, opacity: 0.35, pale: 0.18 });
         truths.add(path.object);
-        paths.push({ ...path, run: reference });
+        paths.push({ ...path, run: reference, isTruth: true });
       }
     },
+    /** Only this run is drawn strong; all of them for null. */
+    highlight(run) { for (const path of paths) path.fade(run !== null && path.run !== run && !path.isTruth ? 0.12 : 1); },
     /** @param {(run: object) => number} frameOf the current frame of each run */
     drive(frameOf) { for (const path of paths) path.drive(frameOf(path.run)); },
   };

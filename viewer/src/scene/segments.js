@@ -101,6 +101,8 @@ export function createSegments({ width, opacity = 1, pale = opacity }) {
       geometry.setDrawRange(0, 6 * count);
     },
     setNow(now) { uniforms.now.value = now; },
+    /** Paler than their look says. @param {number} share */
+    fade(share) { [uniforms.opacity.value, uniforms.pale.value] = [share * opacity, share * pale]; },
     dispose() {
       geometry.dispose();
       material.dispose();

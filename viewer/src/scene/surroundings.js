@@ -1,6 +1,6 @@
 // What stands: the static map, circles of equal distance about the sensor, and the sensor itself.
 import { BufferAttribute, BufferGeometry, Color, Group, Points, ShaderMaterial, Vector2 } from 'three';
-import { rgb } from '../colour/maps.js';
+import { markColours, rgb } from '../colour/maps.js';
 import { createSegments } from './segments.js';
 import { arrow, circle } from './shapes.js';
 
@@ -21,8 +21,8 @@ const mapFragmentShader = 'varying vec3 colour; void main() { gl_FragColor = vec
 
 const asColour = (bytes) => new Color().setRGB(...bytes.map((value) => value / 255));
 
-/** The static points of the drive, pale, brighter or darker with height. */
-export function createStaticMap() {
+/** Points of the whole drive. Static ones are pale, brighter or darker with height; those that move have their colour of the legend. */
+export function createMap({ moving = false } = {}) {
   const uniforms = {
     heights: { value: new Vector2(0, 1) }, low: { value: new Color() }, high: { value: new Color() }, size: { value: 1.5 },
   };
@@ -42,6 +42,10 @@ export function createStaticMap() {
       uniforms.heights.value.set(low, Math.max(low + 1, heights[Math.floor(0.95 * heights.length)]));
     },
     setGround(ground) {
+      if (moving) {
+        uniforms.low.value = uniforms.high.value = asColour(rgb(markColours(ground).moving));
+        return;
+      }
       uniforms.low.value = asColour(ground === 'dark' ? [38, 48, 64] : [205, 210, 218]);
       uniforms.high.value = asColour(ground === 'dark' ? [98, 118, 146] : [140, 152, 170]);
     },

@@ -20,7 +20,7 @@ import { boxUnder, pointUnder, rayThrough } from './picking.js';
 import { createPredictedPoints } from './predicted_points.js';
 import { pictureOf, save } from './save_picture.js';
 import { createScanPoints } from './scan_points.js';
-import { createRings, createSensor, createStaticMap } from './surroundings.js';
+import { createMap, createRings, createSensor } from './surroundings.js';
 
 const KEPT_POINTS = 4e6; // decoded, 29 bytes each
 const KEPT_SCANS = [8, 64]; // but not fewer and not more
@@ -80,6 +80,7 @@ export function createView(report, store) {
   renderer.outputColorSpace = LinearSRGBColorSpace; // colours go to the screen as they are
   renderer.setPixelRatio(context.software ? 1 : Math.min(window.devicePixelRatio, MOST_PIXELS_PER_POINT));
 
+  const several = report.kind !== 'run'; // then all of the trajectories are what one looks at
   const labels = createLabels();
   const overlay = createOverlay();
   const holder = element('div', { class: 'scene-holder' }, canvas, overlay.elements[0], labels.element, overlay.elements[1]);
@@ -88,14 +89,14 @@ export function createView(report, store) {
   const predicted = createPredictedPoints();
   const objects = createObjects();
   const paths = createPaths();
-  const map = createStaticMap();
+  const maps = { map: createMap(), traces: createMap({ moving: true }) };
   const rings = createRings();
   const sensor = createSensor();
   // What is at rest in the sensor frame of the shown scan, and of the current frame.
   const atScan = [points.object, predicted.object];
   const atFrame = [objects.object, rings.object, sensor.object];
   for (const object of [...atScan, ...atFrame]) object.matrixAutoUpdate = false;
-  scene.add(paths.estimates, paths.truths, map.object, ...atScan, ...atFrame);
+  scene.add(paths.estimates, paths.truths, maps.map.object, maps.traces.object, ...atScan, ...atFrame);
 
   const rig = createCameraRig(canvas, () => {
     showPoints(true);
@@ -267,7 +268,7 @@ export function createView(report, store) {
     drawObjects();
     paths.drive((other) => sameScan(run, frame, other));
     const anchor = chased(run, frame) ?? (pose && sensorAnchor(matrix, heading));
-    if (anchor) rig.moveAnchor(anchor);
+    if (anchor && !(several && rig.seenFromAbove())) rig.moveAnchor(anchor);
     store.set({ shown: { frame, place, scanFrame: place === null ? null : run.scans.frames[place], trouble } });
     draw();
   }
@@ -282,16 +283,17 @@ export function createView(report, store) {
     rig.setBounds(boundsOf(shown.map((entry) => entry.run), origin));
   }
 
-  async function showMap() {
+  async function showMap(name) {
+    const map = maps[name];
     const runIndex = store.state.run;
-    const wanted = store.state.layers.has('map') && report.runs[runIndex].map && canInflate();
+    const wanted = store.state.layers.has(name) && report.runs[runIndex][name] && canInflate();
     if (!wanted || map.object.userData.run === runIndex) return;
     map.object.userData.run = runIndex;
     map.show(null, origin);
     try {
-      map.show(await readMap(runIndex), origin);
+      map.show(await readMap(name, runIndex), origin);
     } catch (error) {
-      store.set({ shown: { ...store.state.shown, trouble: `The static map cannot be read: ${error.message}` } });
+      store.set({ shown: { ...store.state.shown, trouble: `The map cannot be read: ${error.message}` } });
     }
     draw();
   }
@@ -304,7 +306,9 @@ export function createView(report, store) {
     objects.arrows.visible = layers.has('arrows');
     paths.estimates.visible = layers.has('path');
     paths.truths.visible = layers.has('truth');
-    map.object.visible = layers.has('map') && map.object.userData.run === store.state.run;
+    for (const [name, map] of Object.entries(maps)) {
+      map.object.visible = layers.has(name) && map.object.userData.run === store.state.run;
+    }
     rings.object.visible = layers.has('rings');
     sensor.object.visible = layers.has('sensor');
     draw();
@@ -398,7 +402,7 @@ export function createView(report, store) {
       ground = groundOf(store.state);
       renderer.setClearColor(new Color().setRGB(...cssColour('--scene', true)));
       predicted.setGround(ground);
-      map.setGround(ground);
+      for (const map of Object.values(maps)) map.setGround(ground);
       overlay.setTheme();
       rings.show(groundHeight, cssColour('--rings'));
       drawObjectsIfAny();
@@ -413,33 +417,37 @@ export function createView(report, store) {
       draw();
     });
     store.watch(['colour', 'layers', 'limits'], () => { drawObjectsIfAny(); draw(); });
-    store.watch(['measuring'], ({ measuring }) => canvas.classList.toggle('measures', measuring));
-    store.watch(['run', 'layers'], showMap);
-    store.watch(['layers', 'run'], showLayers);
-    store.watch(['size'], ({ size }) => {
-      for (const part of [points, predicted, map]) part.setSize(size);
+    store.watch(['highlight'], ({ highlight }) => {
+      paths.highlight(highlight === null ? null : report.runs[highlight]);
       draw();
     });
-    rig.setMode(store.state.camera, null);
+    store.watch(['measuring'], ({ measuring }) => canvas.classList.toggle('measures', measuring));
+    for (const name of Object.keys(maps)) store.watch(['run', 'layers'], () => showMap(name));
+    store.watch(['layers', 'run'], showLayers);
+    store.watch(['size'], ({ size }) => {
+      for (const part of [points, predicted, ...Object.values(maps)]) part.setSize(size);
+      draw();
+    });
+    rig.setMode(store.state.camera, null, several);
     resize();
     let restored = store.state.eye;
     store.watch(['run', 'frame'], async () => {
       await showFrame();
       // The eye of a link is relative to the sensor, whose place is known only now.
       if (restored) rig.setMode(store.state.camera, restored);
-      else if (store.state.camera === 'free' && current.ticket === 1) rig.reset();
+      else if ((store.state.camera === 'free' || several) && current.ticket === 1) rig.reset(several);
       restored = null;
       draw();
     });
     store.watch(['group'], (_, changed) => {
-      if (changed && store.state.camera === 'free' && current.ticket > 0) rig.reset();
+      if (changed && (store.state.camera === 'free' || several) && current.ticket > 0) rig.reset(several);
     });
     let before = chaseOf(store.state);
     store.watch(['chase', 'object'], async (state) => {
       if (chaseOf(state) === before) return;
       before = chaseOf(state);
       await showFrame(); // the anchor is another
-      rig.reset();
+      rig.reset(several);
       keepEye();
       draw();
     });
@@ -447,7 +455,7 @@ export function createView(report, store) {
     store.watch(['camera'], ({ camera }) => {
       if (camera === mode) return;
       mode = camera;
-      rig.setMode(camera, null);
+      rig.setMode(camera, null, several);
       keepEye();
       draw();
     });
@@ -466,7 +474,7 @@ export function createView(report, store) {
     element: holder,
     start,
     resetCamera() {
-      rig.reset();
+      rig.reset(several);
       keepEye();
       draw();
     },
