@@ -520,6 +520,14 @@ test('a comparison: the table first, sorted by any column; runs over each other,
     assert.equal(await page.getAttribute('.numbers th:has-text("translation error")', 'aria-sort'), 'descending');
 
     assert.match(await page.getAttribute('[data-plot="translation_error"] canvas', 'aria-label'), /dynamic-icp.*kiss-icp.*gicp/s);
+    // All of the trajectories is in sight.
+    const data = await pixels(page, await picture(page));
+    const width = Math.round((await page.locator('canvas.scene').boundingBox()).width);
+    const columns = new Set();
+    for (let i = 0; i < data.length; i += 4) {
+      if (data[i] === 0 && data[i + 1] === 158 && data[i + 2] === 115) columns.add((i / 4) % width); // gicp, over the others
+    }
+    assert.ok(Math.min(...columns) > 10 && Math.max(...columns) < width - 10 && columns.size > 0.3 * width, `${columns.size} of ${width}`);
     // What is on the canvas itself: whatever else moves with the pointer is no part of it.
     const drawnPlot = async () =>
       Buffer.from((await page.$eval('[data-plot="translation_error"] canvas', (canvas) => canvas.toDataURL())).split(',')[1], 'base64');

@@ -34,7 +34,7 @@ export function createHeader(report, store, { showHelp, link }) {
     element('h1', { text: report.title, title: report.title }),
     several && groups.length > 1 ? groupList.element : null,
     several ? runList.element : null,
-    createHeadline(report, store),
+    several ? null : createHeadline(report, store), // of several runs the table tells all
     element('div', { class: 'top-actions' }, warnings, share, theme, help));
 }
 

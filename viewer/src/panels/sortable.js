@@ -1,6 +1,8 @@
 // Tables whose columns can be sorted: by the numbers in their texts, or by the texts where there are none.
 import { element } from '../dom.js';
 
+const LONG = 26; // letters, of a head that gets more room
+
 /** The first number of a text ("★ 0.38 mm" -> 0.38); null where there is none. */
 export function numberIn(text) {
   const found = /[-−]?\d[\d,]*(\.\d+)?(e[-+]?\d+)?/i.exec(text);
@@ -28,7 +30,7 @@ export function sortableTable(columns, rows, properties = {}) {
   const body = element('tbody', {}, ...rows.map(({ row }) => row));
   let by = null;
   let down = false;
-  const heads = columns.map((text, column) => element('th', { scope: 'col' }, text === '' ? null : element('button', {
+  const heads = columns.map((text, column) => element('th', { scope: 'col', class: text.length > LONG ? 'long' : null }, text === '' ? null : element('button', {
     type: 'button', class: 'sort', text, title: 'Sort by this column',
     on: {
       click: () => {

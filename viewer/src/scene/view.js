@@ -431,12 +431,14 @@ export function createView(report, store) {
     rig.setMode(store.state.camera, null, several);
     resize();
     let restored = store.state.eye;
+    let placed = false;
     store.watch(['run', 'frame'], async () => {
       await showFrame();
       // The eye of a link is relative to the sensor, whose place is known only now.
       if (restored) rig.setMode(store.state.camera, restored);
-      else if ((store.state.camera === 'free' || several) && current.ticket === 1) rig.reset(several);
+      else if (!placed && (store.state.camera === 'free' || several)) rig.reset(several);
       restored = null;
+      placed = true;
       draw();
     });
     store.watch(['group'], (_, changed) => {
