@@ -27,7 +27,7 @@ constexpr double kBeside = 78.0;
 constexpr double kAbove = 44.0;
 constexpr double kBelow = 96.0;
 
-constexpr double kMillimetres = 1000.0;
+constexpr double kMillimetresPerMetre = 1000.0;
 
 /// What a panel shows: numbers over the directions, and how they are coloured.
 struct ShownField {
@@ -70,7 +70,7 @@ void draw_field_scale(drawing::Svg& svg, const drawing::Theme& theme, const draw
   for (const double share : {0.0, 0.5, 1.0}) {
     const double value = shown.least + share * (shown.most - shown.least);
     svg.text({box.left + share * box.width, box.bottom() + 16.0},
-             drawing::compact_number(kMillimetres * value) + " mm/s",
+             drawing::compact_number(kMillimetresPerMetre * value) + " mm/s",
              {.colour = theme.muted,
               .size = 12.0,
               .anchor = share == 0.0   ? drawing::Anchor::kStart
