@@ -154,7 +154,7 @@ TEST_F(RadarBag, HoldsTheNumbersThatAnotherReaderFinds) {
 
 TEST_F(RadarBag, TheEgoVelocityIsThatOfAnIndependentConsensus) {
   const Outcome ran = run_program("run --quiet " + bag_.string() + " --output " + (folder_ / "run").string());
-  ASSERT_EQ(ran.status, 0) << ran.text;
+  ASSERT_EQ(ran.status, 3) << "41 points a scan give no planes, but a velocity\n" << ran.text;
   std::istringstream lines(read_file(folder_ / "run" / "frames.jsonl"));
   std::mt19937 random(1);
   std::array<std::vector<double>, 3> axes;
