@@ -35,11 +35,10 @@ OrientedBox above_ground(OrientedBox box) {
   return box;
 }
 
-constexpr std::size_t kPatch = 64;    // rows, which are seen near each other more often than not
 constexpr double kRounding_m = 0.01;  // more than rounding moves a point
 
-/// A sphere around the box that an expectation flags rows in, as far as the sensor may see it during its sweep.
-struct Flagged {
+/// A box in which rows are looked for, and the sphere around them.
+struct Searched {
   OrientedBox box;  ///< world
   double reach_m = 0.0;
   Vector3d centre_sensor;  ///< m, sensor frame at the stamp
@@ -112,41 +111,38 @@ void visit_static_points(const TrackingInput& input, std::span<const Expectation
   if (expectations.empty()) {
     return;
   }
-  std::vector<OrientedBox> boxes;
-  std::vector<Vector3d> centres;  // sensor frame
-  std::vector<double> reaches;
-  std::vector<std::vector<std::uint32_t>> boxes_of_column(static_cast<std::size_t>(RangeImage::column_count()));
   const Eigen::Isometry3d T_sensor_world = input.sensor.T_world_sensor.inverse();
+  std::vector<Searched> searched;
   for (const Expectation& expected : expectations) {
     const OrientedBox box = above_ground(expected.box);
     // What moves during the sweep is not seen where it is at the stamp.
-    const double reach = 0.5 * box.size.norm() + input.sweep_s * expected.velocity.norm();
-    const RangeImage::ColumnRange range = RangeImage::columns_around(T_sensor_world * box.centre, reach);
-    for (int i = 0; i < range.count; ++i) {
-      boxes_of_column[static_cast<std::size_t>((range.first + i) % RangeImage::column_count())].push_back(
-          static_cast<std::uint32_t>(boxes.size()));
-    }
-    boxes.push_back(box);
-    centres.push_back(T_sensor_world * box.centre);
-    reaches.push_back(reach + kRounding_m);
+    const double reach = 0.5 * box.size.norm() + input.sweep_s * expected.velocity.norm() + kRounding_m;
+    searched.push_back({box, reach, T_sensor_world * box.centre});
   }
   const std::size_t rows = input.scan.size();
   std::vector<std::vector<Hit>> hits(Workers::block_count(rows, kPointBlock));
+  const auto search_row = [&](std::uint32_t i, std::size_t row, std::vector<Hit>& found) {
+    if (input.is_moving[row] != 0 || (input.scan.points()[row] - searched[i].centre_sensor).squaredNorm() >
+                                         searched[i].reach_m * searched[i].reach_m) {
+      return;
+    }
+    const double time = input.scan.has_times() ? input.scan.times()[row] : 0.0;
+    const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
+    if (distance_outside(searched[i].box, point - time * expectations[i].velocity) <= 0.0) {
+      found.push_back(
+          {i, static_cast<std::uint32_t>(row), input.sensor.direction_world(input.scan.directions()[row], time)});
+    }
+  };
   workers.for_blocks(rows, kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (std::size_t row = begin; row < end; ++row) {
-      const std::vector<std::uint32_t>& candidates = boxes_of_column[input.view.columns()[row]];
-      if (candidates.empty() || input.is_moving[row] != 0) {
-        continue;
-      }
-      const double time = input.scan.has_times() ? input.scan.times()[row] : 0.0;
-      for (const std::uint32_t i : candidates) {
-        if ((input.scan.points()[row] - centres[i]).squaredNorm() > reaches[i] * reaches[i]) {
+    for (std::size_t patch = begin / RangeImage::kPatch; patch * RangeImage::kPatch < end; ++patch) {
+      for (std::uint32_t i = 0; i < searched.size(); ++i) {
+        const double apart = input.view.patches()[patch].squaredExteriorDistance(searched[i].centre_sensor);
+        if (apart > searched[i].reach_m * searched[i].reach_m) {
           continue;
         }
-        const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
-        if (distance_outside(boxes[i], point - time * expectations[i].velocity) <= 0.0) {
-          hits[block].push_back(
-              {i, static_cast<std::uint32_t>(row), input.sensor.direction_world(input.scan.directions()[row], time)});
+        const std::size_t last = std::min((patch + 1) * RangeImage::kPatch, end);
+        for (std::size_t row = patch * RangeImage::kPatch; row < last; ++row) {
+          search_row(i, row, hits[block]);
         }
       }
     }
@@ -162,7 +158,7 @@ void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMot
                std::span<const Expectation> expectations, const Workers& workers,
                std::vector<std::uint8_t>& is_moving) {
   const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
-  std::vector<Flagged> flagged;
+  std::vector<Searched> flagged;
   for (const Expectation& expected : expectations) {
     const OrientedBox box = flagged_box(expected);
     flagged.push_back({box, 0.5 * box.size.norm(), T_sensor_world * box.centre});
@@ -194,8 +190,8 @@ void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMot
   };
   workers.for_blocks(flagged.empty() ? 0 : scan.size(), kPointBlock,
                      [&](std::size_t, std::size_t block_begin, std::size_t block_end) {
-                       for (std::size_t begin = block_begin; begin < block_end; begin += kPatch) {
-                         flag_patch(begin, std::min(begin + kPatch, block_end));
+                       for (std::size_t begin = block_begin; begin < block_end; begin += RangeImage::kPatch) {
+                         flag_patch(begin, std::min(begin + RangeImage::kPatch, block_end));
                        }
                      });
 }

@@ -75,7 +75,7 @@ struct TrackingInput {
 using StaticVisitor = std::function<void(std::size_t expectation, std::uint32_t row, const Eigen::Vector3d& direction)>;
 
 /// Visits each point that is not among the moving ones in the box of each expectation, without the lowest part of the
-/// box, where the ground may be. In the order of the rows.
+/// box, where the ground may be. Those of each in the order of the rows.
 void visit_static_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,
                          const StaticVisitor& visit);
 

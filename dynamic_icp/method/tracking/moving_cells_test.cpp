@@ -178,7 +178,7 @@ std::vector<CellGroup> groups_of(const MovingCells& moving, int min_points) {
   return vehicle_groups(moving, all, 2.6, min_points, {});
 }
 
-TEST(CellGroups, OfNothingThereAreNone) { EXPECT_TRUE(groups_of({}, 1).empty()); }
+TEST(CellGroups, OfNothingThereAreNone) { EXPECT_TRUE(groups_of(MovingCells(), 1).empty()); }
 
 TEST(CellGroups, AVehicleIsOne) {
   std::vector<Vector3d> places;

@@ -10,17 +10,15 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamic_icp/method/tracking/track_merging.hpp"
+
 namespace dynamic_icp::tracking {
 namespace {
 
 using Eigen::Vector3d;
 
 constexpr std::int32_t kNobody = -1;
-constexpr double kMax = 2.0;               // new objects are not wider than so many vehicles
-constexpr double kSeeThrough_m = 1.0;      // beyond a gap
-constexpr double kSplinter = 0.1;          // a track with this share of the points of another may be a part of it
-constexpr double kPartVelocity_mps = 0.5;  // standard deviation between the velocities of parts of a body
-constexpr double kPartSigmas = 3.0;
+constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
 constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
 
@@ -38,14 +36,6 @@ bool contradicts(const Expectation& expected, const Vector3d& direction, double 
   const double expected_mps = expected.W.dot(direction);
   return std::abs(expected_mps) > config.same_velocity_mps &&
          std::abs(radial_mps - expected_mps) > config.same_velocity_mps + expected.radial_sigma(direction);
-}
-
-/// Whether two bodies may have one velocity.
-bool may_be_equal(const BoxEstimate& a, const BoxEstimate& b) {
-  const Vector3d apart = a.velocity - b.velocity;
-  const Eigen::Matrix3d covariance = a.velocity_covariance + b.velocity_covariance +
-                                     kPartVelocity_mps * kPartVelocity_mps * Eigen::Matrix3d::Identity();
-  return apart.dot(covariance.inverse() * apart) < kPartSigmas * kPartSigmas;
 }
 
 bool are_finite(std::span<const double> values) {
@@ -84,6 +74,8 @@ struct ObjectTracker::Entry {
     now = predicted.estimate();
     predicted_s = stamp_s;
   }
+
+  [[nodiscard]] SeenTrack seen_track() const { return {predicted, now, members.size()}; }
 
   void set_track(Track corrected) {
     track = std::move(corrected);
@@ -306,7 +298,7 @@ void ObjectTracker::collect_members(const TrackingInput& input, std::span<const 
   workers.for_each(entries_.size(), 1, [&](std::size_t k) {
     Entry& entry = entries_[k];
     ++entry.age;
-    if (entry.members.size() < kMinPoints) {
+    if (entry.members.size() < kMinPoints || input.view.are_mirrored(entry.members)) {
       ++entry.missed;
       entry.members.clear();
       return;
@@ -357,6 +349,7 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
   std::vector<Expectation> expected;
   std::vector<CellGroup> groups =
       vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
+  std::erase_if(groups, [&](const CellGroup& group) { return input.view.are_mirrored(group.rows); });
   std::vector<std::optional<Track>> tracks(groups.size());
   workers.for_each(groups.size(), 1, [&](std::size_t i) {
     tracks[i].emplace(
@@ -396,39 +389,6 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vecto
   }
 }
 
-/// Whether two tracks are one body: one has its centre in what was seen of the other, or it is a splinter beside it or
-/// where more of it is likely, that moves as it does.
-bool ObjectTracker::are_same_object(const Entry& a, const Entry& b, const TrackingInput& input) const {
-  const Eigen::Isometry3d& sensor = input.sensor.T_world_sensor;
-  const bool a_is_smaller = a.members.size() < b.members.size();
-  const Entry& small = a_is_smaller ? a : b;
-  const Entry& large = a_is_smaller ? b : a;
-  const OrientedBox of_small = small.predicted.best().seen_box();
-  const OrientedBox of_large = large.predicted.best().seen_box();
-  if (distance_outside(of_large, of_small.centre) <= 0.0 || distance_outside(of_small, of_large.centre) <= 0.0) {
-    return true;
-  }
-  // What coasts has no points: it is hidden, not a part.
-  if (small.members.empty() || !may_be_equal(small.now, large.now)) {
-    return false;
-  }
-  const bool is_splinter =
-      static_cast<double>(small.members.size()) < kSplinter * static_cast<double>(large.members.size());
-  if (is_splinter && std::min(distance_outside(of_large, of_small.centre),
-                              distance_outside(large.now.box, of_small.centre)) <= config_.growth_m) {
-    return true;
-  }
-  if (!large.predicted.best().has_heading() || size_with(of_large, of_small).y() > config_.track.largest_width_m) {
-    return false;
-  }
-  // Sides of one body, seen apart; what is seen through a gap parts two.
-  const Gap gap = gap_between(of_large, of_small);
-  const double link_m =
-      config_.grouping.link_distance_m + config_.grouping.link_growth * (gap.middle - sensor.translation()).norm();
-  return (distance_outside(large.now.box, of_small.centre) <= 0.0 || gap.width <= link_m) &&
-         input.view.hides(sensor.inverse() * gap.middle, -kSeeThrough_m);
-}
-
 /// Whether nothing is to be expected of a track any more.
 bool ObjectTracker::is_over(const Entry& entry, double stamp_s) const {
   if (!entry.confirmed) {
@@ -450,8 +410,9 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
     if (is_over(entry, input.stamp_s)) {
       continue;
     }
-    const auto same = std::find_if(living.begin(), living.end(),
-                                   [&](const Entry& older) { return are_same_object(older, entry, input); });
+    const auto same = std::find_if(living.begin(), living.end(), [&](const Entry& older) {
+      return are_same_object(older.seen_track(), entry.seen_track(), input.view, input.sensor.T_world_sensor, config_);
+    });
     if (same == living.end()) {
       living.push_back(std::move(entry));
     } else if (entry.members.size() > same->members.size()) {

@@ -79,7 +79,6 @@ class ObjectTracker {
   [[nodiscard]] bool is_credible(const Entry& entry) const;
   void note_motion(Entry& entry, double stamp_s) const;
   [[nodiscard]] bool is_over(const Entry& entry, double stamp_s) const;
-  [[nodiscard]] bool are_same_object(const Entry& a, const Entry& b, const TrackingInput& input) const;
   void delete_tracks(const TrackingInput& input);
   [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor) const;
 

@@ -2,10 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
+#include <Eigen/Geometry>
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
@@ -39,17 +42,16 @@ class RangeImage {
   /// Whether nothing in the whole scan is seen as high as `point` (m, sensor frame): it may be above the field of view.
   [[nodiscard]] bool is_above_all(const Eigen::Vector3d& point) const;
 
-  /// The column of each row of the deskewed scan; columns go round with the azimuth.
-  [[nodiscard]] const std::vector<std::uint16_t>& columns() const { return columns_; }
+  /// Whether these rows of the scan (at least one) seem to be seen through something nearer: most of them lie behind
+  /// what is seen in their directions and all around, and are few beside it. So do mirror images. What is seen through
+  /// a fence or leaves is more.
+  [[nodiscard]] bool are_mirrored(std::span<const std::uint32_t> rows) const;
 
-  /// Columns that may hold points within `radius_m` of `centre`: `first`, `first` + 1, ..., `count` of them, modulo
-  /// `column_count`.
-  struct ColumnRange {
-    int first = 0;
-    int count = 0;
-  };
-  [[nodiscard]] static ColumnRange columns_around(const Eigen::Vector3d& centre, double radius_m);
-  [[nodiscard]] static int column_count();
+  /// Rows that follow each other are seen near each other more often than not: the boxes (m, sensor frame) around each
+  /// `kPatch` rows of the deskewed scan.
+  using Patch = Eigen::AlignedBox3d;
+  static constexpr std::size_t kPatch = 64;
+  [[nodiscard]] const std::vector<Patch>& patches() const { return patches_; }
 
   /// Width of a cell at a distance of one metre, m: what is closer together may share one.
   static double cell_width();
@@ -58,13 +60,14 @@ class RangeImage {
   std::vector<float> nearest_squared_;  ///< m^2, column by column; infinite where nothing is seen
   std::vector<char> column_seen_;
   int highest_row_ = 0;
-  std::vector<std::uint16_t> columns_;
+  std::vector<Patch> patches_;
+
+  [[nodiscard]] bool is_behind(std::uint32_t row) const;
 
   // Of each row of the scan, as it was measured
-  std::vector<std::uint16_t> measured_columns_;  ///< where the scan took time
-  std::vector<std::uint32_t> places_;            ///< in the image
-  std::vector<float> squared_;                   ///< of the range, m^2
-  std::vector<int> highest_of_block_;            ///< row of the image
+  std::vector<std::uint32_t> places_;  ///< in the image
+  std::vector<float> squared_;         ///< of the range, m^2
+  std::vector<int> highest_of_block_;  ///< row of the image
 };
 
 }  // namespace dynamic_icp::tracking

@@ -9,6 +9,8 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/method/base/random_source.hpp"
+
 namespace dynamic_icp::tracking {
 namespace {
 
@@ -91,26 +93,56 @@ TEST(RangeImage, KnowsHowHighItSees) {
   EXPECT_TRUE(image.is_above_all({-50.0, 0.0, 7.0})) << "in whatever direction";
 }
 
-TEST(RangeImage, ColumnsAroundAPlaceHoldAllPointsThere) {
+/// The rows of some points behind a wall in all directions to 20 degrees, twelve of them spread from `from` to `to`
+/// degrees; `every`: the wall is a fence with a gap at every so many of its rays.
+bool mirrored_behind_wall(double from, double to, int every) {
   RawScan raw;
-  for (double azimuth = 0.0; azimuth < 360.0; azimuth += 0.1) {
-    raw.points.push_back(at(azimuth, 20.0));
-    raw.doppler.push_back(0.0);
-  }
-  const Scan scan = Scan::from_raw(raw);
-  const RangeImage image(scan, Vector3d::Zero(), Workers(3));
-  for (double azimuth = 0.0; azimuth < 360.0; azimuth += 7.0) {
-    const Vector3d centre = at(azimuth, 21.0);
-    const RangeImage::ColumnRange range = RangeImage::columns_around(centre, 3.0);
-    for (std::size_t row = 0; row < scan.size(); ++row) {
-      const int offset = (image.columns()[row] - range.first + RangeImage::column_count()) % RangeImage::column_count();
-      if ((scan.points()[row] - centre).norm() <= 3.0) {
-        EXPECT_LT(offset, range.count) << "azimuth " << azimuth << " row " << row;
+  std::vector<std::uint32_t> rows;
+  add_wall(raw, -20.0, 20.0, 5.0);
+  if (every > 0) {
+    for (std::size_t i = 0; i < raw.points.size(); i += static_cast<std::size_t>(every)) {
+      if (const double azimuth = std::atan2(raw.points[i].y(), raw.points[i].x()) * 180.0 / std::numbers::pi;
+          azimuth >= from && azimuth <= to) {
+        raw.points[i] *= 2.0;
+        rows.push_back(static_cast<std::uint32_t>(i));
       }
     }
-    EXPECT_LT(range.count, RangeImage::column_count() / 8);
+  } else {
+    for (int i = 0; i < 12; ++i) {
+      rows.push_back(static_cast<std::uint32_t>(raw.points.size()));
+      raw.points.push_back(at(from + (to - from) * i / 12.0, 10.0));
+      raw.doppler.push_back(0.0);
+    }
   }
-  EXPECT_EQ(RangeImage::columns_around(at(0.0, 1.0), 3.0).count, RangeImage::column_count()) << "the sensor is inside";
+  return RangeImage(Scan::from_raw(raw), Vector3d::Zero(), Workers(1)).are_mirrored(rows);
+}
+
+TEST(RangeImage, FewPointsThatSeemToBeBehindASurfaceAreMirrored) {
+  EXPECT_TRUE(mirrored_behind_wall(-15.0, 15.0, 0));
+  EXPECT_FALSE(mirrored_behind_wall(21.5, 30.0, 0)) << "beside the wall";
+  EXPECT_FALSE(mirrored_behind_wall(15.0, 30.0, 0)) << "a body that it hides in part";
+  EXPECT_FALSE(mirrored_behind_wall(-10.0, 10.0, 2)) << "a fence";
+}
+
+TEST(RangeImage, PatchesHoldTheirRows) {
+  RawScan raw;
+  for (std::uint64_t i = 0; i < 700; ++i) {
+    const RandomSource one = RandomSource(3).fork(i);
+    raw.points.emplace_back(one.uniform(0, -30.0, 30.0), one.uniform(1, -30.0, 30.0), one.uniform(2, -2.0, 5.0));
+  }
+  raw.doppler.assign(raw.points.size(), 0.0);
+  const Scan scan = Scan::from_raw(raw);
+  ASSERT_EQ(scan.size(), raw.points.size());
+  const RangeImage image(scan, Vector3d::Zero(), Workers(3));
+  ASSERT_EQ(image.patches().size(), 11u) << "of 64 rows, the last of 60";
+  for (std::size_t i = 0; i < image.patches().size(); ++i) {
+    RangeImage::Patch around;
+    for (std::size_t row = 64 * i; row < std::min<std::size_t>(64 * (i + 1), 700); ++row) {
+      around.extend(raw.points[row]);
+    }
+    EXPECT_EQ(image.patches()[i].min(), around.min()) << i;
+    EXPECT_EQ(image.patches()[i].max(), around.max()) << i;
+  }
 }
 
 }  // namespace

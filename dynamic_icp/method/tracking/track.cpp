@@ -9,14 +9,17 @@
 #include <optional>
 #include <utility>
 
+#include "dynamic_icp/method/tracking/size_prior.hpp"
+
 namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
-constexpr double kLogAlongSides = 8.0;   // of what has sides: it moves along them rather than anywhere
-constexpr double kVehicle_m = 2.0;       // what is longer moves along its sides for sure
-constexpr double kLogHopeless = -8.0;    // relative to the best hypothesis
-constexpr int kDecisionDetections = 10;  // after so many the best hypothesis stays alone
+constexpr double kLogAlongSides = 8.0;       // of what has sides: it moves along them rather than anywhere
+constexpr double kVehicle_m = 2.0;           // what is longer moves along its sides for sure
+constexpr double kKnownDirection_rad = 0.2;  // standard deviation of the direction of a motion that shows a heading
+constexpr double kLogHopeless = -8.0;        // relative to the best hypothesis
+constexpr int kDecisionDetections = 10;      // after so many the best hypothesis stays alone
 
 }  // namespace
 
@@ -27,18 +30,37 @@ Track::Track(const Detection& detection, double stamp_s, const TrackConfig& conf
   evaluate();
 }
 
-/// The sides of what is seen, where they are long enough to show a direction.
+/// The direction in which a body moves, level axes, where it is known and no person moves so fast: a vehicle of which
+/// too little is seen to show its sides.
+std::optional<double> Track::heading_of_motion() const {
+  const Eigen::Vector3d v = body().level().transpose() * body().velocity();
+  const double speed = v.head<2>().norm();
+  if (is_person_like(0.0, speed)) {
+    return std::nullopt;
+  }
+  const Eigen::Vector3d across = body().level() * Eigen::Vector3d(-v.y(), v.x(), 0.0) / speed;
+  const Eigen::Matrix3d covariance = body().velocity_covariance_at(Eigen::Vector3d::Zero());
+  if (std::sqrt(across.dot(covariance * across)) > kKnownDirection_rad * speed) {
+    return std::nullopt;
+  }
+  return std::atan2(v.y(), v.x());
+}
+
+/// The sides of what is seen, where they are long enough to show a direction, else the motion.
 void Track::add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config) {
   const Eigen::Matrix3d& level = detection.ground.level;
   const std::vector<Eigen::Vector3d> points = points_at_mean_time(detection, body().velocity());
   const std::optional<double> yaw = fit_yaw(points, level, 0.0, 0.5 * kQuarterTurn);
-  if (!yaw) {
-    return;
+  double side_m = 0.0;
+  if (yaw) {
+    const Eigen::Matrix3d axes = level * upright_axes(*yaw);
+    side_m = std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
+                      span_along(points, points.front(), axes.col(1), 0.0).length());
   }
-  const Eigen::Matrix3d axes = level * upright_axes(*yaw);
-  const double side_m = std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
-                                 span_along(points, points.front(), axes.col(1), 0.0).length());
   if (side_m < kShortestSide_m) {
+    if (const std::optional<double> heading = heading_of_motion()) {
+      hypotheses_.emplace_back(detection, *heading, log_likelihood + kLogAlongSides, config);
+    }
     return;
   }
   if (side_m > kVehicle_m) {

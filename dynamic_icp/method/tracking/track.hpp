@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include <Eigen/Core>
@@ -35,6 +36,7 @@ class Track {
 
  private:
   void add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config);
+  [[nodiscard]] std::optional<double> heading_of_motion() const;
   void evaluate();
 
   std::vector<BoxFilter> hypotheses_;

@@ -94,5 +94,30 @@ TEST(Track, CovarianceIncludesTheDisagreementOfTheHypotheses) {
   EXPECT_LT(std::sqrt(all.velocity_covariance(0, 0)), 0.3) << "along the line of sight they agree";
 }
 
+/// Of something that drives away a part of its rear, with a height of `height_m`.
+Track track_of_part(double speed_mps, double height_m) {
+  const TrackConfig config;
+  const Vector3d velocity(speed_mps, 0.0, 0.0);
+  Vector3d centre(20.0, -4.0, 0.0);
+  Track track(car_at(centre, velocity, 1, 0.0, {0.2, 0.7, height_m}), 0.0, config);
+  for (std::uint64_t scan = 2; scan < 20; ++scan) {
+    centre += 0.1 * velocity;
+    track.correct(car_at(centre, velocity, scan, 0.0, {0.2, 0.7, height_m}), 0.1 * static_cast<double>(scan - 1),
+                  config);
+  }
+  return track;
+}
+
+TEST(Track, WhatIsFasterThanAPersonPointsWhereItMovesThoughLittleIsSeenOfIt) {
+  const Track vehicle = track_of_part(6.0, 2.0);
+  ASSERT_TRUE(vehicle.best().has_heading());
+  EXPECT_GT(vehicle.estimate().box.axes.col(0).x(), 0.98);
+  EXPECT_GT(vehicle.estimate().box.size.x(), 2.0) << "there is more of it ahead";
+  EXPECT_GT(vehicle.estimate().box.centre.x(), vehicle.best().seen_box().centre.x() + 0.9);
+  const Track person = track_of_part(1.5, 1.8);
+  EXPECT_FALSE(person.best().has_heading());
+  EXPECT_LT(person.estimate().box.size.head<2>().maxCoeff(), 1.0);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

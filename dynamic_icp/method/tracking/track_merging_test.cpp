@@ -1,0 +1,72 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/track_merging.hpp"
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/random_source.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+/// The side that looks at the sensor of a box that drives along x, from `from` to `to`; 8 m to the left of the sensor.
+Track side_of_body(double from, double to, double speed_mps) {
+  Detection detection;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const RandomSource one = RandomSource(5).fork(i);
+    detection.points.emplace_back(one.uniform(0, from, to), 8.0, one.uniform(1, -1.0, 0.5));
+    detection.directions.push_back(detection.points.back().normalized());
+    detection.radial.push_back(speed_mps * detection.directions.back().x());
+    detection.times.push_back(0.0);
+  }
+  return {detection, 0.0, {}};
+}
+
+/// What is seen to the left: a wall at this distance.
+RangeImage wall_at(double distance_m) {
+  RawScan raw;
+  for (double x = -2.0; x <= 18.0; x += 0.05) {
+    for (double z = -1.5; z <= 1.5; z += 0.12) {
+      raw.points.push_back(distance_m / 8.0 * Vector3d(x, 8.0, z));
+      raw.doppler.push_back(0.0);
+    }
+  }
+  return {Scan::from_raw(raw), Vector3d::Zero(), Workers(1)};
+}
+
+bool are_same(const Track& a, std::size_t points_of_a, const Track& b, std::size_t points_of_b, double wall_m = 60.0) {
+  const BoxEstimate of_a = a.estimate();
+  const BoxEstimate of_b = b.estimate();
+  const SeenTrack one{a, of_a, points_of_a};
+  const SeenTrack other{b, of_b, points_of_b};
+  const RangeImage view = wall_at(wall_m);
+  const bool result = are_same_object(one, other, view, Eigen::Isometry3d::Identity(), {});
+  EXPECT_EQ(result, are_same_object(other, one, view, Eigen::Isometry3d::Identity(), {})) << "either way round";
+  return result;
+}
+
+TEST(TrackMerging, WhatIsSeenInAnotherIsTheSame) {
+  EXPECT_TRUE(are_same(side_of_body(3, 7, 6), 300, side_of_body(4, 6, 6), 200));
+  EXPECT_TRUE(are_same(side_of_body(3, 7, 6), 300, side_of_body(4, 6, 12), 0)) << "however it moves, seen or not";
+}
+
+TEST(TrackMerging, ASplinterBesideABodyIsAPartIfItMovesAsItDoes) {
+  const Track body = side_of_body(3, 7, 6);
+  EXPECT_TRUE(are_same(body, 300, side_of_body(7.3, 8.0, 6), 20));
+  EXPECT_FALSE(are_same(body, 300, side_of_body(7.3, 8.0, 14), 20)) << "faster";
+  EXPECT_FALSE(are_same(body, 300, side_of_body(7.3, 8.0, 6), 0)) << "hidden";
+  EXPECT_FALSE(are_same(body, 300, side_of_body(20, 21, 6), 20)) << "far off";
+}
+
+TEST(TrackMerging, WhatIsSeenThroughAGapPartsTwoBodies) {
+  const Track rear = side_of_body(0, 4, 6);
+  const Track front = side_of_body(4.5, 8.0, 6);
+  EXPECT_FALSE(are_same(rear, 300, front, 250, 60.0));
+  EXPECT_TRUE(are_same(rear, 300, front, 250, 4.0)) << "something nearer hides the gap";
+  EXPECT_FALSE(are_same(rear, 300, side_of_body(11, 15, 6), 250, 4.0)) << "too far apart";
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
