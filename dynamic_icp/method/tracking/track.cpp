@@ -58,11 +58,12 @@ void Track::add_headings(const Detection& detection, double log_likelihood, cons
                       span_along(points, points.front(), axes.col(1), 0.0).length());
   }
   if (side_m < kShortestSide_m) {
-    if (const std::optional<double> heading = heading_of_motion()) {
+    if (const std::optional<double> heading = heading_of_motion(); heading && !has_heading()) {
       hypotheses_.emplace_back(detection, *heading, log_likelihood + kLogAlongSides, config);
     }
     return;
   }
+  has_sides_ = true;
   if (side_m > kVehicle_m) {
     hypotheses_.clear();
   }
@@ -84,12 +85,16 @@ void Track::correct(const Detection& detection, double stamp_s, const TrackConfi
     hypothesis.correct(detection, config);
   }
   ++detections_;
-  if (std::none_of(hypotheses_.begin(), hypotheses_.end(), [](const BoxFilter& one) { return one.has_heading(); })) {
+  if (!has_sides_ || !has_heading()) {  // sides tell more of a heading than the motion of what little was seen at first
     // A new hypothesis pays for knowing nothing before; one like the old, begun now, shows how much.
     const BoxFilter anew(detection, std::nullopt, 0.0, config);
     add_headings(detection, best().log_likelihood() - anew.log_likelihood(), config);
   }
   evaluate();
+}
+
+bool Track::has_heading() const {
+  return std::any_of(hypotheses_.begin(), hypotheses_.end(), [](const BoxFilter& one) { return one.has_heading(); });
 }
 
 void Track::evaluate() {

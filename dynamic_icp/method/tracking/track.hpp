@@ -37,12 +37,14 @@ class Track {
  private:
   void add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config);
   [[nodiscard]] std::optional<double> heading_of_motion() const;
+  [[nodiscard]] bool has_heading() const;
   void evaluate();
 
   std::vector<BoxFilter> hypotheses_;
   std::size_t best_ = 0;
   double time_s_;
   int detections_ = 1;
+  bool has_sides_ = false;  ///< long enough to show a heading, at any time
 };
 
 }  // namespace dynamic_icp::tracking

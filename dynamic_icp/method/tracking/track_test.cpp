@@ -119,5 +119,25 @@ TEST(Track, WhatIsFasterThanAPersonPointsWhereItMovesThoughLittleIsSeenOfIt) {
   EXPECT_LT(person.estimate().box.size.head<2>().maxCoeff(), 1.0);
 }
 
+TEST(Track, SidesThatComeIntoViewCorrectAHeadingByMotion) {
+  const TrackConfig config;
+  const Vector3d velocity(0.0, 7.0, 0.0);
+  const auto velocity_error = [](Detection detection) {  // a part that seems to move otherwise at first
+    for (std::size_t i = 0; i < detection.radial.size(); ++i) {
+      detection.radial[i] = detection.directions[i].dot(Vector3d(7.0, 1.0, 0.0));
+    }
+    return detection;
+  };
+  Vector3d centre(4.0, 2.0, 0.0);
+  Track track(velocity_error(car_at(centre, velocity, 1, 0.0, {0.5, 0.5, 2.0})), 0.0, config);
+  for (std::uint64_t scan = 2; scan < 12; ++scan) {
+    centre += 0.1 * velocity;
+    track.correct(car_at(centre, velocity, scan, 0.0, {6.0, 2.3, 2.5}), 0.1 * static_cast<double>(scan - 1), config);
+  }
+  EXPECT_GT(std::abs(track.estimate().box.axes.col(0).y()), 0.98);
+  EXPECT_NEAR(track.estimate().box.size.x(), 6.0, 0.6);
+  EXPECT_NEAR(track.estimate().box.size.y(), 2.3, 0.4);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking
