@@ -10,6 +10,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/bags/bag.hpp"
+#include "dynamic_icp/recording/bags/file_bag.hpp"
 
 #include "testing/bag_contents.hpp"
 #include "testing/bags_by_hand.hpp"
@@ -234,6 +235,15 @@ TEST_P(Containers, AreReadOrRefusedWhereTheyAreDamaged) {
 
 INSTANTIATE_TEST_SUITE_P(All, Containers, ::testing::ValuesIn(all_cases()),
                          [](const auto& tested) { return tested.param.name; });
+
+TEST(PlainType, IsTheSameByAnyWritersSpelling) {
+  EXPECT_EQ(plain_type("sensor_msgs/PointCloud2"), "sensor_msgs/PointCloud2");
+  EXPECT_EQ(plain_type("sensor_msgs/msg/PointCloud2"), "sensor_msgs/PointCloud2");
+  EXPECT_EQ(plain_type("sensor_msgs::msg::dds_::PointCloud2_"), "sensor_msgs/PointCloud2");
+  EXPECT_EQ(plain_type("foxglove::PointCloud"), "foxglove.PointCloud");
+  EXPECT_EQ(plain_type("foxglove.PointCloud"), "foxglove.PointCloud");
+  EXPECT_EQ(plain_type(""), "");
+}
 
 }  // namespace
 }  // namespace dynamic_icp::bags

@@ -34,12 +34,25 @@ TopicTable table_of(const std::map<std::uint64_t, Topic>& channels) {
 }
 
 std::string plain_type(std::string_view type) {
-  std::string plain(type);
-  for (std::size_t at = 0; (at = plain.find("::", at)) != std::string::npos;) {
-    plain.replace(at, 2, "/");
+  std::string plain;
+  for (const char letter : type) {  // "::" becomes "/"
+    if (letter != ':') {
+      plain += letter;
+    } else if (!plain.ends_with('/')) {
+      plain += '/';
+    }
   }
-  if (const std::size_t msg = plain.find("/msg/"); msg != std::string::npos) {
-    plain.erase(msg, std::string_view("/msg").size());
+  for (const std::string_view part : {"/msg/", "/dds_/"}) {
+    if (const std::size_t at = plain.find(part); at != std::string::npos) {
+      plain.erase(at, part.size() - 1);
+      if (part == "/dds_/" && plain.ends_with('_')) {
+        plain.pop_back();
+      }
+    }
+  }
+  constexpr std::string_view kFoxglove = "foxglove/";
+  if (plain.starts_with(kFoxglove)) {
+    plain[kFoxglove.size() - 1] = '.';
   }
   return plain;
 }

@@ -69,7 +69,8 @@ struct TopicTable {
 /// The same topics that several channels have become one.
 TopicTable table_of(const std::map<std::uint64_t, Topic>& channels);
 
-/// "sensor_msgs/PointCloud2" for "sensor_msgs/msg/PointCloud2" and "sensor_msgs::msg::PointCloud2".
+/// "sensor_msgs/PointCloud2" for "sensor_msgs/msg/PointCloud2" and "sensor_msgs::msg::dds_::PointCloud2_";
+/// "foxglove.PointCloud" for "foxglove::PointCloud".
 std::string plain_type(std::string_view type);
 
 /// Whether a topic is among those that are asked for, by its index.

@@ -102,7 +102,7 @@ TEST(BagDataset, TimesChannelsAndOtherColumnsAsInFiles) {
     data.append(2, '\xFF');
   }
   cloud.data = data;
-  bag->add("/points", "sensor_msgs/msg/PointCloud2", at(0.0), cloud.bytes(Wire::kCdrLittle), bags::Encoding::kCdr);
+  bag->add("/points", "sensor_msgs/PointCloud2", at(0.0), cloud.bytes(Wire::kCdrLittle), bags::Encoding::kCdr);
   const std::unique_ptr<Dataset> dataset = open(bag);
   const RawScan scan = dataset->scan(0);
   EXPECT_EQ(scan.doppler, (std::vector<double>{4, 8}));

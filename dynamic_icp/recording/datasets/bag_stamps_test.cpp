@@ -7,13 +7,13 @@
 namespace dynamic_icp::datasets {
 namespace {
 
-constexpr std::int64_t kSecond_ns = 1'000'000'000;
-constexpr std::int64_t kBegin_ns = 1'700'000'000 * kSecond_ns;
+constexpr std::int64_t kOneSecond_ns = 1'000'000'000;
+constexpr std::int64_t kFirst_ns = 1'700'000'000 * kOneSecond_ns;
 
 std::vector<std::int64_t> recorded(std::size_t messages) {
   std::vector<std::int64_t> times_ns;
   for (std::size_t i = 0; i < messages; ++i) {
-    times_ns.push_back(kBegin_ns + static_cast<std::int64_t>(i) * kSecond_ns / 10);
+    times_ns.push_back(kFirst_ns + static_cast<std::int64_t>(i) * kOneSecond_ns / 10);
   }
   return times_ns;
 }
@@ -52,20 +52,20 @@ TEST(BagStamps, SimulatedTimeBeginsAtZero) {
 }
 
 TEST(BagStamps, SoDoHeadersOfAnotherClock) {
-  const ChosenStamps before = choose_stamps(recorded(10), headers(10, 335'000 * kSecond_ns), "/p");
+  const ChosenStamps before = choose_stamps(recorded(10), headers(10, 335'000 * kOneSecond_ns), "/p");
   EXPECT_TRUE(before.are_recorded);
   ASSERT_EQ(before.assumptions.size(), 1U);
   EXPECT_NE(before.assumptions[0].find("lie 335000 s before the times of recording"), std::string::npos)
       << before.assumptions[0];
-  EXPECT_TRUE(choose_stamps(recorded(10), headers(10, -3601 * kSecond_ns), "/p").are_recorded);
-  EXPECT_FALSE(choose_stamps(recorded(10), headers(10, -3599 * kSecond_ns), "/p").are_recorded);
+  EXPECT_TRUE(choose_stamps(recorded(10), headers(10, -3601 * kOneSecond_ns), "/p").are_recorded);
+  EXPECT_FALSE(choose_stamps(recorded(10), headers(10, -3599 * kOneSecond_ns), "/p").are_recorded);
   EXPECT_TRUE(choose_stamps(recorded(2), std::vector<Stamp>{{INT64_MIN}, {INT64_MAX}}, "/p").are_recorded);
 }
 
 TEST(BagStamps, AFewBadHeadersCostTheirMessagesOnly) {
   std::vector<Stamp> some = headers(10);
   some[2].ns = 0;
-  some[5].ns += 100 * kSecond_ns;  // the later ones are not before it by their own fault
+  some[5].ns += 100 * kOneSecond_ns;  // the later ones are not before it by their own fault
   some[7] = some[6];
   const ChosenStamps chosen = choose_stamps(recorded(10), some, "/p");
   EXPECT_FALSE(chosen.are_recorded);

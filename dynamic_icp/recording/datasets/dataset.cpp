@@ -17,9 +17,9 @@ namespace fs = std::filesystem;
 
 /// Options that a layout looks at itself.
 enum Takes : unsigned {
-  kFields = 1,   ///< fields and sensors
-  kTopics = 2,   ///< topics
-  kColumns = 4,  ///< what numbers without names are, and their type
+  kTakesFields = 1,   ///< fields and sensors
+  kTakesTopics = 2,   ///< topics
+  kTakesColumns = 4,  ///< what numbers without names are, and their type
 };
 
 /// One row a layout: how it is recognised and how it is opened.
@@ -35,26 +35,27 @@ struct Layout {
 
 // The first that finds something is taken.
 constexpr Layout kLayouts[] = {
-    {"dicp", "a folder with point_clouds/*.bin", find_dicp, open_dicp, find_dicp_scans, kColumns},
+    {"dicp", "a folder with point_clouds/*.bin", find_dicp, open_dicp, find_dicp_scans, kTakesColumns},
     {"hercules", "LiDAR/Aeva/*.bin with PR_GT/ or Radar/, or of 2024 and later", find_hercules, open_hercules,
      find_aeva_folder},
     {"helipr", "LiDAR/Aeva/*.bin otherwise", find_helipr, open_helipr, find_aeva_folder},
     {"boreas", "aeva/*.bin with applanix/ or calib/; frames/*.bin with timestamps.txt and aeva_poses.txt", find_boreas,
      open_boreas, find_boreas_scans},
     {"aevascenes", "sequence.json beside pointcloud_compensated/ or pointcloud_raw/", find_aevascenes, open_aevascenes,
-     nullptr, kFields},
-    {"rosbag", "*.bag of ROS 1", find_rosbag, open_bag, nullptr, kFields | kTopics},
-    {"rosbag2", "a folder with metadata.yaml, or *.db3, of ROS 2", find_rosbag2, open_bag, nullptr, kFields | kTopics},
-    {"mcap", "*.mcap", find_mcap, open_bag, nullptr, kFields | kTopics},
+     nullptr, kTakesFields},
+    {"rosbag", "*.bag of ROS 1", find_rosbag, open_bag, nullptr, kTakesFields | kTakesTopics},
+    {"rosbag2", "a folder with metadata.yaml, or *.db3, of ROS 2", find_rosbag2, open_bag, nullptr,
+     kTakesFields | kTakesTopics},
+    {"mcap", "*.mcap", find_mcap, open_bag, nullptr, kTakesFields | kTakesTopics},
     // What any data set may hold comes last.
     {"npz", "*.npz, *.npy of shape (N, 4) or wider, or <name>.npy with <name>_dop.npy", find_npz, open_npz, nullptr,
-     kFields | kColumns},
-    {"pcd", "*.pcd", find_pcd, open_pcd, nullptr, kFields},
-    {"ply", "*.ply", find_ply, open_ply, nullptr, kFields},
+     kTakesFields | kTakesColumns},
+    {"pcd", "*.pcd", find_pcd, open_pcd, nullptr, kTakesFields},
+    {"ply", "*.ply", find_ply, open_ply, nullptr, kTakesFields},
     {"bin", "a folder of *.bin whose record layout is recognised by content", find_bin_folder, open_bin_folder,
-     find_bin_scans, kColumns},
-    {"csv", "*.csv or *.txt, rows of points with or without names", find_csv, open_csv, nullptr, kFields | kColumns,
-     true},
+     find_bin_scans, kTakesColumns},
+    {"csv", "*.csv or *.txt, rows of points with or without names", find_csv, open_csv, nullptr,
+     kTakesFields | kTakesColumns, true},
 };
 
 std::string looked_for() {
@@ -66,17 +67,17 @@ std::string looked_for() {
 }
 
 std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& folder, const OpenOptions& options) {
-  if ((layout.takes & kFields) == 0 && !(options.fields.empty() && options.sensors.empty())) {
+  if ((layout.takes & kTakesFields) == 0 && !(options.fields.empty() && options.sensors.empty())) {
     throw UsageError(
         fmt::format("{} has neither columns with names nor several sensors to choose from; '{}' was asked for",
                     layout.name, options.fields.empty() ? options.sensors.front() : options.fields.begin()->first));
   }
-  if ((layout.takes & kTopics) == 0 && !(options.topics.empty() && options.truth_topic.empty())) {
+  if ((layout.takes & kTakesTopics) == 0 && !(options.topics.empty() && options.truth_topic.empty())) {
     throw UsageError(fmt::format("{} has no topics to choose from, as bags have; '{}' was asked for", layout.name,
                                  options.topics.empty() ? options.truth_topic : options.topics.front()));
   }
   const std::vector<std::string> in_order = {"x", "y", "z", "doppler"};
-  if ((layout.takes & kColumns) == 0 &&
+  if ((layout.takes & kTakesColumns) == 0 &&
       !(options.dtype.empty() && (options.columns.empty() || options.columns == in_order))) {
     throw UsageError(
         fmt::format("{} says itself what its numbers are: columns may put x, y, z and doppler into another "

@@ -69,9 +69,9 @@ std::optional<Stamp> stamp_in(std::string_view cell, std::string_view name) {
     std::string_view ending;
     std::int64_t ns;
   };
-  constexpr Unit kUnits[] = {{"ns", 1}, {"us", 1000}, {"ms", 1'000'000}};
+  constexpr Unit kStampUnits[] = {{"ns", 1}, {"us", 1000}, {"ms", 1'000'000}};
   if (const std::optional<std::int64_t> whole = parse_number<std::int64_t>(cell)) {
-    for (const Unit& unit : kUnits) {
+    for (const Unit& unit : kStampUnits) {
       if (name.ends_with("_" + std::string(unit.ending))) {
         constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max() / 2;
         return std::abs(static_cast<double>(*whole)) < static_cast<double>(kMost / unit.ns)

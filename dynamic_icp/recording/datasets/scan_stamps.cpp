@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kLongestIndex = 9;  // digits
 constexpr std::size_t kDecimals = 9;
-constexpr std::size_t kNanosecondDigits = 19;
+constexpr std::size_t kUnixDigits = 19;
 // Half of the range of 64 bits, so that the difference of any two stamps fits as well.
 constexpr std::int64_t kMaxStampNs = std::numeric_limits<std::int64_t>::max() / 2;
 
@@ -59,7 +59,7 @@ NamedTime time_in(const fs::path& file, const OrderedNames& names) {
     return {file, std::string(last_digits(before)), std::string(digits)};
   }
   // Zeros in front are those of an index, however many; but 19 digits are nanoseconds, also soon after time 0.
-  const bool counts_ns = digits.size() == kNanosecondDigits;
+  const bool counts_ns = digits.size() == kUnixDigits;
   const std::size_t nonzero =
       counts_ns || digits.empty() ? 0 : std::min(digits.find_first_not_of('0'), digits.size() - 1);
   return {file, std::string(digits.substr(nonzero)), {}};
@@ -86,7 +86,7 @@ Stamp whole_stamp(const NamedTime& named) {
     std::from_chars(named.whole.data(), named.whole.data() + named.whole.size(), index.ns);
     return index;
   }
-  if (named.whole.size() == kNanosecondDigits && named.whole.front() == '0') {
+  if (named.whole.size() == kUnixDigits && named.whole.front() == '0') {
     Stamp soon;
     std::from_chars(named.whole.data(), named.whole.data() + named.whole.size(), soon.ns);
     return soon;

@@ -14,7 +14,7 @@ namespace {
 using Numbers = std::vector<double>;
 using Names = std::vector<std::string>;
 
-std::string fault(const std::string& text) {
+std::string csv_fault(const std::string& text) {
   try {
     (void)parse_csv(text, "a.csv");
   } catch (const DataError& error) {
@@ -58,10 +58,10 @@ TEST(Csv, EmptyCellsAreNoNumbers) {
 }
 
 TEST(Csv, WhatIsNoTableIsNamedWithItsLine) {
-  EXPECT_EQ(fault("x,y\n1,2,3\n"), "a.csv: line 1: 2 names, but the row after it has 3 numbers");
-  EXPECT_EQ(fault("1,2\n\n1\n"), "a.csv: line 3: 1 columns, expected 2 as in the first row");
-  EXPECT_EQ(fault("x,y\n1,2\n1,two\n"), "a.csv: line 3: column 2 is 'two', expected a number");
-  EXPECT_EQ(fault("x;y\n1,5;2\n"), "a.csv: line 1: 1 names, but the row after it has 2 numbers");
+  EXPECT_EQ(csv_fault("x,y\n1,2,3\n"), "a.csv: line 1: 2 names, but the row after it has 3 numbers");
+  EXPECT_EQ(csv_fault("1,2\n\n1\n"), "a.csv: line 3: 1 columns, expected 2 as in the first row");
+  EXPECT_EQ(csv_fault("x,y\n1,2\n1,two\n"), "a.csv: line 3: column 2 is 'two', expected a number");
+  EXPECT_EQ(csv_fault("x;y\n1,5;2\n"), "a.csv: line 1: 1 names, but the row after it has 2 numbers");
 }
 
 }  // namespace

@@ -60,16 +60,15 @@ constexpr std::array<Decoder<Imu>, 1> kImuDecoders = {{{kImu, read_imu_message, 
 
 template <class Decoders>
 auto find_decoder(const Decoders& decoders, const bags::Topic& topic) {
-  const std::string type = plain_type_name(topic.type);
   const auto* const found = std::find_if(decoders.begin(), decoders.end(), [&](const auto& decoder) {
     switch (topic.encoding) {
       case bags::Encoding::kRos1:
       case bags::Encoding::kCdr:
-        return decoder.type == type && decoder.ros != nullptr;
+        return decoder.type == topic.type && decoder.ros != nullptr;
       case bags::Encoding::kProtobuf:
-        return decoder.type == type && decoder.protobuf != nullptr;
+        return decoder.type == topic.type && decoder.protobuf != nullptr;
       case bags::Encoding::kJson:
-        return decoder.type == type && decoder.json != nullptr;
+        return decoder.type == topic.type && decoder.json != nullptr;
       case bags::Encoding::kUnknown:
         break;
     }
@@ -100,24 +99,7 @@ auto decode(const Decoders& decoders, std::string_view what, const bags::Topic& 
   }
 }
 
-void replace_all(std::string& text, std::string_view from, std::string_view to) {
-  for (std::size_t at = text.find(from); at != std::string::npos; at = text.find(from, at + to.size())) {
-    text.replace(at, from.size(), to);
-  }
-}
-
 }  // namespace
-
-std::string plain_type_name(std::string_view type) {
-  std::string name(type);
-  replace_all(name, "::", "/");
-  replace_all(name, "/msg/", "/");
-  if (const std::size_t dds = name.find("/dds_/"); dds != std::string::npos) {
-    name.erase(dds, 5);
-    name.resize(name.ends_with('_') ? name.size() - 1 : name.size());
-  }
-  return name.starts_with("foxglove/") ? name.replace(8, 1, ".") : name;
-}
 
 bool is_cloud(const bags::Topic& topic) { return find_decoder(kCloudDecoders, topic) != nullptr; }
 bool is_pose(const bags::Topic& topic) { return find_decoder(kPoseDecoders, topic) != nullptr; }

@@ -75,10 +75,6 @@ struct Imu {
   Eigen::Vector3d linear_acceleration = Eigen::Vector3d::Zero();  ///< m/s^2, sensor frame
 };
 
-/// The name of a type as ROS 1 has it, whatever wrote it: "sensor_msgs/PointCloud2" for sensor_msgs/msg/PointCloud2 and
-/// sensor_msgs::msg::dds_::PointCloud2_, "foxglove.PointCloud" for foxglove::PointCloud and foxglove/PointCloud.
-std::string plain_type_name(std::string_view type);
-
 /// Whether `decode_cloud` reads messages of this topic; the same of the others.
 bool is_cloud(const bags::Topic& topic);
 bool is_pose(const bags::Topic& topic);

@@ -76,8 +76,7 @@ TEST(Messages, CloudsWrittenByHand) {
   ASSERT_EQ(from_hex(kRos1Cloud).size(), 125U);
   ASSERT_EQ(from_hex(kCdrCloud).size(), 157U);
   expect_the_one_point(decode_cloud(topic_of("sensor_msgs/PointCloud2", Encoding::kRos1), from_hex(kRos1Cloud), "bag"));
-  expect_the_one_point(
-      decode_cloud(topic_of("sensor_msgs/msg/PointCloud2", Encoding::kCdr), from_hex(kCdrCloud), "bag"));
+  expect_the_one_point(decode_cloud(topic_of("sensor_msgs/PointCloud2", Encoding::kCdr), from_hex(kCdrCloud), "bag"));
   // The same bytes by the writer of these tests, which others rest on.
   const ros::Cloud cloud =
       ros::float_cloud(1'724'479'779'384'729'506, "aeva", {"x", "y", "z", "velocity"}, {{1.0F, 2.0F, -0.5F, -3.25F}});
@@ -254,15 +253,11 @@ TEST(Messages, StampsOfRos1AreUnsignedThoseOfRos2Signed) {
   EXPECT_EQ(stamp(Wire::kCdrLittle), -1'000'000'000);
 }
 
-TEST(Messages, TypesByAnyWritersName) {
-  EXPECT_EQ(plain_type_name("sensor_msgs/msg/PointCloud2"), "sensor_msgs/PointCloud2");
-  EXPECT_EQ(plain_type_name("sensor_msgs::msg::dds_::PointCloud2_"), "sensor_msgs/PointCloud2");
-  EXPECT_EQ(plain_type_name("foxglove::PointCloud"), "foxglove.PointCloud");
-  EXPECT_EQ(plain_type_name("foxglove.PointCloud"), "foxglove.PointCloud");
-  EXPECT_TRUE(is_cloud(topic_of("sensor_msgs/msg/PointCloud2", Encoding::kCdr)));
+TEST(Messages, AreReadInTheEncodingsThatTheirTypesHave) {
+  EXPECT_TRUE(is_cloud(topic_of("sensor_msgs/PointCloud2", Encoding::kCdr)));
   EXPECT_FALSE(is_cloud(topic_of("sensor_msgs/PointCloud2", Encoding::kProtobuf)));
   EXPECT_FALSE(is_cloud(topic_of("foxglove.PointCloud", Encoding::kCdr)));
-  EXPECT_TRUE(is_pose(topic_of("nav_msgs/msg/Odometry", Encoding::kCdr)));
+  EXPECT_TRUE(is_pose(topic_of("nav_msgs/Odometry", Encoding::kCdr)));
   EXPECT_TRUE(is_transforms(topic_of("tf/tfMessage", Encoding::kRos1)));
   EXPECT_TRUE(is_imu(topic_of("sensor_msgs/Imu", Encoding::kRos1)));
   EXPECT_FALSE(is_imu(topic_of("sensor_msgs/Image", Encoding::kRos1)));
