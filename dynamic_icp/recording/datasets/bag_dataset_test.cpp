@@ -39,7 +39,7 @@ std::unique_ptr<Dataset> open(const std::shared_ptr<FakeBag>& bag, const OpenOpt
 }
 
 template <class Error>
-std::string fault_of(const std::shared_ptr<FakeBag>& bag, const OpenOptions& options = {}) {
+std::string fault_of_bag(const std::shared_ptr<FakeBag>& bag, const OpenOptions& options = {}) {
   try {
     open(bag, options);
   } catch (const Error& error) {
@@ -120,30 +120,31 @@ TEST(BagDataset, TimesChannelsAndOtherColumnsAsInFiles) {
 TEST(BagDataset, WithoutOneAnswerTheTopicsAreListedWithTheOption) {
   const auto none = new_bag();
   none->add("/imu", "sensor_msgs/Imu", at(0.0), "");
-  expect_part(fault_of<DataError>(none), "drive.bag: holds no clouds of points");
-  expect_part(fault_of<DataError>(none), "\n  /imu: sensor_msgs/Imu, 1 message");
+  expect_part(fault_of_bag<DataError>(none), "drive.bag: holds no clouds of points");
+  expect_part(fault_of_bag<DataError>(none), "\n  /imu: sensor_msgs/Imu, 1 message");
 
   const auto without = new_bag();
   add_cloud(*without, "/points", 0.0, "lidar", {{1, 2, 3, 4}}, {"x", "y", "z", "intensity"});
-  expect_part(fault_of<DataError>(without), "drive.bag: /points: no column of Doppler velocities");
-  expect_part(fault_of<DataError>(without), "there are: x, y, z, intensity");
+  expect_part(fault_of_bag<DataError>(without), "drive.bag: /points: no column of Doppler velocities");
+  expect_part(fault_of_bag<DataError>(without), "there are: x, y, z, intensity");
   EXPECT_EQ(open(without, {.fields = {{"doppler", "intensity"}}})->size(), 1U);
   add_cloud(*without, "/other", 0.1, "lidar", {{1, 2, 3}}, {"x", "y", "z"});
-  expect_part(fault_of<UnclearTopic>(without), "name topic and field of one:\n  /points: ");
-  expect_part(fault_of<DataError>(without), "\n  /other: sensor_msgs/PointCloud2, 1 message; x, y, z (float32)");
+  expect_part(fault_of_bag<UnclearTopic>(without), "name topic and field of one:\n  /points: ");
+  expect_part(fault_of_bag<DataError>(without), "\n  /other: sensor_msgs/PointCloud2, 1 message; x, y, z (float32)");
 
   const auto several = new_bag();
   for (int i = 0; i < 2; ++i) {
     add_cloud(*several, "/left", 0.1 * i, "left", {{1, 2, 3, 4}});
     add_cloud(*several, "/right", 0.1 * i, "right", {{1, 2, 3, 4}});
   }
-  expect_part(fault_of<UnclearTopic>(several), "holds several clouds of points with Doppler");
-  expect_part(fault_of<DataError>(several), "/right: sensor_msgs/PointCloud2, 2 messages at 10.0 Hz");
+  expect_part(fault_of_bag<UnclearTopic>(several), "holds several clouds of points with Doppler");
+  expect_part(fault_of_bag<DataError>(several), "/right: sensor_msgs/PointCloud2, 2 messages at 10.0 Hz");
   EXPECT_EQ(open(several, {.topics = {"/right"}})->size(), 2U);
   EXPECT_EQ(open(several, {.topics = {"right"}})->size(), 2U);
-  expect_part(fault_of<UsageError>(several, {.topics = {"/up"}}), "no topic '/up'; topics of clouds: /left, /right");
-  expect_part(fault_of<UsageError>(several, {.topics = {"/left", "left"}}), "for the second time");
-  expect_part(fault_of<UsageError>(several, {.sensors = {"left"}}),
+  expect_part(fault_of_bag<UsageError>(several, {.topics = {"/up"}}),
+              "no topic '/up'; topics of clouds: /left, /right");
+  expect_part(fault_of_bag<UsageError>(several, {.topics = {"/left", "left"}}), "for the second time");
+  expect_part(fault_of_bag<UsageError>(several, {.sensors = {"left"}}),
               "chosen by their topics, not by name; sensor 'left'");
 }
 
@@ -172,7 +173,7 @@ TEST(BagDataset, WhatIsBehindADamagedMessageIsLeftOut) {
   bag->message(1).resize(60);  // whole enough for a stamp: an error of that scan
   EXPECT_THROW((void)open(bag)->scan(1), DataError);
   bag->message(0).resize(3);
-  expect_part(fault_of<DataError>(bag),
+  expect_part(fault_of_bag<DataError>(bag),
               "/lidar: sensor_msgs/PointCloud2, 5 messages at 10.0 Hz; fake.bag: /lidar, message 0");
 }
 
@@ -185,14 +186,16 @@ TEST(BagDataset, CompensatedByTheNameOfTheTopic) {
   expect_part(said(*dataset), "compensated, by the name of topic");
 }
 
-const Eigen::Isometry3d kLeft = Eigen::Translation3d(1.0, 0.5, 0.2) * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ());
-const Eigen::Isometry3d kRight =
+const Eigen::Isometry3d kLeftOnRoof =
+    Eigen::Translation3d(1.0, 0.5, 0.2) * Eigen::AngleAxisd(0.5, Eigen::Vector3d::UnitZ());
+const Eigen::Isometry3d kRightOnRoof =
     Eigen::Translation3d(1.0, -0.5, 0.2) * Eigen::AngleAxisd(-0.7, Eigen::Vector3d(0.1, 0.2, 1).normalized());
 
 /// Two sensors, the second 20 ms later; at the third scan the second has none.
 std::shared_ptr<FakeBag> rig_bag() {
   auto bag = new_bag();
-  bag->add_transforms("/tf_static", at(-1.0), {{"base_link", "left", kLeft}, {"base_link", "right", kRight}});
+  bag->add_transforms("/tf_static", at(-1.0),
+                      {{"base_link", "left", kLeftOnRoof}, {"base_link", "right", kRightOnRoof}});
   for (int i = 0; i < 4; ++i) {
     add_cloud(*bag, "/left", 0.1 * i, "left", {{10.0F + static_cast<float>(i), 1, 2, -3}, {0, 0, 0, 0}});
     if (i != 2) {
@@ -207,14 +210,14 @@ TEST(BagDataset, SeveralTopicsAreARig) {
   const std::unique_ptr<Dataset> dataset = open(bag, {.topics = {"/left", "/right"}});
   ASSERT_EQ(dataset->size(), 4U);
   EXPECT_EQ(dataset->stamp(1).ns, at(0.1));
-  EXPECT_TRUE(dataset->T_vehicle_sensor()->isApprox(kLeft));
+  EXPECT_TRUE(dataset->T_vehicle_sensor()->isApprox(kLeftOnRoof));
   const RawScan scan = dataset->scan(1);
   ASSERT_EQ(scan.points.size(), 3U);
   EXPECT_EQ(scan.channels.sensor, (std::vector<std::uint8_t>{0, 0, 1}));
   EXPECT_EQ(scan.doppler, (std::vector<double>{-3, 0, 2}));
   ASSERT_EQ(scan.mountings.size(), 2U);
   EXPECT_TRUE(scan.mountings[0].isApprox(Eigen::Isometry3d::Identity()));
-  const Eigen::Isometry3d T_left_right = kLeft.inverse() * kRight;
+  const Eigen::Isometry3d T_left_right = kLeftOnRoof.inverse() * kRightOnRoof;
   EXPECT_TRUE(scan.mountings[1].isApprox(T_left_right));
   EXPECT_TRUE(scan.points[0].isApprox(Eigen::Vector3d(11, 1, 2)));
   EXPECT_TRUE(scan.points[2].isApprox(T_left_right * Eigen::Vector3d(5, 1, 2)));
@@ -229,7 +232,7 @@ TEST(BagDataset, SeveralTopicsAreARig) {
 
 TEST(BagDataset, TimesOfARigAreAfterTheStampOfItsFirstSensor) {
   const auto bag = new_bag();
-  bag->add_transforms("/tf_static", at(-1.0), {{"left", "right", kRight}});
+  bag->add_transforms("/tf_static", at(-1.0), {{"left", "right", kRightOnRoof}});
   const std::vector<std::string> fields = {"x", "y", "z", "velocity", "time_offset_s"};
   for (int i = 0; i < 2; ++i) {
     add_cloud(*bag, "/left", 0.1 * i, "left", {{1, 2, 3, 4, 0.25F}}, fields);
@@ -243,16 +246,16 @@ TEST(BagDataset, TimesOfARigAreAfterTheStampOfItsFirstSensor) {
 
 TEST(BagDataset, ARigWithoutMountingsSaysWhatIsMissing) {
   const auto bag = new_bag();
-  bag->add_transforms("/tf_static", at(-1.0), {{"base_link", "left", kLeft}});
+  bag->add_transforms("/tf_static", at(-1.0), {{"base_link", "left", kLeftOnRoof}});
   for (int i = 0; i < 2; ++i) {
     add_cloud(*bag, "/left", 0.1 * i, "left", {{1, 2, 3, 4}});
     add_cloud(*bag, "/right", 0.1 * i, "right", {{1, 2, 3, 4}});
     add_cloud(*bag, "/again", 0.1 * i, "left", {{1, 2, 3, 4}});
   }
-  const std::string missing = fault_of<DataError>(bag, {.topics = {"/left", "/right"}});
+  const std::string missing = fault_of_bag<DataError>(bag, {.topics = {"/left", "/right"}});
   expect_part(missing, "where topic '/right' (frame 'right') is seen from '/left' (frame 'left') is not known");
   expect_part(missing, "there are: base_link>left");
-  expect_part(fault_of<DataError>(bag, {.topics = {"/left", "/again"}}), "are in one frame, 'left'");
+  expect_part(fault_of_bag<DataError>(bag, {.topics = {"/left", "/again"}}), "are in one frame, 'left'");
 }
 
 /// A drive along x with odometry of base_link, poses of "gt", and transforms.
@@ -278,7 +281,7 @@ TEST(BagDataset, PosesOfATopicAreMovedToTheSensor) {
     const std::unique_ptr<Dataset> dataset = open(bag_with_poses(), {.topics = {"/left"}, .truth_topic = truth});
     ASSERT_EQ(dataset->ground_truth().size(), 5U) << truth;
     EXPECT_EQ(dataset->ground_truth()[2].stamp.ns, at(0.2));
-    EXPECT_TRUE(dataset->ground_truth()[2].T_world_sensor.isApprox(Eigen::Translation3d(0.2, 0, 0) * kLeft));
+    EXPECT_TRUE(dataset->ground_truth()[2].T_world_sensor.isApprox(Eigen::Translation3d(0.2, 0, 0) * kLeftOnRoof));
     EXPECT_EQ(dataset->ground_truth_file(), "fake.bag");
   }
 }
@@ -310,7 +313,7 @@ TEST(BagDataset, TopicsThatCallThemselvesGroundTruthAreTaken) {
 TEST(BagDataset, GroundTruthThatIsNotThereIsNamed) {
   const auto bag = bag_with_poses();
   const auto fault = [&](const char* truth) {
-    return fault_of<UsageError>(bag, {.topics = {"/left"}, .truth_topic = truth});
+    return fault_of_bag<UsageError>(bag, {.topics = {"/left"}, .truth_topic = truth});
   };
   expect_part(fault("/pose"), "truth-topic is '/pose', but there is no such topic; topics of poses: /odom");
   expect_part(fault("/left"), "truth-topic is '/left', which is of sensor_msgs/PointCloud2, not of poses");
@@ -319,7 +322,7 @@ TEST(BagDataset, GroundTruthThatIsNotThereIsNamed) {
   add_cloud(*late, "/lidar", 0.0, "lidar", {{1, 2, 3, 4}});
   late->add("/pose", "geometry_msgs/PoseStamped", at(50.0),
             ros::Writer(Wire::kRos1).header(at(50.0), "map").pose(Eigen::Isometry3d::Identity()).bytes());
-  expect_part(fault_of<DataError>(late, {.truth_topic = "/pose"}), "are of another time than the scans");
+  expect_part(fault_of_bag<DataError>(late, {.truth_topic = "/pose"}), "are of another time than the scans");
 }
 
 TEST(BagDataset, ImuByTopic) {
