@@ -377,7 +377,12 @@ test('from above lengths are true: the ruler reads the same everywhere, and the 
     assert.ok(!axes.equals(far));
     await page.keyboard.press('Escape');
     assert.equal(await page.getAttribute('[aria-label^="Ruler"]', 'aria-pressed'), 'false');
-    assert.ok(axes.equals(await page.locator('canvas.overlay').screenshot()));
+    let isCleared = false; // with the next picture
+    for (let tries = 0; tries < 40 && !isCleared; ++tries) {
+      await page.waitForTimeout(50);
+      isCleared = axes.equals(await page.locator('canvas.overlay').screenshot());
+    }
+    assert.ok(isCleared);
     await page.keyboard.press('f');
     await picture(page);
     assert.ok(await page.locator('canvas.overlay').isHidden());
