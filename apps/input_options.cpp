@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "apps/input_options.hpp"
 
+#include <algorithm>
+#include <cctype>
+#include <string_view>
+
 #include <CLI/CLI.hpp>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -52,6 +56,21 @@ void add_repeatable(CLI::App& command, const char* name, const char* type, const
       ->take_all();
 }
 
+/// One word of a command line, quoted where a shell would take it for more.
+std::string as_word(const std::string& text) {
+  const bool is_plain = std::all_of(text.begin(), text.end(), [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("_-./,:=+@%").find(static_cast<char>(c)) != std::string_view::npos;
+  });
+  if (is_plain && !text.empty()) {
+    return text;
+  }
+  std::string quoted = "'";
+  for (const char c : text) {
+    quoted += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  }
+  return quoted + "'";
+}
+
 }  // namespace
 
 void add_input_options(CLI::App& command, datasets::InputSettings& settings) {
@@ -93,12 +112,26 @@ void add_correction_options(CLI::App& command, datasets::InputSettings& settings
       "names are, with _ for what is not used, e.g. x,y,z,_,doppler (default x,y,z,doppler)");
 }
 
-std::string as_options(const datasets::Correction& correction) {
+std::string as_options(const std::vector<std::pair<std::string, std::string>>& settings) {
   std::string options;
-  for (const auto& [name, text] : datasets::texts({.open = {}, .correction = correction})) {
-    options += fmt::format("{}--{} {}", options.empty() ? "" : " ", name, text);
+  for (const auto& [name, text] : settings) {
+    const std::size_t point = name.find('.');  // "field.doppler", "topic.1"
+    const std::string kind = name.substr(0, point);
+    const std::string value = kind == "field" ? fmt::format("{}={}", name.substr(point + 1), text) : text;
+    options += fmt::format("{}--{} {}", options.empty() ? "" : " ", kind, as_word(value));
   }
   return options;
+}
+
+std::string as_options(const datasets::Correction& correction) {
+  return as_options(datasets::texts({.open = {}, .correction = correction}));
+}
+
+std::string with_options(const datasets::UnclearInput& error) {
+  const std::string what = error.what();
+  const bool is_list = what.find('\n') != std::string::npos;
+  return fmt::format("{}{} {}", what, is_list ? "\nfor instance" : "; state it, e.g. with",
+                     as_options(error.proposal()));
 }
 
 std::string fixing_options(const diagnosis::Finding& finding) {

@@ -3,9 +3,11 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/datasets/unclear_input.hpp"
 #include "dynamic_icp/recording/diagnosis/diagnosis.hpp"
 
 namespace CLI {
@@ -21,8 +23,14 @@ void add_input_options(CLI::App& command, datasets::InputSettings& settings);
 /// --doppler-sign, --doppler-kind, --doppler-scale, --point-scale, --columns: how numbers of a scan are corrected.
 void add_correction_options(CLI::App& command, datasets::InputSettings& settings);
 
+/// Settings of an input (input_settings.hpp) as the options that state them, as a shell takes them.
+std::string as_options(const std::vector<std::pair<std::string, std::string>>& settings);
+
 /// The options that state a correction; "" where it states nothing.
 std::string as_options(const datasets::Correction& correction);
+
+/// What stands in the way of reading an input, with the options that help.
+std::string with_options(const datasets::UnclearInput& error);
 
 /// The options that fix what is found; "" where none do.
 std::string fixing_options(const diagnosis::Finding& finding);

@@ -14,13 +14,14 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/version.hpp"
-#include "dynamic_icp/recording/datasets/bag_dataset.hpp"
+#include "dynamic_icp/recording/datasets/unclear_input.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
 #include "apps/exit_status.hpp"
 #include "apps/help_format.hpp"
+#include "apps/input_options.hpp"
 #include "apps/keep_memory.hpp"
 #include "apps/messages.hpp"
 #include "apps/process.hpp"
@@ -114,10 +115,8 @@ int main(int argc, char** argv) {
     return report(error.what(), kWrongUsage);
   } catch (const dynamic_icp::formats::EarlierResult& error) {
     return report(fmt::format("{}; use --force to replace it", error.what()), kDataOrMachineFailed);
-  } catch (const dynamic_icp::datasets::UnclearTopic& error) {
-    return report(fmt::format("{}\nfor instance --topic {}{}", error.what(), error.topic(),
-                              error.needs_doppler() ? " --field doppler=NAME" : ""),
-                  kDataOrMachineFailed);
+  } catch (const dynamic_icp::datasets::UnclearInput& error) {
+    return report(apps::with_options(error), kDataOrMachineFailed);
   } catch (const std::bad_alloc&) {
     return report("the machine has no memory left", kDataOrMachineFailed);
   } catch (const std::system_error& error) {

@@ -132,17 +132,17 @@ class TopicChoice {
                  fmt::format("{}: {}", path_.string(), clouds.front().name));  // throws, naming the fields
     }
     if (usable.empty()) {
-      throw UnclearTopic(fmt::format("{}: no cloud of points has coordinates and a Doppler by the names of its fields; "
+      throw UnclearInput(fmt::format("{}: no cloud of points has coordinates and a Doppler by the names of its fields; "
                                      "name topic and field of one:{}",
                                      path_.string(), listed(clouds)),
-                         clouds.front().name, true);
+                         {{"topic.", clouds.front().name}, {"field.doppler", "NAME"}});
     }
     if (usable.size() > 1 &&
         std::any_of(usable.begin(), usable.end(), [&](const auto& t) { return t.name != usable.front().name; })) {
-      throw UnclearTopic(fmt::format("{}: holds several clouds of points with Doppler; name the topic of one, or those "
+      throw UnclearInput(fmt::format("{}: holds several clouds of points with Doppler; name the topic of one, or those "
                                      "of several for the sensors of a rig:{}",
                                      path_.string(), listed(usable)),
-                         usable.front().name, false);
+                         {{"topic.", usable.front().name}});
     }
     if (clouds.size() > usable.size()) {
       assumptions.push_back(

@@ -4,29 +4,12 @@
 
 #include <filesystem>
 #include <memory>
-#include <string>
-#include <utility>
 
-#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/bags/bag.hpp"
 #include "dynamic_icp/recording/datasets/dataset.hpp"
+#include "dynamic_icp/recording/datasets/unclear_input.hpp"
 
 namespace dynamic_icp::datasets {
-
-/// A bag holds clouds of points, but not which of them are meant.
-class UnclearTopic : public DataError {
- public:
-  UnclearTopic(const std::string& what, std::string topic, bool needs_doppler)
-      : DataError(what), topic_(std::move(topic)), needs_doppler_(needs_doppler) {}
-
-  /// One that could be named, and whether the field of its Doppler has to be named too.
-  [[nodiscard]] const std::string& topic() const { return topic_; }
-  [[nodiscard]] bool needs_doppler() const { return needs_doppler_; }
-
- private:
-  std::string topic_;
-  bool needs_doppler_;
-};
 
 /// The clouds of a bag as scans.
 ///
@@ -39,7 +22,7 @@ class UnclearTopic : public DataError {
 /// truth is what bag_truth.hpp finds. Opening reads the front of each cloud; memory grows with their number only.
 ///
 /// `path` is what messages name for the whole bag. Throws DataError that lists the topics where there is no
-/// cloud, UnclearTopic where more than one, or none, could be meant; UsageError for topics that are not there.
+/// cloud, UnclearInput where more than one, or none, could be meant; UsageError for topics that are not there.
 std::unique_ptr<Dataset> open_bag_dataset(std::shared_ptr<const bags::Bag> bag, const std::filesystem::path& path,
                                           const OpenOptions& options);
 

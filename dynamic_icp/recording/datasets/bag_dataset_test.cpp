@@ -129,7 +129,7 @@ TEST(BagDataset, WithoutOneAnswerTheTopicsAreListedWithTheOption) {
   expect_part(fault_of_bag<DataError>(without), "there are: x, y, z, intensity");
   EXPECT_EQ(open(without, {.fields = {{"doppler", "intensity"}}})->size(), 1U);
   add_cloud(*without, "/other", 0.1, "lidar", {{1, 2, 3}}, {"x", "y", "z"});
-  expect_part(fault_of_bag<UnclearTopic>(without), "name topic and field of one:\n  /points: ");
+  expect_part(fault_of_bag<UnclearInput>(without), "name topic and field of one:\n  /points: ");
   expect_part(fault_of_bag<DataError>(without), "\n  /other: sensor_msgs/PointCloud2, 1 message; x, y, z (float32)");
 
   const auto several = new_bag();
@@ -137,7 +137,7 @@ TEST(BagDataset, WithoutOneAnswerTheTopicsAreListedWithTheOption) {
     add_cloud(*several, "/left", 0.1 * i, "left", {{1, 2, 3, 4}});
     add_cloud(*several, "/right", 0.1 * i, "right", {{1, 2, 3, 4}});
   }
-  expect_part(fault_of_bag<UnclearTopic>(several), "holds several clouds of points with Doppler");
+  expect_part(fault_of_bag<UnclearInput>(several), "holds several clouds of points with Doppler");
   expect_part(fault_of_bag<DataError>(several), "/right: sensor_msgs/PointCloud2, 2 messages at 10.0 Hz");
   EXPECT_EQ(open(several, {.topics = {"/right"}})->size(), 2U);
   EXPECT_EQ(open(several, {.topics = {"right"}})->size(), 2U);

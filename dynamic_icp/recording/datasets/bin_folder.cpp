@@ -48,11 +48,11 @@ fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& 
 }
 
 [[noreturn]] void refuse(const fs::path& file, const std::string& content, const std::vector<fs::path>& files) {
-  const std::string shape = shape_sentence(files);
+  const std::optional<UnclearInput> shape = likely_shape(files);
   const bool is_plain =
-      content.size() % formats::kXyzd.bytes == 0 && other_shape(files, 4, formats::NumberType::kFloat32).empty();
-  if (!shape.empty() && !is_plain) {
-    throw DataError(shape);
+      content.size() % formats::kXyzd.bytes == 0 && !other_shape(files, 4, formats::NumberType::kFloat32);
+  if (shape && !is_plain) {
+    throw *shape;
   }
   if (is_velodyne(named_path(file).parent_path())) {
     throw DataError(fmt::format(
@@ -68,8 +68,8 @@ fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& 
     names += fmt::format("\n  {}, {} bytes{}", layout->name, layout->bytes,
                          content.size() % layout->bytes == 0 ? "" : ": does not divide the size");
   }
-  if (!shape.empty()) {
-    throw DataError(shape);
+  if (shape) {
+    throw *shape;
   }
   throw DataError(fmt::format("{}: {} bytes that look like no records of points with Doppler. Tried:{}", file.string(),
                               content.size(), names));
@@ -119,8 +119,8 @@ std::unique_ptr<Dataset> open_bin_folder(const fs::path& found, const OpenOption
     refuse(first, formats::read_whole_file(first, formats::kMaxRecordFileBytes), files);
   }
   if (layout == &formats::kXyzd) {
-    if (const std::string other = other_shape(files, 4, formats::NumberType::kFloat32); !other.empty()) {
-      throw DataError(other);
+    if (const auto other = other_shape(files, 4, formats::NumberType::kFloat32)) {
+      throw *other;
     }
   }
   recording.layout_of = [layout](const fs::path&, Stamp) -> const RecordLayout& { return *layout; };

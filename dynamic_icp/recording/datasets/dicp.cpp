@@ -119,9 +119,8 @@ std::unique_ptr<Dataset> open_dicp(const fs::path& found, const OpenOptions& opt
   recording.scans.assumptions.insert(recording.scans.assumptions.begin(), assumptions.begin(), assumptions.end());
   if (states_records(options)) {
     read_as_stated(options, recording);
-  } else if (const std::string other = other_shape(recording.scans.files, 4, formats::NumberType::kFloat32);
-             !other.empty()) {
-    throw DataError(other);
+  } else if (const auto other = other_shape(recording.scans.files, 4, formats::NumberType::kFloat32)) {
+    throw *other;
   }
   return make_record_dataset(std::move(recording));
 }

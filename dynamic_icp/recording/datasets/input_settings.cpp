@@ -149,11 +149,6 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
   }
 }
 
-std::string to_paste(const std::string& setting, const std::string& value) {
-  constexpr std::string_view kMark = "--";
-  return fmt::format("{}{} {}", kMark, setting, value);
-}
-
 std::vector<std::pair<std::string, std::string>> texts(const InputSettings& settings) {
   std::vector<std::pair<std::string, std::string>> all;
   const auto add_number = [&](const char* name, std::optional<double> value) {

@@ -12,6 +12,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/likely_doppler.hpp"
+#include "dynamic_icp/recording/datasets/unclear_input.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -160,10 +161,10 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
       !options.columns.empty() && options.columns != std::vector<std::string>{"x", "y", "z", "doppler"};
   if (points == nullptr || states_part_of(options.fields, *points)) {
     if (states_more) {
-      throw UsageError(
-          fmt::format("{}: its columns have names ({}): state them as {}, not by their "
-                      "order",
-                      origin.string(), fmt::join(scan.names(), ", "), to_paste("field", "doppler=NAME")));
+      throw UsageError(fmt::format(
+          "{}: its columns have names ({}): state which are meant by their names, not what all are in their "
+          "order",
+          origin.string(), fmt::join(scan.names(), ", ")));
     }
     return reading;
   }
@@ -179,9 +180,9 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
   reading.rows.array = *points;
   if (states_more) {
     if (options.columns.size() != width) {
-      throw UsageError(fmt::format("{}: has {} columns, but {} are stated ({}); state for instance {}", array.origin,
-                                   width, options.columns.size(), fmt::join(options.columns, ","),
-                                   to_paste("columns", numbers_as_columns(array))));
+      throw UnclearInput(fmt::format("{}: has {} columns, but {} are stated ({})", array.origin, width,
+                                     options.columns.size(), fmt::join(options.columns, ",")),
+                         {{"columns", numbers_as_columns(array)}});
     }
     reading.rows.names = options.columns;
     return reading;
@@ -204,8 +205,8 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
         fmt::format("{}: the four columns of '{}' are taken as x, y, z, Doppler", origin.string(), *points));
     return reading;
   }
-  throw DataError(fmt::format("{}: has {} columns without names; state what they are, e.g. with {}", array.origin,
-                              width, to_paste("columns", numbers_as_columns(array))));
+  throw UnclearInput(fmt::format("{}: has {} columns without names", array.origin, width),
+                     {{"columns", numbers_as_columns(array)}});
 }
 
 namespace {
@@ -236,9 +237,9 @@ std::vector<Eigen::Vector3d> points_of(const std::vector<double>& x, const std::
   return points;
 }
 
-/// What may be meant, as options; empty: nothing that one could say.
-std::string field_options(const NamedColumns& scan, const std::map<std::string, std::string>& fields) {
-  std::string options;
+/// What may be meant; empty: nothing that one could say.
+UnclearInput::Settings likely_fields(const NamedColumns& scan, const std::map<std::string, std::string>& fields) {
+  UnclearInput::Settings proposal;
   std::vector<Eigen::Vector3d> points;
   std::string array;
   const auto take_axes = [&](const std::vector<std::string>& axes) {
@@ -250,8 +251,7 @@ std::string field_options(const NamedColumns& scan, const std::map<std::string, 
     take_axes({*find_name(scan, "x"), *find_name(scan, "y"), *find_name(scan, "z")});
   } else if (!axes.empty()) {
     take_axes(axes);
-    options = fmt::format(" {} {} {}", to_paste("field", "x=" + axes[0]), to_paste("field", "y=" + axes[1]),
-                          to_paste("field", "z=" + axes[2]));
+    proposal = {{"field.x", axes[0]}, {"field.y", axes[1]}, {"field.z", axes[2]}};
   } else {
     for (const std::string& name : scan.names()) {
       const formats::NpyArray candidate = scan.read(name);
@@ -260,19 +260,20 @@ std::string field_options(const NamedColumns& scan, const std::map<std::string, 
         const std::vector<std::vector<double>> columns = columns_of_array(candidate);
         points = points_of(columns[0], columns[1], columns[2]);
         array = name;
-        options = " " + to_paste("field", "points=" + name);
+        proposal = {{"field.points", name}};
         if (width > kPlainColumns && !has_doppler_beside(scan, fields)) {
-          return options + " " + to_paste("columns", proposed_columns(columns));
+          proposal.emplace_back("columns", proposed_columns(columns));
+          return proposal;
         }
         if (width == kPlainColumns) {
-          return options;  // the fourth is the Doppler, or there is one beside it
+          return proposal;  // the fourth is the Doppler, or there is one beside it
         }
         break;
       }
     }
   }
   if (points.empty() || has_doppler_beside(scan, fields)) {
-    return points.empty() ? "" : options;
+    return points.empty() ? UnclearInput::Settings() : proposal;
   }
   std::vector<std::string> names;
   std::vector<std::vector<double>> columns;
@@ -286,9 +287,10 @@ std::string field_options(const NamedColumns& scan, const std::map<std::string, 
     }
   }
   if (names.empty()) {
-    return "";  // there is no Doppler, whatever the points are
+    return {};  // there is no Doppler, whatever the points are
   }
-  return options + " " + to_paste("field", "doppler=" + names[likely_doppler(points, columns).value_or(0)]);
+  proposal.emplace_back("field.doppler", names[likely_doppler(points, columns).value_or(0)]);
+  return proposal;
 }
 
 }  // namespace
@@ -298,13 +300,15 @@ FieldMap map_columns(const NamedColumns& scan, const std::map<std::string, std::
   try {
     return map_fields(scan.names(), fields, origin, unusable);
   } catch (const DataError& error) {
-    std::string options;
+    UnclearInput::Settings proposal;
     try {
-      options = field_options(scan, fields);
+      proposal = likely_fields(scan, fields);
     } catch (const DataError&) {  // what cannot be read is no proposal
     }
-    throw DataError(options.empty() ? error.what()
-                                    : fmt::format("{}; state which, e.g. with{}", error.what(), options));
+    if (proposal.empty()) {
+      throw;
+    }
+    throw UnclearInput(error.what(), std::move(proposal));
   }
 }
 

@@ -31,15 +31,15 @@ struct ArrayReading {
 /// x, y, z and Doppler unless another array has a Doppler's name; wider ones are as the options state. Two arrays
 /// without names, arr_0 of shape (N, 3) and arr_1 of shape (N,), are points and Doppler.
 ///
-/// Throws DataError, with the options that state it, where nobody says what the columns of a wide array are; UsageError
-/// where the options state another number of columns, or state columns of arrays that have names.
+/// Throws UnclearInput where nobody says what the columns of a wide array are, or the options state another number of
+/// them; UsageError where they state columns of arrays that have names.
 ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options, const std::filesystem::path& origin);
 
 /// The scan with the columns of an array among its own columns, in place of the array.
 std::unique_ptr<NamedColumns> with_rows(std::unique_ptr<NamedColumns> scan, const NamedRows& rows);
 
-/// Finds the columns as map_fields does; where it finds none, its message ends with the options that name those of the
-/// scan that may be meant.
+/// Finds the columns as map_fields does; where it finds none, UnclearInput proposes those of the scan that may be
+/// meant, if there are any.
 FieldMap map_columns(const NamedColumns& scan, const std::map<std::string, std::string>& fields,
                      const std::string& origin, const std::vector<std::string>& unusable);
 

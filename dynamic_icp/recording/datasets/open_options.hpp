@@ -40,10 +40,6 @@ struct OpenOptions {
   double period_s = 0.1;
 };
 
-/// A setting in a message, spelled as the program takes it (input_settings.hpp lists them), so that it can be pasted:
-/// messages about what only the user can know end with it.
-std::string to_paste(const std::string& setting, const std::string& value);
-
 /// The names of types that the numbers of records may have: float32, float64, int16, ...
 std::vector<std::string> record_types();
 

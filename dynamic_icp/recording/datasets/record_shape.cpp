@@ -12,7 +12,6 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/recording/datasets/likely_doppler.hpp"
-#include "dynamic_icp/recording/datasets/open_options.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -183,17 +182,19 @@ std::string first_content(const std::vector<fs::path>& files) {
 
 std::string_view type_name(NpyType type) { return type == NpyType::kFloat64 ? "float64" : "float32"; }
 
-std::string sentence_of(const std::vector<fs::path>& files, const RecordShape& shape, const std::string& instead) {
+UnclearInput unclear(const std::vector<fs::path>& files, const RecordShape& shape, const std::string& instead) {
   const std::vector<std::uintmax_t> sizes = sizes_of(files);
   const std::string sizes_say = sizes.size() == 1
                                     ? fmt::format("its size is a multiple of {} bytes", shape.bytes())
                                     : fmt::format("the sizes of {} of {} files are multiples of {} bytes",
                                                   multiples(sizes, shape.bytes()), sizes.size(), shape.bytes());
-  return fmt::format(
-      "{}: looks like records of {} {} a point{}: {}, and the numbers repeat at that length; state what "
-      "they are, e.g. with {}{}",
-      files.front().string(), shape.numbers, type_name(shape.type), instead, sizes_say,
-      to_paste("columns", shape.columns), shape.type == NpyType::kFloat64 ? " " + to_paste("dtype", "float64") : "");
+  UnclearInput::Settings proposal = {{"columns", shape.columns}};
+  if (shape.type != NpyType::kFloat32) {
+    proposal.emplace_back("dtype", type_name(shape.type));
+  }
+  return {fmt::format("{}: looks like records of {} {} a point{}: {}, and the numbers repeat at that length",
+                      files.front().string(), shape.numbers, type_name(shape.type), instead, sizes_say),
+          std::move(proposal)};
 }
 
 }  // namespace
@@ -205,32 +206,32 @@ std::optional<RecordShape> shape_of(std::string_view content) {
   return shape_of_numbers(numbers_of<double>(content), NpyType::kFloat64);
 }
 
-std::string other_shape(const std::vector<fs::path>& files, std::size_t numbers, NpyType type) {
+std::optional<UnclearInput> other_shape(const std::vector<fs::path>& files, std::size_t numbers, NpyType type) {
   const std::vector<std::uintmax_t> sizes = sizes_of(files);
   const std::string content = first_content(files);
   const std::optional<RecordShape> shape = shape_of(content);
   if (!shape || (shape->numbers == numbers && shape->type == type) || shape->numbers <= kFewestNumbers) {
-    return "";
+    return std::nullopt;
   }
   const std::size_t expected_bytes = numbers * formats::size_of(type);
   const std::size_t as_expected = multiples(sizes, expected_bytes);
   const std::size_t as_seen = multiples(sizes, shape->bytes());
   if (as_expected == sizes.size() && shape->type == type && content.size() < kFewestRecords * expected_bytes) {
-    return "";  // so few numbers may look like anything
+    return std::nullopt;  // so few numbers may look like anything
   }
   // A scan that was cut short, or a few, are no reason to doubt.
   if (10 * as_seen < 9 * sizes.size() || as_seen < as_expected) {
-    return "";
+    return std::nullopt;
   }
   const std::string instead = as_expected == sizes.size()
                                   ? fmt::format(" rather than of {}", numbers)
                                   : fmt::format(", not of {} ({} bytes)", numbers, expected_bytes);
-  return sentence_of(files, *shape, shape->type == type ? instead : "");
+  return unclear(files, *shape, shape->type == type ? instead : "");
 }
 
-std::string shape_sentence(const std::vector<fs::path>& files) {
+std::optional<UnclearInput> likely_shape(const std::vector<fs::path>& files) {
   const std::optional<RecordShape> shape = shape_of(first_content(files));
-  return shape && shape->numbers > kFewestNumbers ? sentence_of(files, *shape, "") : "";
+  return shape && shape->numbers > kFewestNumbers ? std::optional(unclear(files, *shape, "")) : std::nullopt;
 }
 
 }  // namespace dynamic_icp::datasets

@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "dynamic_icp/recording/datasets/unclear_input.hpp"
 #include "dynamic_icp/recording/formats/npy_header.hpp"
 
 namespace dynamic_icp::datasets {
@@ -30,10 +31,11 @@ struct RecordShape {
 std::optional<RecordShape> shape_of(std::string_view content);
 
 /// Why the files, scans of one recording, are no records of `numbers` numbers of this type, where sizes and content
-/// agree that they are of another shape: a sentence with the option that states it. Empty: nothing speaks against it.
-std::string other_shape(const std::vector<std::filesystem::path>& files, std::size_t numbers, formats::NpyType type);
+/// agree that they are of another shape, which it proposes. Nothing where nothing speaks against it.
+std::optional<UnclearInput> other_shape(const std::vector<std::filesystem::path>& files, std::size_t numbers,
+                                        formats::NpyType type);
 
-/// What the files look like whatever was expected, in such a sentence; empty: like no records.
-std::string shape_sentence(const std::vector<std::filesystem::path>& files);
+/// What the files look like whatever was expected, as such an error; nothing where they look like no records.
+std::optional<UnclearInput> likely_shape(const std::vector<std::filesystem::path>& files);
 
 }  // namespace dynamic_icp::datasets

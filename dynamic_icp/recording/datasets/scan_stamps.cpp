@@ -15,7 +15,6 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
-#include "dynamic_icp/recording/datasets/open_options.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -179,8 +178,9 @@ std::string period_sentence(const std::vector<Stamp>& indices, double period_s) 
     step = std::gcd(step, indices[i].ns - indices[i - 1].ns);
   }
   if (indices.size() > 2 && step > 1) {
-    sentence += fmt::format(" for each number; they go up in steps of {}: if no scans are missing, state {}", step,
-                            to_paste("period", fmt::format("{:.6g}", period_s / static_cast<double>(step))));
+    sentence +=
+        fmt::format(" for each number; they go up in steps of {}: if no scans are missing, state a period of {:.6g} s",
+                    step, period_s / static_cast<double>(step));
   }
   return sentence;
 }

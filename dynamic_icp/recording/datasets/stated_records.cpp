@@ -150,8 +150,8 @@ bool states_records(const OpenOptions& options) { return !options.columns.empty(
 void read_as_stated(const OpenOptions& options, RecordRecording& recording) {
   const std::shared_ptr<const StatedLayout> stated = stated_layout(options);
   const std::vector<fs::path>& files = recording.scans.files;
-  if (const std::string other = other_shape(files, stated->names.size(), stated->layout.type); !other.empty()) {
-    throw DataError(other);
+  if (const auto other = other_shape(files, stated->names.size(), stated->layout.type)) {
+    throw *other;
   }
   recording.layout_of = [stated](const fs::path&, Stamp) -> const RecordLayout& { return stated->layout; };
   std::vector<std::string>& said = recording.scans.assumptions;
