@@ -50,15 +50,12 @@ bool is_angle(const std::vector<Eigen::Vector3d>& directions, const std::vector<
          is_angle_of(elevation, kDegree);
 }
 
-/// The share of the spread of the values that no velocity explains, by least squares whose weights fall with the
-/// residuals: moving objects are few.
-double unexplained(const std::vector<Eigen::Vector3d>& directions, const std::vector<double>& values) {
-  const double spread = spread_of(values);
-  const bool are_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
-  if (values.size() < kFewestRows || are_whole || spread < kLeastSpread || is_angle(directions, values)) {
-    return 1.0;
-  }
-  std::vector<double> residuals(values.size(), 0.0);
+/// The velocity that explains most of the values, and how far it is from each: least squares whose weights fall with
+/// the residuals, as moving objects are few.
+Eigen::Vector3d robust_velocity(const std::vector<Eigen::Vector3d>& directions, const std::vector<double>& values,
+                                double spread, std::vector<double>& residuals) {
+  residuals.assign(values.size(), 0.0);
+  Eigen::Vector3d v = Eigen::Vector3d::Zero();
   double scale = 10.0 * spread;
   for (int round = 0; round < kRounds; ++round) {
     Eigen::Matrix3d A = Eigen::Matrix3d::Identity() * 1e-9;
@@ -68,13 +65,43 @@ double unexplained(const std::vector<Eigen::Vector3d>& directions, const std::ve
       A += weight * directions[i] * directions[i].transpose();
       b += weight * values[i] * directions[i];
     }
-    const Eigen::Vector3d v = A.ldlt().solve(b);
+    v = A.ldlt().solve(b);
     for (std::size_t i = 0; i < values.size(); ++i) {
       residuals[i] = std::abs(values[i] - v.dot(directions[i]));
     }
-    scale = std::max(median(residuals), 1e-3 * spread);
+    scale = std::max({median(residuals), 1e-3 * spread, 1e-9});
   }
+  return v;
+}
+
+/// The share of the spread of the values that no velocity explains.
+double unexplained(const std::vector<Eigen::Vector3d>& directions, const std::vector<double>& values) {
+  const double spread = spread_of(values);
+  const bool are_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
+  if (values.size() < kFewestRows || are_whole || spread < kLeastSpread || is_angle(directions, values)) {
+    return 1.0;
+  }
+  std::vector<double> residuals;
+  robust_velocity(directions, values, spread, residuals);
   return median(residuals) / spread;
+}
+
+/// Directions and values of some of the rows, those without a direction left out.
+struct Rows {
+  std::vector<Eigen::Vector3d> directions;
+  std::vector<double> values;
+};
+
+Rows some_rows(std::span<const Eigen::Vector3d> points, const std::vector<double>& column) {
+  Rows rows;
+  for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kRows) {
+    const double range = points[i].norm();
+    if (range > 0.0 && std::isfinite(range) && std::isfinite(column[i])) {
+      rows.directions.emplace_back(points[i] / range);
+      rows.values.push_back(column[i]);
+    }
+  }
+  return rows;
 }
 
 }  // namespace
@@ -84,22 +111,24 @@ std::optional<std::size_t> likely_doppler(std::span<const Eigen::Vector3d> point
   std::optional<std::size_t> best;
   double least = kExplained;
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    std::vector<Eigen::Vector3d> directions;
-    std::vector<double> values;
-    for (std::size_t i = 0; i < points.size(); i += 1 + points.size() / kRows) {
-      const double range = points[i].norm();
-      if (range > 0.0 && std::isfinite(range) && std::isfinite(columns[k][i])) {
-        directions.emplace_back(points[i] / range);
-        values.push_back(columns[k][i]);
-      }
-    }
-    const double left = values.empty() ? 1.0 : unexplained(directions, values);
+    const Rows rows = some_rows(points, columns[k]);
+    const double left = rows.values.empty() ? 1.0 : unexplained(rows.directions, rows.values);
     if (left < least) {
       least = left;
       best = k;
     }
   }
   return best;
+}
+
+std::optional<Eigen::Vector3d> likely_velocity(std::span<const Eigen::Vector3d> points,
+                                               const std::vector<double>& doppler) {
+  const Rows rows = some_rows(points, doppler);
+  if (rows.values.size() < kFewestRows) {
+    return std::nullopt;
+  }
+  std::vector<double> residuals;
+  return robust_velocity(rows.directions, rows.values, std::max(spread_of(rows.values), kLeastSpread), residuals);
 }
 
 std::string proposed_columns(std::span<const std::vector<double>> columns) {

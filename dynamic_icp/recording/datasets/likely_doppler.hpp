@@ -19,6 +19,11 @@ namespace dynamic_icp::datasets {
 std::optional<std::size_t> likely_doppler(std::span<const Eigen::Vector3d> points,
                                           std::span<const std::vector<double>> columns);
 
+/// The velocity v that explains the Doppler of most points best, doppler = v . p / |p|, by the same fit; nothing where
+/// there are hardly any. Points and Doppler are equally many; those that are not finite do not count.
+std::optional<Eigen::Vector3d> likely_velocity(std::span<const Eigen::Vector3d> points,
+                                               const std::vector<double>& doppler);
+
 /// What rows of numbers may be of which the first three are the point, for a proposal: "x,y,z,_,doppler". The last is
 /// taken for the Doppler where no column is likely to be. `columns` are those of a row, three at least.
 std::string proposed_columns(std::span<const std::vector<double>> columns);

@@ -45,8 +45,8 @@ bool is_among(std::string_view text, std::initializer_list<std::string_view> wor
 std::string meaning_of(const std::string& column) {
   std::string name = lower(column);
   std::erase_if(name, [](char c) { return c == '_' || c == '.' || c == ' '; });
-  if (is_among(name, {"t", "timestamp", "time", "stamp", "timestampns", "timens", "timestampus", "timestampms", "times",
-                      "timestamps", "stampns", "headerstamp", "rosbagtimestamp"})) {
+  if (is_among(name, {"t", "timestamp", "time", "stamp", "timestampns", "timens", "timestampus", "timestampms",
+                      "timeus", "timems", "times", "timestamps", "stampns", "headerstamp", "rosbagtimestamp"})) {
     return "t";
   }
   if (name.size() < 1 || std::string_view("xyzw").find(name.back()) == std::string_view::npos) {

@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstdint>
 #include <fstream>
+#include <numeric>
+#include <span>
 #include <system_error>
 
+#include <Eigen/Core>
 #include <fmt/format.h>
 
 #include "dynamic_icp/recording/datasets/likely_doppler.hpp"
@@ -67,6 +70,12 @@ double jump(const std::vector<double>& scaled, std::size_t lag) {
   return pairs == 0 ? INFINITY : sum / static_cast<double>(pairs);
 }
 
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
 double median_of_column(const std::vector<double>& scaled, std::size_t column, std::size_t stride) {
   std::vector<double> values;
   for (std::size_t i = column; i < scaled.size(); i += stride) {
@@ -77,9 +86,7 @@ double median_of_column(const std::vector<double>& scaled, std::size_t column, s
   if (values.empty()) {
     return 0.0;
   }
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  return median(std::move(values));
 }
 
 /// Whether records of `stride` numbers are no records of `shorter` ones that take turns, such as those of several
@@ -143,6 +150,62 @@ std::optional<RecordShape> shape_of_numbers(const std::vector<double>& numbers, 
   return RecordShape{length, type, proposed_columns(columns)};
 }
 
+struct PlainPoints {
+  std::vector<Eigen::Vector3d> points;
+  std::vector<double> doppler;
+};
+
+/// Every `step`-th record of x, y, z and Doppler from `first` on; those that met nothing are left out.
+PlainPoints plain_points(const std::vector<double>& numbers, std::size_t first, std::size_t step) {
+  PlainPoints plain;
+  for (std::size_t i = kPlain * first; i + kPlain <= numbers.size(); i += kPlain * step) {
+    const Eigen::Vector3d point(numbers[i], numbers[i + 1], numbers[i + 2]);
+    if (point.allFinite() && std::isfinite(numbers[i + 3]) && !point.isZero()) {
+      plain.points.push_back(point);
+      plain.doppler.push_back(numbers[i + 3]);
+    }
+  }
+  return plain;
+}
+
+/// Whether these may be points that are seen at the velocity v: their Doppler says so for most, and they lie neither in
+/// a plane through an axis nor, as normals do, at one distance.
+bool may_be_seen_at(const Eigen::Vector3d& v, const PlainPoints& plain) {
+  constexpr double kUnexplained_mps = 0.15;
+  constexpr double kUnexplainedShare = 0.05;  // of the speed, whatever its unit
+  constexpr double kLeastVariation = 0.01;    // of the ranges
+  if (plain.points.empty()) {
+    return true;  // no ray met anything: nothing speaks against it
+  }
+  std::vector<double> residuals;
+  std::vector<double> ranges;
+  for (std::size_t i = 0; i < plain.points.size(); ++i) {
+    ranges.push_back(plain.points[i].norm());
+    residuals.push_back(std::abs(plain.doppler[i] - v.dot(plain.points[i]) / ranges.back()));
+  }
+  const double range = median(ranges);
+  std::transform(ranges.begin(), ranges.end(), ranges.begin(), [&](double r) { return std::abs(r - range); });
+  const Eigen::Vector3d& front = plain.points.front();
+  const bool is_flat = std::all_of(plain.points.begin(), plain.points.end(),
+                                   [&](const Eigen::Vector3d& p) { return p.y() == front.y() || p.z() == front.z(); });
+  return !is_flat && median(std::move(ranges)) > kLeastVariation * range &&
+         median(std::move(residuals)) < std::max(kUnexplained_mps, kUnexplainedShare * v.norm());
+}
+
+/// Whether numbers make sense as x, y, z and Doppler though they repeat at another length, as those of several beams
+/// that take turns do: one velocity explains the Doppler of each part of the points that this length tells apart.
+bool is_plausible(const std::vector<double>& numbers, std::size_t length) {
+  const std::size_t parts = std::lcm(length, kPlain) / kPlain;
+  const PlainPoints all = plain_points(numbers, 0, 1);
+  const std::optional<Eigen::Vector3d> v = likely_velocity(all.points, all.doppler);
+  for (std::size_t part = 0; v && part < parts; ++part) {
+    if (!may_be_seen_at(*v, plain_points(numbers, part, parts))) {
+      return false;
+    }
+  }
+  return v.has_value();
+}
+
 std::uintmax_t size_of_file(const fs::path& file) {
   std::error_code fault;
   const std::uintmax_t size = fs::file_size(file, fault);
@@ -200,8 +263,12 @@ UnclearInput unclear(const std::vector<fs::path>& files, const RecordShape& shap
 }  // namespace
 
 std::optional<RecordShape> shape_of(std::string_view content) {
-  if (std::optional<RecordShape> shape = shape_of_numbers(numbers_of<float>(content), NpyType::kFloat32)) {
+  const std::vector<double> numbers = numbers_of<float>(content);
+  if (std::optional<RecordShape> shape = shape_of_numbers(numbers, NpyType::kFloat32)) {
     return shape;
+  }
+  if (absurd_share(numbers) <= kMostAbsurd) {
+    return std::nullopt;  // float64 are no float32: half of each is noise
   }
   return shape_of_numbers(numbers_of<double>(content), NpyType::kFloat64);
 }
@@ -219,6 +286,10 @@ std::optional<UnclearInput> other_shape(const std::vector<fs::path>& files, std:
   if (as_expected == sizes.size() && shape->type == type && content.size() < kFewestRecords * expected_bytes) {
     return std::nullopt;  // so few numbers may look like anything
   }
+  if (as_expected == sizes.size() && numbers == kPlain && type == NpyType::kFloat32 &&
+      is_plausible(numbers_of<float>(content), shape->bytes() / sizeof(float))) {
+    return std::nullopt;
+  }
   // A scan that was cut short, or a few, are no reason to doubt.
   if (10 * as_seen < 9 * sizes.size() || as_seen < as_expected) {
     return std::nullopt;
@@ -227,6 +298,11 @@ std::optional<UnclearInput> other_shape(const std::vector<fs::path>& files, std:
                                   ? fmt::format(" rather than of {}", numbers)
                                   : fmt::format(", not of {} ({} bytes)", numbers, expected_bytes);
   return unclear(files, *shape, shape->type == type ? instead : "");
+}
+
+bool sizes_fit(const std::vector<fs::path>& files, std::size_t bytes) {
+  const std::vector<std::uintmax_t> sizes = sizes_of(files);
+  return multiples(sizes, bytes) == sizes.size();
 }
 
 std::optional<UnclearInput> likely_shape(const std::vector<fs::path>& files) {

@@ -31,9 +31,14 @@ struct RecordShape {
 std::optional<RecordShape> shape_of(std::string_view content);
 
 /// Why the files, scans of one recording, are no records of `numbers` numbers of this type, where sizes and content
-/// agree that they are of another shape, which it proposes. Nothing where nothing speaks against it.
+/// agree that they are of another shape, which it proposes. Nothing where nothing speaks against it, and where sizes
+/// allow x, y, z and Doppler in float32 and a velocity explains the Doppler of all points, such as those of beams that
+/// take turns.
 std::optional<UnclearInput> other_shape(const std::vector<std::filesystem::path>& files, std::size_t numbers,
                                         formats::NpyType type);
+
+/// Whether the sizes of all files, or of many from all over the recording, are multiples of a record's.
+bool sizes_fit(const std::vector<std::filesystem::path>& files, std::size_t bytes);
 
 /// What the files look like whatever was expected, as such an error; nothing where they look like no records.
 std::optional<UnclearInput> likely_shape(const std::vector<std::filesystem::path>& files);

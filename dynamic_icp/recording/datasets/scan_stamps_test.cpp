@@ -107,7 +107,7 @@ TEST_F(ScanStamps, SeveralNumbersTogetherOrNoneGiveAnOrderAndAPeriod) {
 }
 
 TEST_F(ScanStamps, StepsOfSeveralAreSaidWithThePeriodThatMayBeMeant) {
-  EXPECT_NE(read({"0.bin", "10.bin", "20.bin"}).assumptions.at(0).find("--period 0.01"), std::string::npos);
+  EXPECT_NE(read({"0.bin", "10.bin", "20.bin"}).assumptions.at(0).find("a period of 0.01 s"), std::string::npos);
   EXPECT_EQ(read({"0.bin", "10.bin", "15.bin", "16.bin"}).assumptions.at(0).find("--period"), std::string::npos);
 }
 

@@ -123,6 +123,15 @@ formats::NpyArray times_as_stored(const std::vector<double>& times, NpyType type
   return formats::array_of(formats::is_float(type) ? NpyType::kFloat64 : NpyType::kInt64, {times.size()}, times);
 }
 
+/// Whether the user said all that speaks against it, and the sizes of the files allow it.
+bool is_believed(const OpenOptions& options, const std::vector<fs::path>& files, std::size_t bytes,
+                 const UnclearInput& other) {
+  const UnclearInput::Settings& proposal = other.proposal();
+  const bool is_of_type =
+      std::any_of(proposal.begin(), proposal.end(), [](const auto& setting) { return setting.first == "dtype"; });
+  return !options.columns.empty() && (!options.dtype.empty() || !is_of_type) && sizes_fit(files, bytes);
+}
+
 TimeUnit unit_of_times(const RecordRecording& recording, const StatedLayout& stated, double period_s) {
   TimeUnit unit;
   for (const fs::path& file : recording.scans.files) {
@@ -150,7 +159,8 @@ bool states_records(const OpenOptions& options) { return !options.columns.empty(
 void read_as_stated(const OpenOptions& options, RecordRecording& recording) {
   const std::shared_ptr<const StatedLayout> stated = stated_layout(options);
   const std::vector<fs::path>& files = recording.scans.files;
-  if (const auto other = other_shape(files, stated->names.size(), stated->layout.type)) {
+  if (const auto other = other_shape(files, stated->names.size(), stated->layout.type);
+      other && !is_believed(options, files, stated->layout.bytes, *other)) {
     throw *other;
   }
   recording.layout_of = [stated](const fs::path&, Stamp) -> const RecordLayout& { return stated->layout; };
