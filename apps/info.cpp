@@ -216,13 +216,13 @@ double truth_coverage(const datasets::Dataset& dataset) {
   return dataset.size() == 0 ? 0.0 : 100.0 * static_cast<double>(covered) / static_cast<double>(dataset.size());
 }
 
-void print_diagnosis(const diagnosis::Diagnosis& diagnosis) {
+void print_diagnosis(const diagnosis::Diagnosis& diagnosis, const datasets::InputSettings& settings) {
   print_row("diagnosis    of {} scans\n", diagnosis.scans_looked_at);
   for (const diagnosis::Finding& finding : diagnosis.findings) {
     print_wrapped(fmt::format("  {:<15} {:<11} {}\n", diagnosis::to_string(finding.question),
                               diagnosis::to_string(finding.verdict), finding.sentence),
                   kSentenceColumn);
-    if (const std::string fix = fixing_options(finding); !fix.empty()) {
+    if (const std::string fix = fixing_options(finding, settings); !fix.empty()) {
       print_wrapped(fmt::format("{:<{}}fix with {}\n", "", kSentenceColumn, fix), kSentenceColumn);
     }
     if (finding.question == diagnosis::Question::kPointTimes && finding.verdict == diagnosis::Verdict::kCannotTell) {
@@ -231,14 +231,14 @@ void print_diagnosis(const diagnosis::Diagnosis& diagnosis) {
   }
 }
 
-Json diagnosis_json(const diagnosis::Diagnosis& diagnosis) {
+Json diagnosis_json(const diagnosis::Diagnosis& diagnosis, const datasets::InputSettings& settings) {
   Json list = Json::array();
   for (const diagnosis::Finding& finding : diagnosis.findings) {
     Json evidence = Json::object();
     for (const auto& [name, value] : finding.evidence) {
       evidence[name] = value;  // what is not finite becomes null
     }
-    const std::string fix = fixing_options(finding);
+    const std::string fix = fixing_options(finding, settings);
     list.push_back({{"question", diagnosis::to_string(finding.question)},
                     {"verdict", diagnosis::to_string(finding.verdict)},
                     {"sentence", finding.sentence},
@@ -306,7 +306,7 @@ void print_json(const InfoOptions& options, const datasets::Dataset& dataset, co
                             {"poses", dataset.ground_truth().size()},
                             {"coverage_percent", truth_coverage(dataset)}};
   }
-  json["diagnosis"] = diagnosis_json(diagnosis);
+  json["diagnosis"] = diagnosis_json(diagnosis, options.settings);
   json["assumptions"] = dataset.assumptions();
   json["warnings"] = seen.warnings;
   fmt::print("{}\n", json.dump(2, ' ', false, Json::error_handler_t::replace));
@@ -376,9 +376,12 @@ int info(const InfoOptions& options) {
     print_row("ground truth {} ({} poses, {:.0f} % of the scans)\n", dataset->ground_truth_file().string(),
               dataset->ground_truth().size(), truth_coverage(*dataset));
   }
-  print_diagnosis(diagnosis);
+  print_diagnosis(diagnosis, options.settings);
   for (const std::string& assumption : dataset->assumptions()) {
     print_row("assumed      {}\n", assumption);
+  }
+  if (dataset->size() == 1) {
+    print_row("hint         {}\n", kOneScan);
   }
   return 0;
 }

@@ -123,10 +123,6 @@ std::string as_options(const std::vector<std::pair<std::string, std::string>>& s
   return options;
 }
 
-std::string as_options(const datasets::Correction& correction) {
-  return as_options(datasets::texts({.open = {}, .correction = correction}));
-}
-
 std::string with_options(const datasets::UnclearInput& error) {
   const std::string what = error.what();
   const bool is_list = what.find('\n') != std::string::npos;
@@ -134,8 +130,16 @@ std::string with_options(const datasets::UnclearInput& error) {
                      as_options(error.proposal()));
 }
 
-std::string fixing_options(const diagnosis::Finding& finding) {
-  return finding.needs_doppler_column ? "--field doppler=COLUMN" : as_options(finding.fix);
+std::string fixing_options(const diagnosis::Finding& finding, const datasets::InputSettings& settings) {
+  if (finding.needs_doppler_column) {
+    return "--field doppler=COLUMN";
+  }
+  // Columns that are stated of a record stay those of a record.
+  datasets::InputSettings fixed = {.open = {}, .correction = finding.fix};
+  if (finding.fix.columns) {
+    fixed.open.columns = settings.open.columns;
+  }
+  return as_options(datasets::texts(fixed));
 }
 
 }  // namespace dynamic_icp::apps

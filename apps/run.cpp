@@ -90,6 +90,9 @@ void print_summary(const runs::RunResult& result, const runs::RunSettings& setti
   if (result.has_kitti) {
     print_row("KITTI poses  {}\n", settings.kitti_file->string());
   }
+  if (result.scans_selected == 1) {
+    print_row("hint         {}\n", kOneScan);
+  }
   print_row("written to   {}\n", settings.output.string());
   if (reported) {
     print_row("report       {}\n", (settings.output / "report.html").string());
@@ -136,7 +139,9 @@ int run(const RunOptions& options) {
   bool reported = false;
   const StopOnSignal stopping(kStopNotice);
   runs::RunCallbacks callbacks;
-  callbacks.fix_in_words = fixing_options;
+  callbacks.fix_in_words = [&](const diagnosis::Finding& finding) {
+    return fixing_options(finding, options.recording.settings);
+  };
   callbacks.warning = [&](const std::string& text) { warnings.show(text); };
   callbacks.progress = [&](std::size_t done, std::size_t total) {
     if (done == 0) {

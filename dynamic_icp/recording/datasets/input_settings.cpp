@@ -108,6 +108,21 @@ std::string stored_columns(const std::array<int, 4>& columns) {
   return fmt::format("{}", fmt::join(stored, ","));
 }
 
+/// The names of the numbers of a record when those of x, y, z and Doppler as read change places.
+std::vector<std::string> in_other_places(std::vector<std::string> names, const std::array<int, 4>& columns) {
+  std::vector<std::string> used = names;
+  std::erase(used, "_");
+  const FieldMap map = map_fields(used, {}, "columns");
+  const std::array<std::string, 4> as_read = {map.point[0].array, map.point[1].array, map.point[2].array,
+                                              map.doppler.array};
+  std::vector<std::string> changed = names;
+  for (std::size_t k = 0; k < 4; ++k) {
+    const auto stored = std::find(names.begin(), names.end(), as_read.at(static_cast<std::size_t>(columns.at(k))));
+    changed.at(static_cast<std::size_t>(stored - names.begin())) = kColumnNames.at(k);
+  }
+  return changed;
+}
+
 }  // namespace
 
 void set(InputSettings& settings, const std::string& name, const std::string& text) {
@@ -168,8 +183,13 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
   if (!settings.open.truth_topic.empty()) {
     all.emplace_back("truth-topic", settings.open.truth_topic);
   }
+  const Correction& correction = settings.correction;
   if (!settings.open.columns.empty()) {
-    all.emplace_back("columns", fmt::format("{}", fmt::join(settings.open.columns, ",")));
+    all.emplace_back(
+        "columns",
+        fmt::format("{}", fmt::join(correction.columns ? in_other_places(settings.open.columns, *correction.columns)
+                                                       : settings.open.columns,
+                                    ",")));
   }
   if (!settings.open.dtype.empty()) {
     all.emplace_back("dtype", settings.open.dtype);
@@ -177,7 +197,6 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
   if (settings.open.period_s != OpenOptions{}.period_s) {
     add_number("period", settings.open.period_s);
   }
-  const Correction& correction = settings.correction;
   if (correction.doppler_sign) {
     all.emplace_back("doppler-sign", correction.doppler_sign == DopplerSign::kAway ? "away" : "towards");
   }
@@ -187,7 +206,7 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
   add_number("doppler-scale", correction.doppler_scale);
   add_number("point-scale", correction.point_scale);
   add_number("time-scale", correction.time_scale);
-  if (correction.columns) {
+  if (correction.columns && settings.open.columns.empty()) {
     all.emplace_back("columns", stored_columns(*correction.columns));
   }
   return all;

@@ -93,5 +93,13 @@ TEST(InputSettings, ColumnsAreAnOrderOrARecord) {
   EXPECT_EQ(texts(settings), (Texts{{"field.points", "cloud"}, {"columns", "x,y,z,_,doppler"}, {"dtype", "float64"}}));
 }
 
+// What the diagnosis finds of a record of more numbers is said of all of them.
+TEST(InputSettings, ColumnsThatChangePlacesKeepTheirRecord) {
+  InputSettings settings;
+  set(settings, "columns", "x,y,z,_,vr,intensity");
+  apply({.columns = std::array<int, 4>{3, 0, 2, 1}}, settings);  // x is where the Doppler was read, y where x was, ...
+  EXPECT_EQ(texts(settings), (Texts{{"columns", "y,doppler,z,_,x,intensity"}}));
+}
+
 }  // namespace
 }  // namespace dynamic_icp::datasets

@@ -38,7 +38,8 @@ Correction as_it_is(Question question, const datasets::Dataset& dataset) {
 }
 
 /// Whether the user stated what the question asks.
-bool is_stated(Question question, const Correction& correction) {
+bool is_stated(Question question, const datasets::InputSettings& settings) {
+  const Correction& correction = settings.correction;
   switch (question) {
     case Question::kDopplerSign:
       return correction.doppler_sign.has_value();
@@ -49,14 +50,15 @@ bool is_stated(Question question, const Correction& correction) {
     case Question::kPointUnits:
       return correction.point_scale.has_value();
     case Question::kColumns:
-      return correction.columns.has_value();
+      return correction.columns.has_value() || !settings.open.columns.empty();
     default:
       return true;
   }
 }
 
 /// Whether every result would be wrong, there is a way out, and the user has not stated that it is right.
-bool stops(const diagnosis::Finding& finding, const Correction& stated, bool has_doppler, const Needs& needs) {
+bool stops(const diagnosis::Finding& finding, const datasets::InputSettings& stated, bool has_doppler,
+           const Needs& needs) {
   if (finding.verdict != diagnosis::Verdict::kWrong || finding.fix == Correction{} ||
       is_stated(finding.question, stated)) {
     return false;
@@ -136,7 +138,7 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
   for (const diagnosis::Finding& finding : diagnosis.findings) {
     const bool is_of_rest =
         is_at_rest && (finding.question == Question::kDopplerKind || finding.question == Question::kDopplerUnits);
-    if (stops(finding, settings.correction, diagnosis.has_doppler, needs)) {
+    if (stops(finding, settings, diagnosis.has_doppler, needs)) {
       stopping.push_back(&finding);
     } else if (is_of_rest) {
       continue;
