@@ -90,6 +90,13 @@ class Seeds {
       write("columns", "1" + content);
     }
     write("tum", "# c\n0.0 0 0 0 0 0 0 1\n1724479779384729506, 1, 2, 3, 0, 0, 0.6, 0.8\n1.8e9 1 2 3 0 0 0 -1\n");
+    for (const char* text :
+         {"x,y,z,doppler,ring,t\n1,2,3,-4.5,7,0.01\n1,,nan,4,8,0.02\n", "# x y z v_r\n1  2 3 -4\n\n# c\n5 6 7 8\n",
+          "\"X\";\"Y\";\"Z\";\"Velocity [m/s]\"\n1;2;3;4\n", "1\t2\t3\t4\n", "1 0 0 1 0 1 0 2 0 0 1 3\n",
+          "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n"
+          "1403636580838555648,4,5,6,0.5,0.5,0.5,0.5\n1403636580843555328,4,5,6,1,0,0,0\n"}) {
+      write("csv", text);
+    }
     std::string records;
     for (const float value : {1.0F, 2.0F, 3.0F, -4.0F, 5.0F, 6.0F, 7.0F, 8.0F, 9.0F, 10.0F}) {
       formats::append_value(records, value);
