@@ -20,6 +20,8 @@
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 
+#include "testing/bags_by_hand.hpp"
+#include "testing/ros_bytes.hpp"
 #include "tests/program.hpp"
 
 namespace dynamic_icp::tests {
@@ -193,6 +195,58 @@ std::function<fs::path(const Drive&, const fs::path&)> foreign(const std::string
   };
 }
 
+/// A topic of clouds, and what it has of each point.
+struct CloudTopic {
+  std::string name;
+  std::vector<std::string> fields;
+  RowOf row_of = xyzd;
+};
+
+/// A ROS 1 bag of these topics, with a message of another kind beside each cloud.
+std::string bag_of(const Drive& drive, const std::vector<CloudTopic>& topics) {
+  std::vector<by_hand::Channel> channels = {{0, "/imu", "sensor_msgs/Imu", "of imu"}};
+  std::vector<by_hand::Message> messages;
+  for (const CloudTopic& topic : topics) {
+    channels.push_back({static_cast<std::uint16_t>(channels.size()), topic.name, "sensor_msgs/PointCloud2", "clouds"});
+  }
+  for (std::size_t i = 0; i < drive.scans.size(); ++i) {
+    const std::int64_t stamp_ns = 1'700'000'000'000'000'000 + 100'000'000 * static_cast<std::int64_t>(i);
+    messages.push_back({0, stamp_ns, std::string(100, '\0')});
+    for (std::size_t k = 0; k < topics.size(); ++k) {
+      std::vector<std::vector<float>> points;
+      for (const Row& row : rows_of(drive.scans[i], topics[k].row_of)) {
+        points.emplace_back(row.begin(), row.begin() + static_cast<std::ptrdiff_t>(topics[k].fields.size()));
+      }
+      messages.push_back({static_cast<std::uint16_t>(k + 1), stamp_ns,
+                          ros::float_cloud(stamp_ns, "lidar", topics[k].fields, points).bytes(ros::Wire::kRos1)});
+    }
+  }
+  return by_hand::ros1_bag(channels, messages, {});
+}
+
+std::function<fs::path(const Drive&, const fs::path&)> bag(const std::vector<CloudTopic>& topics) {
+  return [=](const Drive& drive, const fs::path& folder) {
+    write(folder / "drive.bag", bag_of(drive, topics));
+    return folder / "drive.bag";
+  };
+}
+
+/// What the program makes of plain records.
+std::function<fs::path(const Drive&, const fs::path&)> converted(const std::string& format, const std::string& name) {
+  return [=](const Drive& drive, const fs::path& folder) {
+    const fs::path plain = counted("point_clouds/{:05d}.bin", records<float>(xyzd))(drive, folder / "plain");
+    const Outcome outcome =
+        run_program(fmt::format("convert {} --to {} --output {}", plain.string(), format, (folder / name).string()));
+    EXPECT_EQ(outcome.status, kDone) << outcome.text;
+    return folder / name;
+  };
+}
+
+Row mirrored(const RawScan& scan, std::size_t i) {
+  const Eigen::Vector3d& p = scan.points[i];
+  return {p.x(), -p.y(), p.z(), scan.doppler[i]};
+}
+
 const std::vector<Form>& forms() {
   const std::string plain = "x y z doppler";
   const auto nanoseconds = [](std::size_t i) {
@@ -251,6 +305,21 @@ const std::vector<Form>& forms() {
       {"a scan as NPY", Door::kOpen, single("scan.npy", npy(xyzd))},
       {"a scan as CSV", Door::kOpen, single("scan.csv", text(xyzd, ",", "x,y,z,doppler\n"))},
 
+      {"a ROS 1 bag", Door::kOpen, bag({{"/lidar/points", {"x", "y", "z", "velocity"}}})},
+      {"a bag whose other clouds have no Doppler", Door::kOpen,
+       bag({{"/camera/points", {"x", "y", "z"}}, {"/lidar/points", {"x", "y", "z", "doppler"}}})},
+      {"MCAP as it is written", Door::kOpen, converted("mcap", "drive.mcap")},
+      {"NPZ as it is written", Door::kOpen, converted("npz", "npz")},
+      {"a bag of two clouds", Door::kWithAdvice,
+       bag({{"/left", {"x", "y", "z", "doppler"}}, {"/right", {"x", "y", "z", "doppler"}, mirrored}}),
+       "holds several clouds of points with Doppler"},
+      {"a bag whose Doppler has an unknown name", Door::kWithAdvice, bag({{"/points", {"x", "y", "z", "foo"}}}),
+       "--field doppler=foo"},
+      {"two clouds in a bag, and unknown names", Door::kWithAdvice,
+       bag({{"/lidar", {"x", "y", "z", "noise", "foo"}, xyzid}, {"/other", {"x", "y", "z"}}}),
+       "--topic /lidar --field doppler=foo"},
+      {"a bag without Doppler", Door::kRefused, bag({{"/points", {"x", "y", "z"}}}), "no column of Doppler"},
+
       {"records of five numbers", Door::kWithAdvice, counted("point_clouds/{:05d}.bin", records<float>(xyzid)),
        "records of 5 float32 a point"},
       {"records of eight numbers", Door::kWithAdvice, counted("point_clouds/{:05d}.bin", records<float>(eight)),
@@ -300,20 +369,34 @@ const std::vector<Form>& forms() {
   return all;
 }
 
-/// The options that a message says, put in force.
-InputSettings pasted(const std::string& message) {
-  static const std::regex kOption("--(columns|dtype|field|format|period) ([^ ,;]+(,[^ ,;]+)*)");
-  InputSettings settings;
-  for (std::sregex_iterator option(message.begin(), message.end(), kOption); option != std::sregex_iterator();
+/// The options that a message proposes, as it spells them.
+std::vector<std::string> options_in(const std::string& message) {
+  static const std::regex kOption(
+      "--(columns|dtype|field|format|period|topic|doppler-scale|doppler-sign|point-scale) ('[^']*'|[^ ,;\n]+(,[^ "
+      ",;\n]+)*)");
+  const std::string proposal = message.substr(0, message.find("; or state"));
+  std::vector<std::string> options;
+  for (std::sregex_iterator option(proposal.begin(), proposal.end(), kOption); option != std::sregex_iterator();
        ++option) {
-    const std::string name = (*option)[1];
-    const std::string value = (*option)[2];
-    const std::size_t equals = value.find('=');
+    options.push_back(option->str());
+  }
+  return options;
+}
+
+/// The same put in force.
+InputSettings pasted(const std::string& message) {
+  InputSettings settings;
+  for (const std::string& option : options_in(message)) {
+    const std::size_t blank = option.find(' ');
+    std::string name = option.substr(2, blank - 2);
+    std::string value = option.substr(blank + 1);
     if (name == "field") {
-      datasets::set(settings, "field." + value.substr(0, equals), value.substr(equals + 1));
-    } else {
-      datasets::set(settings, name, value);
+      name += "." + value.substr(0, value.find('='));
+      value = value.substr(value.find('=') + 1);
+    } else if (name == "topic") {
+      name += ".1";
     }
+    datasets::set(settings, name, value);
   }
   return settings;
 }
@@ -355,18 +438,21 @@ TEST_F(OpenDoor, EveryFormIsReadOrSaysHow) {
   for (const Form& form : forms()) {
     SCOPED_TRACE(form.name);
     const fs::path input = form.write(drive(), folder_ / fmt::format("form_{}", ++number) / "data");
-    const std::size_t scans = fs::is_directory(input) ? drive().scans.size() : 1;
-    std::string message;
+    const bool is_bag = input.extension() == ".bag" || input.extension() == ".mcap";
+    const std::size_t scans = fs::is_directory(input) || is_bag ? drive().scans.size() : 1;
     try {
       const auto dataset = datasets::open_input(input, {});
       EXPECT_EQ(form.door, Door::kOpen);
       expect_same(*dataset, scans);
       continue;
     } catch (const DataError& error) {
-      message = error.what();
+      EXPECT_NE(form.door, Door::kOpen) << error.what();
     }
-    EXPECT_NE(form.door, Door::kOpen) << message;
+    const Outcome refused = run_program("info " + input.string());  // which spells the options
+    const std::string& message = refused.text;
+    EXPECT_EQ(refused.status, kFailed) << message;
     EXPECT_NE(message.find(form.said), std::string::npos) << message;
+    EXPECT_EQ(options_in(message).empty(), form.door != Door::kWithAdvice) << message;
     if (form.door == Door::kWithAdvice) {
       try {
         expect_same(*datasets::open_input(input, pasted(message)), scans);
@@ -375,7 +461,7 @@ TEST_F(OpenDoor, EveryFormIsReadOrSaysHow) {
       }
     }
   }
-  EXPECT_GE(number, 41U);
+  EXPECT_GE(number, 49U);
 }
 
 // By the program, with its own words on both streams.
@@ -401,6 +487,88 @@ TEST_F(OpenDoor, TheProgramTakesItsOwnAdvice) {
     ASSERT_EQ(reference.status, kDone) << reference.text;
     EXPECT_EQ(read_file(fs::path(out) / "trajectory.tum"), read_file(folder_ / "reference" / "trajectory.tum"));
   }
+}
+
+// Numbers that are read but cannot be what they are taken for stop a run, and what it says then mends them.
+TEST_F(OpenDoor, WrongNumbersAreMendedByTheAdvice) {
+  const auto changed = [](double point, double doppler) {
+    return [=](const RawScan& scan, std::size_t i) -> Row {
+      const Eigen::Vector3d p = point * scan.points[i];
+      return {p.x(), p.y(), p.z(), doppler * scan.doppler[i]};
+    };
+  };
+  struct Wrong {
+    const char* name;
+    RowOf row_of;
+    const char* advice;
+  };
+  const Wrong all[] = {{"plain", xyzd, nullptr},
+                       {"kmh", changed(1.0, 3.6), "--doppler-scale 0.27"},
+                       {"mm", changed(1000.0, 1.0), "--point-scale 0.001"},
+                       {"towards", changed(1.0, -1.0), "--doppler-sign towards"}};
+  for (const Wrong& wrong : all) {
+    SCOPED_TRACE(wrong.name);
+    const fs::path input = folder_ / wrong.name;
+    counted("point_clouds/{:05d}.bin", records<float>(wrong.row_of))(drive(), input);
+    write(input / "ref_poses.txt", drive().poses);
+    std::string command = fmt::format("run --quiet {} --output {}", input.string(), (input / "out").string());
+    if (wrong.advice != nullptr) {
+      const Outcome refused = run_program(command);
+      EXPECT_EQ(refused.status, kFailed) << refused.text;
+      EXPECT_NE(refused.text.find(wrong.advice), std::string::npos) << refused.text;
+      EXPECT_FALSE(fs::exists(input / "out"));
+      command += fmt::format(" {}", fmt::join(options_in(refused.text), " "));
+    }
+    const Outcome mended = run_program(command);
+    ASSERT_EQ(mended.status, kDone) << mended.text;
+    EXPECT_LT(nlohmann::json::parse(read_file(input / "out" / "summary.json")).at("rte_rmse_m").get<double>(), 0.05);
+  }
+}
+
+TEST_F(OpenDoor, PointsWithoutTimesAreSpokenOf) {
+  const fs::path input = counted("point_clouds/{:05d}.bin", records<float>(xyzd))(drive(), folder_ / "plain");
+  write(input / "ref_poses.txt", drive().poses);
+  const Outcome outcome = run_program(fmt::format("run {} --output {}", input.string(), (folder_ / "out").string()));
+  ASSERT_EQ(outcome.status, kDone) << outcome.text;
+  EXPECT_NE(outcome.text.find("the points have no times"), std::string::npos) << outcome.text;
+}
+
+TEST_F(OpenDoor, ABagThatWasCutIsReadUpToThere) {
+  const std::string whole = bag_of(drive(), {{"/points", {"x", "y", "z", "doppler"}}});
+  const fs::path file = folder_ / "cut.bag";
+  write_file(file, whole.substr(0, whole.size() * 6 / 10));
+  const auto dataset = datasets::open_input(file, {});
+  ASSERT_GE(dataset->size(), 2U);
+  ASSERT_LT(dataset->size(), drive().scans.size());
+  expect_same(*dataset, dataset->size());
+  const Outcome info = run_program("info " + file.string());
+  EXPECT_EQ(info.status, kDone) << info.text;
+  EXPECT_TRUE(std::regex_search(info.text, std::regex("cut.bag: [^\n]*(byte|offset) [0-9]+"))) << info.text;
+}
+
+TEST_F(OpenDoor, OneScanIsToldWhatToDoWithTwo) {
+  const fs::path scan = single("scan.pcd", pcd("x y z doppler"))(drive(), folder_);
+  const Outcome info = run_program("info " + scan.string());
+  EXPECT_NE(info.text.find("one scan: there is no motion to find; `register` aligns two"), std::string::npos)
+      << info.text;
+  const Outcome run = run_program(fmt::format("run {} --output {}", scan.string(), (folder_ / "out").string()));
+  EXPECT_EQ(run.status, kDone) << run.text;
+  EXPECT_NE(run.text.find("one scan: there is no motion to find"), std::string::npos) << run.text;
+}
+
+// x and Doppler of a record of five numbers in each other's place, stated in the wrong order.
+TEST_F(OpenDoor, ColumnsThatChangedPlacesAreSaidOfTheWholeRecord) {
+  const auto doppler_first = [](const RawScan& scan, std::size_t i) -> Row {
+    const Eigen::Vector3d& p = scan.points[i];
+    return {scan.doppler[i], p.y(), p.z(), intensity(i), p.x()};
+  };
+  const fs::path input = counted("{}.bin", records<float>(doppler_first))(drive(), folder_ / "scans");
+  const Outcome info = run_program("info " + input.string() + " --columns x,y,z,_,doppler");
+  ASSERT_EQ(info.status, kDone) << info.text;
+  ASSERT_NE(info.text.find("fix with --columns doppler,y,z,_,x"), std::string::npos) << info.text;
+  InputSettings settings;
+  datasets::set(settings, "columns", "doppler,y,z,_,x");
+  expect_same(*datasets::open_input(input, settings), drive().scans.size());
 }
 
 TEST_F(OpenDoor, RegisterReadsEveryForm) {

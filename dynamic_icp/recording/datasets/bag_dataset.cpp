@@ -18,6 +18,7 @@
 #include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/column_scan.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
+#include "dynamic_icp/recording/datasets/named_rows.hpp"
 #include "dynamic_icp/recording/messages/cloud_columns.hpp"
 
 namespace dynamic_icp::datasets {
@@ -115,6 +116,36 @@ class TopicChoice {
     return chosen;
   }
 
+  /// Throws what may be meant by the first cloud that has a candidate.
+  [[noreturn]] void refuse_all(const std::vector<TopicSummary>& clouds) const {
+    const std::string what = fmt::format(
+        "{}: no cloud of points has coordinates and a Doppler by the names of its fields; name topic and field of "
+        "one:{}",
+        path_.string(), listed(clouds));
+    for (const TopicSummary& cloud : clouds) {
+      if (UnclearInput::Settings proposal = proposal_for(cloud.name); !proposal.empty()) {
+        proposal.insert(proposal.begin(), {"topic.", cloud.name});
+        throw UnclearInput(what, std::move(proposal));
+      }
+    }
+    throw DataError(what);
+  }
+
+  /// Fields of the first message of a topic that may be meant; empty: none.
+  [[nodiscard]] UnclearInput::Settings proposal_for(const std::string& name) const {
+    try {
+      const std::vector<std::size_t> topics = topics_named(bag_, name);
+      const bags::MessageEntry entry = bag_.messages(topics).at(0);
+      const MessageColumns columns(
+          messages::CloudColumns(messages::decode_cloud(bag_.topics()[entry.topic], bag_.read(entry), name), name));
+      map_columns(columns, options_.fields, name, {});
+    } catch (const UnclearInput& error) {
+      return error.proposal();
+    } catch (const DataError&) {  // what cannot be read is no proposal
+    }
+    return {};
+  }
+
   [[nodiscard]] std::string only_one(std::vector<std::string>& assumptions) const {
     std::vector<TopicSummary> clouds = summarize_bag(bag_, path_).topics;
     const std::vector<TopicSummary> all = clouds;
@@ -128,14 +159,10 @@ class TopicChoice {
     std::vector<TopicSummary> usable = clouds;
     std::erase_if(usable, [&](const TopicSummary& topic) { return !has_doppler(topic, options_); });
     if (usable.empty() && clouds.size() == 1 && clouds.front().fault.empty()) {
-      map_fields(names_of(clouds.front().fields), options_.fields,
-                 fmt::format("{}: {}", path_.string(), clouds.front().name));  // throws, naming the fields
+      return clouds.front().name;  // whose columns say what they lack
     }
     if (usable.empty()) {
-      throw UnclearInput(fmt::format("{}: no cloud of points has coordinates and a Doppler by the names of its fields; "
-                                     "name topic and field of one:{}",
-                                     path_.string(), listed(clouds)),
-                         {{"topic.", clouds.front().name}, {"field.doppler", "NAME"}});
+      refuse_all(clouds);
     }
     if (usable.size() > 1 &&
         std::any_of(usable.begin(), usable.end(), [&](const auto& t) { return t.name != usable.front().name; })) {
@@ -316,7 +343,7 @@ class BagDataset final : public Dataset {
     topic.frame_id = first.header.frame_id;
     topic.T_frame_cloud = first.T_frame_cloud.value_or(Eigen::Isometry3d::Identity());
     topic.meaning = find_meaning(
-        map_fields(names_of(first.fields), options.fields, fmt::format("{}: {}", path_.string(), topic.name)),
+        map_columns(*open(topic, 0).columns, options.fields, fmt::format("{}: {}", path_.string(), topic.name), {}),
         topic.entries.size(), [&](std::size_t message) { return open(topic, message); },
         period_of(topic, options.period_s), assumptions_);
   }
