@@ -546,6 +546,25 @@ TEST_F(OpenDoor, ABagThatWasCutIsReadUpToThere) {
   EXPECT_TRUE(std::regex_search(info.text, std::regex("cut.bag: [^\n]*(byte|offset) [0-9]+"))) << info.text;
 }
 
+TEST_F(OpenDoor, ATableOfSeveralScansIsTakenApartByItsRecipe) {
+  std::string table = "frame,x,y,z,doppler\n";
+  for (std::size_t i = 0; i < drive().scans.size(); ++i) {
+    for (const Row& row : rows_of(drive().scans[i], xyzd)) {
+      table += fmt::format("{},{}\n", i, fmt::join(row, ","));
+    }
+  }
+  write_file(folder_ / "all.csv", table);
+  const Outcome refused = run_program("info " + (folder_ / "all.csv").string());
+  EXPECT_EQ(refused.status, kFailed) << refused.text;
+  EXPECT_NE(refused.text.find("holds several scans, told apart by its column 'frame' (0, 1, ...)"), std::string::npos)
+      << refused.text;
+  const std::size_t recipe = refused.text.find("mkdir scans; awk");
+  ASSERT_NE(recipe, std::string::npos) << refused.text;
+  const Outcome done = run_shell("cd '" + folder_.string() + "' && { " + refused.text.substr(recipe) + "\n} 2>&1");
+  ASSERT_EQ(done.status, 0) << done.text;
+  expect_same(*datasets::open_input(folder_ / "scans", {}), drive().scans.size());
+}
+
 TEST_F(OpenDoor, OneScanIsToldWhatToDoWithTwo) {
   const fs::path scan = single("scan.pcd", pcd("x y z doppler"))(drive(), folder_);
   const Outcome info = run_program("info " + scan.string());

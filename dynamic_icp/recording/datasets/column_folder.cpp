@@ -94,6 +94,28 @@ bool is_npy_pair(const fs::path& points) {
          fs::is_regular_file(ColumnFile::doppler_file(points));
 }
 
+/// Refuses a table whose rows are those of several scans, by a column of their numbers: as one scan they would be
+/// nonsense.
+void refuse_several_scans(const NamedColumns& table, const fs::path& path) {
+  const std::vector<std::string>& names = table.names();
+  for (std::size_t k = 0; k < names.size(); ++k) {
+    if (names[k] != "scan" && names[k] != "scan_id" && names[k] != "scan_index" && names[k] != "frame" &&
+        names[k] != "frame_id" && names[k] != "frame_index") {
+      continue;
+    }
+    const std::vector<double> numbers = formats::column_as_doubles(table.read(names[k]));
+    const auto other =
+        std::find_if(numbers.begin(), numbers.end(), [&](double number) { return number != numbers.front(); });
+    if (other != numbers.end()) {
+      throw DataError(fmt::format(
+          "{}: holds several scans, told apart by its column '{}' ({}, {}, ...); write a file for each, e.g. where "
+          "commas stand between the columns: mkdir scans; awk -F, 'NR == 1 {{ head = $0; next }} {{ file = \"scans/\" "
+          "${} \".csv\"; if (!seen[file]++) print head > file; print > file }}' '{}'",
+          path.string(), names[k], numbers.front(), *other, k + 1, path.string()));
+    }
+  }
+}
+
 class ColumnDataset final : public Dataset {
  public:
   ColumnDataset(ColumnFileKind kind, const fs::path& found, const OpenOptions& options) : kind_(kind) {
@@ -110,6 +132,9 @@ class ColumnDataset final : public Dataset {
     find_stamps(folder, options.period_s);
     auto first = std::make_unique<ColumnFile>(kind_, files_.front());
     const std::vector<std::string> unusable = first->unusable();
+    if (kind_ == ColumnFileKind::kCsv) {
+      refuse_several_scans(*first, files_.front());
+    }
     const ArrayReading reading = read_arrays_as(*first, options, files_.front());
     assumptions_.insert(assumptions_.end(), reading.assumptions.begin(), reading.assumptions.end());
     rows_ = reading.rows;

@@ -70,7 +70,7 @@ double jump(const std::vector<double>& scaled, std::size_t lag) {
   return pairs == 0 ? INFINITY : sum / static_cast<double>(pairs);
 }
 
-double median(std::vector<double> values) {
+double middle_of(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
@@ -86,7 +86,7 @@ double median_of_column(const std::vector<double>& scaled, std::size_t column, s
   if (values.empty()) {
     return 0.0;
   }
-  return median(std::move(values));
+  return middle_of(std::move(values));
 }
 
 /// Whether records of `stride` numbers are no records of `shorter` ones that take turns, such as those of several
@@ -183,13 +183,13 @@ bool may_be_seen_at(const Eigen::Vector3d& v, const PlainPoints& plain) {
     ranges.push_back(plain.points[i].norm());
     residuals.push_back(std::abs(plain.doppler[i] - v.dot(plain.points[i]) / ranges.back()));
   }
-  const double range = median(ranges);
+  const double range = middle_of(ranges);
   std::transform(ranges.begin(), ranges.end(), ranges.begin(), [&](double r) { return std::abs(r - range); });
   const Eigen::Vector3d& front = plain.points.front();
   const bool is_flat = std::all_of(plain.points.begin(), plain.points.end(),
                                    [&](const Eigen::Vector3d& p) { return p.y() == front.y() || p.z() == front.z(); });
-  return !is_flat && median(std::move(ranges)) > kLeastVariation * range &&
-         median(std::move(residuals)) < std::max(kUnexplained_mps, kUnexplainedShare * v.norm());
+  return !is_flat && middle_of(std::move(ranges)) > kLeastVariation * range &&
+         middle_of(std::move(residuals)) < std::max(kUnexplained_mps, kUnexplainedShare * v.norm());
 }
 
 /// Whether numbers make sense as x, y, z and Doppler though they repeat at another length, as those of several beams
