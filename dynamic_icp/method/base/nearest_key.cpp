@@ -46,9 +46,7 @@ std::string_view nearest_key(std::string_view typed, std::span<const std::string
 
 std::string_view close_key(std::string_view typed, std::span<const std::string> keys) {
   const std::string_view nearest = nearest_key(typed, keys);
-  return !nearest.empty() && key_distance(typed, nearest) <= (nearest.size() + 2) / 3
-             ? nearest
-             : std::string_view();
+  return !nearest.empty() && key_distance(typed, nearest) <= (nearest.size() + 2) / 3 ? nearest : std::string_view();
 }
 
 std::string did_you_mean(std::string_view typed, std::span<const std::string> keys) {

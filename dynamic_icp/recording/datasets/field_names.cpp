@@ -11,6 +11,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/parse_number.hpp"
+#include "dynamic_icp/recording/formats/text_lines.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -56,13 +57,6 @@ bool is_obvious(std::string_view name) {
   return name == "doppler" || name == "time_offset_ns" || name == "time_offset_s";
 }
 
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return result;
-}
-
 class FieldFinder {
  public:
   FieldFinder(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
@@ -88,7 +82,7 @@ class FieldFinder {
   [[nodiscard]] const std::string* same_as(std::string_view name) const {
     const auto exact = std::find(names_.begin(), names_.end(), name);
     const auto found = exact != names_.end() ? exact : std::find_if(names_.begin(), names_.end(), [&](const auto& own) {
-      return lower_case(own) == lower_case(name);
+      return formats::lower_case(own) == formats::lower_case(name);
     });
     return found == names_.end() ? nullptr : &*found;
   }
@@ -137,7 +131,7 @@ class FieldFinder {
     if (found.empty()) {
       return std::nullopt;
     }
-    if (!is_obvious(lower_case(found.front())) || found.size() > 1) {
+    if (!is_obvious(formats::lower_case(found.front())) || found.size() > 1) {
       std::string sentence = fmt::format("using column '{}' as {}", found.front(), key);
       if (found.size() > 1) {
         sentence += fmt::format("; there is also: {}", fmt::join(std::span(found).subspan(1), ", "));
@@ -232,7 +226,7 @@ bool FieldMap::uses(const std::string& array) const {
 
 bool has_doppler_name(const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(), [](const std::string& name) {
-    return std::find(kDoppler.begin(), kDoppler.end(), lower_case(name)) != kDoppler.end();
+    return std::find(kDoppler.begin(), kDoppler.end(), formats::lower_case(name)) != kDoppler.end();
   });
 }
 

@@ -11,6 +11,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/parse_number.hpp"
 #include "dynamic_icp/recording/datasets/field_names.hpp"
+#include "dynamic_icp/recording/formats/text_lines.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -23,13 +24,6 @@ constexpr double kMaxScale = 1e9;
 
 [[noreturn]] void refuse(const std::string& name, const std::string& text, std::string_view expected) {
   throw UsageError(fmt::format("{} is '{}', expected {}", name, text, expected));
-}
-
-std::string lower_case(std::string_view text) {
-  std::string result(text);
-  std::transform(result.begin(), result.end(), result.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return result;
 }
 
 double number(const std::string& name, const std::string& text, double least, double most, std::string_view unit) {
@@ -52,7 +46,7 @@ std::vector<std::string> names_in(const std::string& name, const std::string& te
   std::vector<std::string> names;
   for (std::string_view rest = text;;) {
     const std::size_t end = std::min(rest.find(','), rest.size());
-    names.push_back(lower_case(rest.substr(0, end)));
+    names.push_back(formats::lower_case(rest.substr(0, end)));
     if (names.back().empty() || names.size() > kMostColumns) {
       refuse(name, text,
              fmt::format("up to {} names with commas: x, y, z, doppler, _ for what is not used, ...", kMostColumns));
@@ -131,7 +125,7 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
   if (name == "format") {
     settings.open.format = text;
   } else if (name.starts_with("field.")) {
-    settings.open.fields[lower_case(name.substr(6))] = text;
+    settings.open.fields[formats::lower_case(name.substr(6))] = text;
   } else if (name.starts_with("lidar.")) {
     settings.open.sensors.push_back(text);
   } else if (name.starts_with("topic.")) {

@@ -28,9 +28,9 @@ void load_config_file(const std::filesystem::path& path, const ConfigFields& fie
     if (!is_json_text(path)) {
       throw;
     }
-    throw UsageError(fmt::format(
-        "{}: is a JSON file and no configuration; expected YAML with lines 'key: value'. In detail: {}", path.string(),
-        error.what()));
+    throw UsageError(
+        fmt::format("{}: is a JSON file and no configuration; expected YAML with lines 'key: value'. In detail: {}",
+                    path.string(), error.what()));
   }
 }
 

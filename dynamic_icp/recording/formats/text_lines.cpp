@@ -44,6 +44,13 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
+std::string lower_case(std::string_view text) {
+  std::string result(text);
+  std::transform(result.begin(), result.end(), result.begin(),
+                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
+  return result;
+}
+
 std::string quoted_text(std::string_view text) {
   constexpr std::size_t kMaxLength = 40;
   std::string result(text.substr(0, kMaxLength));

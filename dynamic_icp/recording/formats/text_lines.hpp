@@ -25,6 +25,9 @@ std::vector<PlacedLine> read_lines(const std::filesystem::path& path);
 /// The words of a line: what stands between blanks, tabs, carriage returns and the like.
 std::vector<std::string_view> words_of(std::string_view line);
 
+/// With the letters A to Z as a to z, whatever the locale.
+std::string lower_case(std::string_view text);
+
 /// Text of a file as it may appear in a message: in quotation marks, short and printable.
 std::string quoted_text(std::string_view text);
 
