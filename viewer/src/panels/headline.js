@@ -9,10 +9,13 @@ const HEADLINE = [
 ];
 const STATUSES = ['ok', 'degenerate', 'lost'];
 
-/** How many frames have which status; the first one, which is compared with nothing, is none of them. */
+/** How many frames have which status; the first one, which is compared with nothing, is ok as in summary.json. */
 export function statusCounts(statuses) {
   const counts = new Map(STATUSES.map((status) => [status, 0]));
-  for (const status of statuses) if (status !== 'first') counts.set(status, (counts.get(status) ?? 0) + 1);
+  for (const status of statuses) {
+    const counted = status === 'first' ? 'ok' : status;
+    counts.set(counted, (counts.get(counted) ?? 0) + 1);
+  }
   return counts;
 }
 
@@ -28,7 +31,7 @@ export function createHeadline(report, store) {
     });
     const counts = [...statusCounts(run.frames.status)].filter(([status, count]) => count > 0 || STATUSES.includes(status));
     const total = run.frames.status.length;
-    line.replaceChildren(...facts, ...numbers, element('div', { title: `Status of ${total} scans; the first is registered to nothing` },
+    line.replaceChildren(...facts, ...numbers, element('div', { title: `Status of ${total} scans` },
       element('dt', { text: 'status' }), element('dd', {}, ...counts.map(([status, count]) =>
         element('span', { class: `count ${count > 0 && STATUSES.includes(status) ? status : ''}`, text: `${count} ${status}` })))));
   });
