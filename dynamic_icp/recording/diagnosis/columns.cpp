@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <array>
+#include <iterator>
+#include <string_view>
 
 #include <fmt/format.h>
 
@@ -17,7 +19,10 @@ constexpr double kLooksAhead = 0.4;  // length of the mean line of sight
 constexpr double kAlongAxis = 0.9;   // cosine
 constexpr double kUnexplained_mps = 0.25;
 
+constexpr double kPointsForExtent = 20.0;  // a scan; the extent of fewer says nothing
+
 struct View {
+  double points = 0.0;
   Eigen::Vector3d spread = Eigen::Vector3d::Zero();
   Eigen::Vector3d looks = Eigen::Vector3d::Zero();
   Eigen::Vector3d moves = Eigen::Vector3d::Zero();
@@ -28,6 +33,7 @@ View mean_view(const Evidence& evidence) {
   View view;
   const double count = std::max(1.0, static_cast<double>(evidence.looks.size()));
   for (const ScanLook& look : evidence.looks) {
+    view.points += static_cast<double>(look.points) / count;
     view.spread += look.look_spread / count;
     view.looks += look.look_direction / count;
     if (look.has_velocity()) {
@@ -41,7 +47,8 @@ View mean_view(const Evidence& evidence) {
 int up_axis(const View& view) {
   int flattest = 2;
   view.spread.minCoeff(&flattest);
-  const bool is_unambiguous = view.spread[flattest] < kFlat && view.spread[flattest] < kClearlyFlat * view.spread[2];
+  const bool is_unambiguous = view.points >= kPointsForExtent && view.spread[flattest] < kFlat &&
+                              view.spread[flattest] < kClearlyFlat * view.spread[2];
   return is_unambiguous ? flattest : 2;
 }
 
@@ -61,8 +68,8 @@ std::optional<int> forward_axis(const View& view, int up) {
 
 /// Whether another one may be named to be the Doppler.
 bool has_named_columns(const datasets::Dataset& dataset) {
-  return dataset.format() == "npz" || dataset.format() == "pcd" || dataset.format() == "ply" ||
-         dataset.format() == "csv";
+  constexpr std::string_view kFormats[] = {"npz", "pcd", "ply", "csv", "rosbag", "rosbag2", "mcap"};
+  return std::ranges::find(kFormats, dataset.format()) != std::end(kFormats);
 }
 
 /// Which of the columns as read are x, y, z and Doppler. Without an axis ahead x and y keep their order.

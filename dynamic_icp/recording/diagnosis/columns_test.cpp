@@ -28,10 +28,14 @@ TEST(Columns, ColumnsInAnotherOrderAreFound) {
 TEST(Columns, OfAFlatSensorOnItsSideTheOtherAxisIsUp) {
   Evidence evidence;
   evidence.looks.resize(1);
+  evidence.looks[0].points = 1000;
   evidence.looks[0].look_spread = {0.7, 0.1, 0.6};
   evidence.columns.doppler = 3;
   EXPECT_EQ(columns(evidence).verdict, Verdict::kWrong);
   EXPECT_EQ(columns(evidence).fix.columns, (std::array{0, 2, 1, 3}));
+  evidence.looks[0].points = 1;
+  EXPECT_EQ(columns(evidence).verdict, Verdict::kOk) << "one point is flat whatever it is";
+  evidence.looks[0].points = 1000;
   evidence.looks[0].look_spread = {0.6, 0.7, 0.1};
   EXPECT_EQ(columns(evidence).verdict, Verdict::kOk);
 }
@@ -39,6 +43,7 @@ TEST(Columns, OfAFlatSensorOnItsSideTheOtherAxisIsUp) {
 TEST(Columns, AFixIsOfTheColumnsAsStoredWhateverWasAppliedToThem) {
   Evidence evidence;
   evidence.looks.resize(1);
+  evidence.looks[0].points = 1000;
   evidence.looks[0].look_spread = {0.7, 0.1, 0.6};    // the second one is up
   evidence.applied.columns = std::array{3, 2, 1, 0};  // stored Doppler, z, y, x were taken for x, y, z, Doppler
   EXPECT_EQ(columns(evidence).fix.columns, (std::array{3, 1, 2, 0}));
