@@ -9,25 +9,10 @@ import { MessageWriter } from "@foxglove/rosmsg2-serialization";
 import zstd from "@foxglove/wasm-zstd";
 import { McapWriter } from "@mcap/core";
 import protobuf from "protobufjs";
+import { Buffered } from "./buffered.mjs";
 
 await zstd.isLoaded;
 const [drive, out] = process.argv.slice(2);
-
-/** Keeps what is written in memory. */
-class Buffered {
-  pieces = [];
-  size = 0n;
-  async write(bytes) {
-    this.pieces.push(Buffer.from(bytes));
-    this.size += BigInt(bytes.byteLength);
-  }
-  position() {
-    return this.size;
-  }
-  bytes() {
-    return Buffer.concat(this.pieces);
-  }
-}
 
 const names = ["x", "y", "z", "doppler", "time_offset_s"];
 const stride = 4 * names.length;

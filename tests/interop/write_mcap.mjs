@@ -4,25 +4,10 @@ import { writeFile } from "node:fs/promises";
 import { join } from "node:path";
 import { McapWriter } from "@mcap/core";
 import zstd from "@foxglove/wasm-zstd";
+import { Buffered } from "./buffered.mjs";
 
 await zstd.isLoaded;
 const folder = process.argv[2];
-
-/** Keeps what is written in memory. */
-class Buffered {
-  pieces = [];
-  size = 0n;
-  async write(bytes) {
-    this.pieces.push(Buffer.from(bytes));
-    this.size += BigInt(bytes.byteLength);
-  }
-  position() {
-    return this.size;
-  }
-  bytes() {
-    return Buffer.concat(this.pieces);
-  }
-}
 
 const text = (words) => new TextEncoder().encode(words);
 const channels = [

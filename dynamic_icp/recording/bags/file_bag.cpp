@@ -3,7 +3,7 @@
 #include "dynamic_icp/recording/bags/file_bag.hpp"
 
 #include <algorithm>
-#include <array>
+#include <iterator>
 #include <tuple>
 
 namespace dynamic_icp::bags {
@@ -63,6 +63,13 @@ std::vector<bool> chosen(std::span<const std::size_t> wanted, std::size_t topics
     is_wanted.at(topic) = true;
   }
   return is_wanted;
+}
+
+std::vector<MessageEntry> of_topics(std::span<const MessageEntry> entries, const std::vector<bool>& is_wanted) {
+  std::vector<MessageEntry> wanted;
+  std::copy_if(entries.begin(), entries.end(), std::back_inserter(wanted),
+               [&](const MessageEntry& entry) { return is_wanted[entry.topic]; });
+  return wanted;
 }
 
 void sort_by_time(std::vector<MessageEntry>& entries) {

@@ -76,6 +76,9 @@ std::string plain_type(std::string_view type);
 /// Whether a topic is among those that are asked for, by its index.
 std::vector<bool> chosen(std::span<const std::size_t> wanted, std::size_t topics);
 
+/// The messages of topics that are asked for.
+std::vector<MessageEntry> of_topics(std::span<const MessageEntry> entries, const std::vector<bool>& is_wanted);
+
 /// Sorts by time, then by place in the file.
 void sort_by_time(std::vector<MessageEntry>& entries);
 

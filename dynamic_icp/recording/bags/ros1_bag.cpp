@@ -44,12 +44,7 @@ class Ros1Bag final : public FileBag {
 
   [[nodiscard]] std::vector<MessageEntry> messages(std::span<const std::size_t> wanted) const override {
     const std::vector<bool> is_wanted = chosen(wanted, topics_.size());
-    std::vector<MessageEntry> entries;
-    for (const MessageEntry& entry : seen_) {
-      if (is_wanted[entry.topic]) {
-        entries.push_back(entry);
-      }
-    }
+    std::vector<MessageEntry> entries = of_topics(seen_, is_wanted);
     FileBytes source(file_, FileBytes::kOneRecord);
     for (const Ros1Chunk& chunk : chunks_) {
       if (std::any_of(chunk.counts.begin(), chunk.counts.end(),

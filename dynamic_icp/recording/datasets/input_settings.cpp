@@ -17,7 +17,7 @@ namespace dynamic_icp::datasets {
 namespace {
 
 constexpr std::array<std::string_view, 4> kColumnNames = {"x", "y", "z", "doppler"};
-constexpr std::size_t kMostColumns = 64;
+constexpr std::size_t kMaxColumns = 64;
 constexpr double kMinPeriod_s = 1e-6;
 constexpr double kMaxPeriod_s = 3600.0;
 constexpr double kMaxScale = 1e9;
@@ -47,9 +47,9 @@ std::vector<std::string> names_in(const std::string& name, const std::string& te
   for (std::string_view rest = text;;) {
     const std::size_t end = std::min(rest.find(','), rest.size());
     names.push_back(formats::lower_case(rest.substr(0, end)));
-    if (names.back().empty() || names.size() > kMostColumns) {
+    if (names.back().empty() || names.size() > kMaxColumns) {
       refuse(name, text,
-             fmt::format("up to {} names with commas: x, y, z, doppler, _ for what is not used, ...", kMostColumns));
+             fmt::format("up to {} names with commas: x, y, z, doppler, _ for what is not used, ...", kMaxColumns));
     }
     if (end == rest.size()) {
       return names;

@@ -13,10 +13,10 @@ namespace dynamic_icp::datasets {
 namespace {
 
 constexpr std::size_t kRows = 2000;
-constexpr std::size_t kFewestRows = 10;
+constexpr std::size_t kMinRows = 10;
 constexpr int kRounds = 15;
 constexpr double kExplained = 1.0 / 3.0;  // of the spread may be left
-constexpr double kLeastSpread = 0.05;
+constexpr double kMinSpread = 0.05;
 constexpr double kAngleTolerance = 0.02;  // rad
 
 double median(std::vector<double> values) {
@@ -78,7 +78,7 @@ Eigen::Vector3d robust_velocity(const std::vector<Eigen::Vector3d>& directions, 
 double unexplained(const std::vector<Eigen::Vector3d>& directions, const std::vector<double>& values) {
   const double spread = spread_of(values);
   const bool are_whole = std::all_of(values.begin(), values.end(), [](double v) { return v == std::floor(v); });
-  if (values.size() < kFewestRows || are_whole || spread < kLeastSpread || is_angle(directions, values)) {
+  if (values.size() < kMinRows || are_whole || spread < kMinSpread || is_angle(directions, values)) {
     return 1.0;
   }
   std::vector<double> residuals;
@@ -124,11 +124,11 @@ std::optional<std::size_t> likely_doppler(std::span<const Eigen::Vector3d> point
 std::optional<Eigen::Vector3d> likely_velocity(std::span<const Eigen::Vector3d> points,
                                                const std::vector<double>& doppler) {
   const Rows rows = some_rows(points, doppler);
-  if (rows.values.size() < kFewestRows) {
+  if (rows.values.size() < kMinRows) {
     return std::nullopt;
   }
   std::vector<double> residuals;
-  return robust_velocity(rows.directions, rows.values, std::max(spread_of(rows.values), kLeastSpread), residuals);
+  return robust_velocity(rows.directions, rows.values, std::max(spread_of(rows.values), kMinSpread), residuals);
 }
 
 std::string proposed_columns(std::span<const std::vector<double>> columns) {

@@ -23,13 +23,13 @@ namespace {
 namespace fs = std::filesystem;
 using formats::NpyType;
 
-constexpr std::size_t kFewestNumbers = 3;
-constexpr std::size_t kMostNumbers = 16;
+constexpr std::size_t kMinNumbers = 3;
+constexpr std::size_t kMaxNumbers = 16;
 constexpr std::size_t kPlain = 4;           // x, y, z, Doppler
 constexpr std::size_t kLookedAt = 100'000;  // numbers
 constexpr std::size_t kFilesLookedAt = 200;
 constexpr std::size_t kFewestRecords = 500;
-constexpr double kMostAbsurd = 0.05;    // of the numbers
+constexpr double kMaxAbsurd = 0.05;     // of the numbers
 constexpr double kAsGoodAs = 1.15;      // multiples of the length are about as good
 constexpr double kClearlyBetter = 0.6;  // of the jumps that the expected length has
 
@@ -112,14 +112,14 @@ std::vector<double> scaled_of(const std::vector<double>& numbers) {
 
 /// The length of records that explains the numbers; 0: none stands out.
 std::size_t length_of(const std::vector<double>& scaled) {
-  std::array<double, kMostNumbers + 1> jumps{};
+  std::array<double, kMaxNumbers + 1> jumps{};
   jumps.fill(INFINITY);
   double least = INFINITY;
-  for (std::size_t lag = 1; lag <= kMostNumbers; ++lag) {
+  for (std::size_t lag = 1; lag <= kMaxNumbers; ++lag) {
     jumps.at(lag) = jump(scaled, lag);
-    least = lag >= kFewestNumbers ? std::min(least, jumps.at(lag)) : least;
+    least = lag >= kMinNumbers ? std::min(least, jumps.at(lag)) : least;
   }
-  for (std::size_t lag = kFewestNumbers; lag <= kMostNumbers; ++lag) {
+  for (std::size_t lag = kMinNumbers; lag <= kMaxNumbers; ++lag) {
     if (jumps.at(lag) <= kAsGoodAs * least) {
       // Records of beams that take turns repeat at several times their length.
       for (std::size_t shorter = kPlain; shorter < lag; ++shorter) {
@@ -134,7 +134,7 @@ std::size_t length_of(const std::vector<double>& scaled) {
 }
 
 std::optional<RecordShape> shape_of_numbers(const std::vector<double>& numbers, NpyType type) {
-  if (absurd_share(numbers) > kMostAbsurd) {
+  if (absurd_share(numbers) > kMaxAbsurd) {
     return std::nullopt;
   }
   const std::size_t length = length_of(scaled_of(numbers));
@@ -267,7 +267,7 @@ std::optional<RecordShape> shape_of(std::string_view content) {
   if (std::optional<RecordShape> shape = shape_of_numbers(numbers, NpyType::kFloat32)) {
     return shape;
   }
-  if (absurd_share(numbers) <= kMostAbsurd) {
+  if (absurd_share(numbers) <= kMaxAbsurd) {
     return std::nullopt;  // float64 are no float32: half of each is noise
   }
   return shape_of_numbers(numbers_of<double>(content), NpyType::kFloat64);
@@ -277,7 +277,7 @@ std::optional<UnclearInput> other_shape(const std::vector<fs::path>& files, std:
   const std::vector<std::uintmax_t> sizes = sizes_of(files);
   const std::string content = first_content(files);
   const std::optional<RecordShape> shape = shape_of(content);
-  if (!shape || (shape->numbers == numbers && shape->type == type) || shape->numbers <= kFewestNumbers) {
+  if (!shape || (shape->numbers == numbers && shape->type == type) || shape->numbers <= kMinNumbers) {
     return std::nullopt;
   }
   const std::size_t expected_bytes = numbers * formats::size_of(type);
@@ -307,7 +307,7 @@ bool sizes_fit(const std::vector<fs::path>& files, std::size_t bytes) {
 
 std::optional<UnclearInput> likely_shape(const std::vector<fs::path>& files) {
   const std::optional<RecordShape> shape = shape_of(first_content(files));
-  return shape && shape->numbers > kFewestNumbers ? std::optional(unclear(files, *shape, "")) : std::nullopt;
+  return shape && shape->numbers > kMinNumbers ? std::optional(unclear(files, *shape, "")) : std::nullopt;
 }
 
 }  // namespace dynamic_icp::datasets

@@ -22,7 +22,7 @@ namespace {
 
 constexpr std::string_view kAround = " \t\r\v\f";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-constexpr std::size_t kMostCsvColumns = 1024;
+constexpr std::size_t kMaxCsvColumns = 1024;
 
 std::string_view bare(std::string_view cell) {
   const std::size_t begin = std::min(cell.find_first_not_of(kAround), cell.size());
@@ -183,9 +183,9 @@ CsvHeader parse_csv_header(std::string_view text, std::string_view origin) {
 
 CsvTable parse_csv(std::string_view text, std::string_view origin) {
   const CsvHeader header = parse_csv_header(text, origin);
-  if (header.columns > kMostCsvColumns) {
+  if (header.columns > kMaxCsvColumns) {
     throw DataError(fmt::format("{}: line {}: {} columns, expected at most {}", origin, header.first_line,
-                                header.columns, kMostCsvColumns));
+                                header.columns, kMaxCsvColumns));
   }
   std::vector<GrowingColumn> columns(std::max(header.columns, header.names.size()));
   std::string_view rest = text.substr(header.begin);

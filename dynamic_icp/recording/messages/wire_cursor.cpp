@@ -12,7 +12,7 @@ namespace dynamic_icp::messages {
 namespace {
 
 constexpr std::size_t kEncapsulationBytes = 4;
-constexpr std::size_t kMostPadding = 7;  // what some middleware adds behind the last member
+constexpr std::size_t kMaxPadding = 7;  // what some middleware adds behind the last member
 
 /// A representation identifier of RTPS and of DDS-XTypes, whose two tables differ for XCDR2.
 struct Representation {
@@ -117,7 +117,7 @@ void WireCursor::skip_doubles(std::size_t numbers, std::string_view field) {
 
 void WireCursor::finish() const {
   const std::size_t left = bytes_.size() - at_;
-  if (left > (is_ros1() ? 0 : kMostPadding)) {
+  if (left > (is_ros1() ? 0 : kMaxPadding)) {
     throw DataError(
         fmt::format("{}: {} bytes are left behind its last field, at byte {}: the message is of another "
                     "definition",
