@@ -19,7 +19,7 @@ constexpr int kColumns = 720;
 constexpr int kRows = 120;
 constexpr double kSlopePerRow = 0.0175;  // a degree
 constexpr double kBehind_m = 1.0;        // what is so much nearer is another thing
-constexpr double kMostly = 0.5;          // of the rows of a mirror image lie behind the mirror
+constexpr double kMinBehindShare = 0.5;  // of the rows of a mirror image lie behind the mirror
 constexpr double kFewBeside = 0.2;       // mirrors show less than this share of what is seen of themselves
 constexpr double kMin_m = 1e-12;         // nothing is divided by less
 
@@ -147,7 +147,7 @@ bool RangeImage::is_behind(std::uint32_t row) const {
 
 bool RangeImage::are_mirrored(std::span<const std::uint32_t> rows) const {
   const auto behind = std::count_if(rows.begin(), rows.end(), [&](std::uint32_t row) { return is_behind(row); });
-  if (static_cast<double>(behind) <= kMostly * static_cast<double>(rows.size())) {
+  if (static_cast<double>(behind) <= kMinBehindShare * static_cast<double>(rows.size())) {
     return false;
   }
   std::vector<bool> is_touched(nearest_squared_.size(), false);
