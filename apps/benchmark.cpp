@@ -16,15 +16,15 @@
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
-#include "dynamic_icp/tools/benchmark/caption.hpp"
 #include "dynamic_icp/tools/benchmark/cell_plan.hpp"
 #include "dynamic_icp/tools/benchmark/cell_queue.hpp"
 #include "dynamic_icp/tools/benchmark/machine.hpp"
 #include "dynamic_icp/tools/benchmark/manifest.hpp"
+#include "dynamic_icp/tools/benchmark/plan_file.hpp"
 #include "dynamic_icp/tools/benchmark/sequences.hpp"
-#include "dynamic_icp/tools/benchmark/tables.hpp"
 #include "dynamic_icp/tools/benchmark/variants.hpp"
 
+#include "apps/benchmark_tables.hpp"
 #include "apps/candidates.hpp"
 #include "apps/cell_progress.hpp"
 #include "apps/command_line.hpp"
@@ -41,14 +41,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kResultsName = "results.json";
-
 struct BenchmarkOptions {
   std::vector<std::string> inputs;
   std::string manifest;
   std::string root;
   std::string output;
   std::string tables;
+  bool plan = false;  ///< the cells are listed for others to run
+  std::string cell;   ///< the one of a plan to run
+  std::string collect;
   std::string methods = "all";
   std::optional<std::string> ablations;  ///< empty: all of all methods, none of methods that are named
   int jobs = 1;
@@ -81,56 +82,27 @@ benchmark::BenchmarkInfo describe(const BenchmarkOptions& options, const std::ve
   return info;
 }
 
-void print(const std::string& text) {
-  if (std::fwrite(text.data(), 1, text.size(), stdout) != text.size() || std::fflush(stdout) != 0) {
-    throw DataError(fmt::format("standard output: cannot write: {}", std::strerror(errno)));
-  }
-}
-
-/// The forms of a table, by the endings of their files.
-const std::pair<const char*, std::string (*)(const benchmark::Table&)> kTableForms[] = {
-    {".md", benchmark::markdown}, {".csv", benchmark::csv}, {".tex", benchmark::latex}};
-
-/// A folder without tables of earlier results, which the new ones may not replace. Other files are left alone.
-void make_tables_folder(const fs::path& folder) {
-  formats::make_folder(folder);
-  for (const std::string& name : benchmark::table_names()) {
-    for (const auto& [ending, write] : kTableForms) {
-      std::error_code fault;
-      fs::remove(folder / (name + ending), fault);
-    }
-  }
-}
-
-/// What is printed: aligned, what tables have in common once, at the end.
-std::string plain_text(const std::vector<benchmark::Table>& tables, const benchmark::BenchmarkResults& results) {
-  const std::size_t width = terminal_width(stdout);
-  std::string text;
-  for (const benchmark::Table& table : tables) {
-    text += benchmark::plain(table) + "\n" + wrapped(benchmark::own_caption(table, results), width, 0) + "\n\n";
-  }
-  return text + wrapped(benchmark::setup_text(results), width, 0) + "\n";
-}
-
-/// Makes tables/ and tables.md from results.json and prints the tables.
-void write_tables(const fs::path& folder) {
-  const fs::path source = folder / kResultsName;
-  const benchmark::BenchmarkResults results = benchmark::results_from_json(formats::read_text_file(source), source);
-  make_tables_folder(folder / "tables");
-  std::string all;
-  const std::vector<benchmark::Table> tables = benchmark::all_tables(results);
-  for (const benchmark::Table& table : tables) {
-    for (const auto& [ending, write] : kTableForms) {
-      formats::write_whole_file(folder / "tables" / (table.name + ending), write(table));
-    }
-    all += (all.empty() ? "" : "\n") + benchmark::markdown(table);
-  }
-  formats::write_whole_file(folder / "tables.md", all);
-  print(plain_text(tables, results));
-}
-
 std::string name_of(const benchmark::CellKey& key) {
   return key.sequence + " " + key.method + (key.ablation == "none" ? "" : " " + key.ablation);
+}
+
+void save(const benchmark::BenchmarkResults& results, const benchmark::BenchmarkFolder& folder) {
+  formats::write_whole_file(folder.path() / benchmark::kResultsName, benchmark::to_json(results));
+}
+
+std::string outcome_of(const benchmark::CellResult& result, bool saved) {
+  return !result.finished          ? "failed: " + result.failure
+         : !result.failure.empty() ? "done, " + result.failure
+         : saved                   ? "done before"
+                                   : "done";
+}
+
+/// Throws DataError when there are failed cells.
+void fail_with(std::size_t failed, std::size_t cells, const benchmark::BenchmarkFolder& folder) {
+  if (failed > 0) {
+    throw DataError(fmt::format("{} of {} cells failed; messages are in {}", failed, cells,
+                                (folder.path() / benchmark::kResultsName).string()));
+  }
 }
 
 /// Runs the cells and saves results.json after each of them; how many failed.
@@ -138,14 +110,14 @@ std::size_t run_plans(const BenchmarkOptions& options, const benchmark::Benchmar
                       const benchmark::Program& program, const std::vector<benchmark::CellPlan>& plans,
                       benchmark::BenchmarkResults results) {
   std::vector<std::optional<benchmark::CellResult>> cells(plans.size());
-  const auto save = [&] {
+  const auto save_ended = [&] {
     results.cells.clear();
     for (const auto& cell : cells) {
       if (cell) {
         results.cells.push_back(*cell);
       }
     }
-    formats::write_whole_file(folder.path() / kResultsName, benchmark::to_json(results));
+    save(results, folder);
   };
   CellProgress progress(plans.size(), options.quiet);
   benchmark::QueueEvents events;
@@ -153,16 +125,12 @@ std::size_t run_plans(const BenchmarkOptions& options, const benchmark::Benchmar
   events.ended = [&](std::size_t plan, const benchmark::CellResult& result, bool saved) {
     cells[plan] = result;
     if (!saved) {
-      save();
+      save_ended();
     }
-    const std::string outcome = !result.finished          ? "failed: " + result.failure
-                                : !result.failure.empty() ? "done, " + result.failure
-                                : saved                   ? "done before"
-                                                          : "done";
-    progress.end(name_of(result.key), outcome, !result.finished);
+    progress.end(name_of(result.key), outcome_of(result, saved), !result.finished);
   };
   benchmark::run_cells(plans, {folder.path(), program.path, options.jobs, options.force}, events);
-  save();
+  save_ended();
   return static_cast<std::size_t>(
       std::count_if(cells.begin(), cells.end(), [](const auto& cell) { return !cell || !cell->finished; }));
 }
@@ -194,32 +162,80 @@ int run_benchmark(BenchmarkOptions options) {
       plans.push_back(benchmark::plan_cell(program, sequence, rival.method, rival.ablation, run, rival.configuration));
     }
   }
-  const std::size_t failed = run_plans(options, folder, program, plans, {describe(options, opened.sequences), {}});
-  write_tables(folder.path());
-  if (failed > 0) {
-    throw DataError(fmt::format("{} of {} cells failed; messages are in {}", failed, plans.size(),
-                                (folder.path() / kResultsName).string()));
+  const benchmark::BenchmarkResults none = {describe(options, opened.sequences), {}};
+  if (options.plan) {
+    save(none, folder);
+    benchmark::write_plan(folder.path(), program, plans);
+    tell("dynamic-icp: {} cells in {}\n", plans.size(), (folder.path() / benchmark::kPlanName).string());
+    return 0;
   }
+  const std::size_t failed = run_plans(options, folder, program, plans, none);
+  write_tables(folder.path());
+  fail_with(failed, plans.size(), folder);
+  return 0;
+}
+
+/// Beside others that run other cells of the same plan.
+int run_cell(const BenchmarkOptions& options) {
+  const benchmark::PlanFile plan = benchmark::read_plan(options.output);
+  const benchmark::CellPlan& cell = benchmark::find_cell(plan, options.cell);
+  const benchmark::Program program = this_program();
+  if (program.checksum != plan.checksum) {
+    throw DataError(
+        fmt::format("{}: made by another build of dynamic-icp, version {}; expected this one, make the plan "
+                    "again",
+                    (fs::path(options.output) / benchmark::kPlanName).string(), plan.version));
+  }
+  const benchmark::BenchmarkFolder folder(options.output, benchmark::FolderLock::Kind::kWithOthers);
+  formats::make_folder(folder.path() / cell.folder);
+  const benchmark::FolderLock lock(folder.path() / cell.folder, "cell.lock", benchmark::FolderLock::Kind::kAlone);
+  CellProgress progress(1, options.quiet);
+  bool finished = false;
+  benchmark::QueueEvents events;
+  events.started = [&](std::size_t) { progress.start(name_of(cell.key)); };
+  events.ended = [&](std::size_t, const benchmark::CellResult& result, bool saved) {
+    finished = result.finished;
+    progress.end(name_of(cell.key), outcome_of(result, saved), !finished);
+  };
+  benchmark::run_cells({cell}, {folder.path(), program.path, 1, options.force}, events);
+  return finished ? 0 : 1;
+}
+
+/// The results and tables of cells that ran one by one.
+int collect(const fs::path& path) {
+  const benchmark::PlanFile plan = benchmark::read_plan(path);
+  const benchmark::BenchmarkFolder folder(path);
+  const fs::path source = folder.path() / benchmark::kResultsName;
+  benchmark::BenchmarkResults results = benchmark::results_from_json(formats::read_text_file(source), source);
+  results.cells = benchmark::collect_results(folder.path(), plan);
+  save(results, folder);
+  write_tables(folder.path());
+  const auto failed = std::count_if(results.cells.begin(), results.cells.end(),
+                                    [](const benchmark::CellResult& cell) { return !cell.finished; });
+  fail_with(static_cast<std::size_t>(failed), results.cells.size(), folder);
   return 0;
 }
 
 int run(const BenchmarkOptions& options) {
-  const bool tables_only = !options.tables.empty();
+  const bool one_cell = !options.cell.empty();
+  const bool in_folder = !options.tables.empty() || !options.collect.empty();
   const bool from_manifest = !options.manifest.empty();
-  const int sources = (tables_only ? 1 : 0) + (from_manifest ? 1 : 0) + (options.inputs.empty() ? 0 : 1);
-  if (sources != 1 || tables_only != options.output.empty() || from_manifest == options.root.empty()) {
+  const int sources = (options.tables.empty() ? 0 : 1) + (options.collect.empty() ? 0 : 1) + (one_cell ? 1 : 0) +
+                      (from_manifest ? 1 : 0) + (options.inputs.empty() ? 0 : 1);
+  if (sources != 1 || in_folder != options.output.empty() || from_manifest == options.root.empty() ||
+      (options.plan && (in_folder || one_cell))) {
     throw UsageError(
-        "expected INPUT... with --output DIR, or --manifest FILE with --root DIR and --output DIR, or --tables DIR "
-        "alone");
+        "expected INPUT... with --output DIR, or --manifest FILE with --root DIR and --output DIR, either of them with "
+        "--plan where others run the cells; or --cell CELL with --output DIR; or --collect DIR or --tables DIR alone");
   }
-  if (tables_only) {
-    if (!fs::exists(fs::path(options.tables) / kResultsName)) {
-      throw DataError(fmt::format("{}: holds no {}; expected the folder of a benchmark", options.tables, kResultsName));
-    }
+  if (!options.tables.empty()) {
     write_tables(options.tables);  // also while the benchmark is running: from what is there so far
     return 0;
   }
-  return run_benchmark(options);
+  if (!options.collect.empty()) {
+    return collect(options.collect);
+  }
+  return one_cell ? run_cell(options) : run_benchmark(options);
 }
 
 void add_run_settings(CLI::App& command, benchmark::RunSettings& run) {
@@ -247,6 +263,12 @@ void add_benchmark_command(CLI::App& app, std::function<int()>& selected) {
   add_option(*command, "--root", options->root, "DIR", "Folder of the data set, for --manifest");
   add_option(*command, "--tables", options->tables, "DIR",
              "Only make the tables of this benchmark again, from its results.json");
+  command->add_flag("--plan", options->plan,
+                    "Run nothing: list the runs in plan.json, for a workflow engine to have them run by --cell");
+  add_option(*command, "--cell", options->cell, "CELL",
+             "Run this cell of the plan alone, SEQUENCE/METHOD or SEQUENCE/METHOD_ABLATION; others at the same time");
+  add_option(*command, "--collect", options->collect, "DIR",
+             "Make results.json and the tables from the cells of a plan that have been run");
   add_option(*command, "--methods", options->methods, "LIST",
              fmt::format("Methods, with commas: {} (default all)", fmt::join(known_methods(), ", ")));
   add_option(*command, "--ablations", options->ablations, "LIST",

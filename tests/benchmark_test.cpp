@@ -259,6 +259,64 @@ TEST_F(Benchmark, GoesOnAfterKillAsIfNothingHadHappened) {
   }
 }
 
+TEST_F(Benchmark, CellsRunOneByOneGiveTheTablesOfOneMachine) {
+  const std::string methods = "--methods dynamic-icp,kiss-icp ";
+  ASSERT_EQ(benchmark(methods + "--quiet").status, 0);
+  const fs::path whole = folder_ / "whole";
+  fs::rename(out(), whole);
+  ASSERT_EQ(benchmark(methods + "--plan").status, 0);
+  EXPECT_TRUE(run_times().empty()) << "nothing was run";
+  const json plan = json::parse(read_file(out() / "plan.json"));
+  ASSERT_EQ(plan["cells"].size(), 4u);
+  EXPECT_EQ(plan["cells"][0]["scans"], 7);
+  const Outcome early = run_program("benchmark --collect " + out().string());
+  EXPECT_EQ(early.status, 1);
+  EXPECT_NE(early.text.find("4 of 4 cells failed"), std::string::npos) << early.text;
+  // The last one first, and two at the same time.
+  const auto cell = [&](std::size_t index) {
+    return "'" + std::string(DYNAMIC_ICP_PROGRAM) + "' benchmark --output " + out().string() + " --cell " +
+           plan["cells"][index]["folder"].get<std::string>();
+  };
+  EXPECT_EQ(run_shell(cell(3) + " & " + cell(2) + "; status=$?; wait $! && exit $status").status, 0);
+  EXPECT_EQ(run_shell(cell(1) + " && " + cell(0)).status, 0);
+  const Outcome again = run_shell(cell(1));
+  EXPECT_NE(again.text.find("done before"), std::string::npos) << again.text;
+  const Outcome collected = run_program("benchmark --collect " + out().string());
+  EXPECT_EQ(collected.status, 0) << collected.text;
+  EXPECT_EQ(lasting_results(out()), lasting_results(whole));
+  for (const fs::directory_entry& table : fs::directory_iterator(whole / "tables")) {
+    const fs::path name = table.path().filename();
+    if (name.stem() != "runtime") {
+      EXPECT_EQ(read_file(out() / "tables" / name), read_file(table.path())) << name;
+    }
+  }
+}
+
+TEST_F(Benchmark, ACellIsOneOfThePlanOfThisProgram) {
+  ASSERT_EQ(benchmark(kOurs + "--plan").status, 0);
+  const std::string at = "benchmark --output " + out().string() + " --cell ";
+  EXPECT_EQ(run_program(at + "street/gicp").status, 2) << "not in the plan";
+  const Outcome locked = run_shell("mkdir -p " + (out() / "street" / "dynamic-icp").string() + "; flock " +
+                                   (out() / "street" / "dynamic-icp" / "cell.lock").string() + " '" +
+                                   DYNAMIC_ICP_PROGRAM + "' " + at + "street/dynamic-icp");
+  EXPECT_EQ(locked.status, 1) << locked.text;
+  write_file(data() / "jam" / "point_clouds" / "00003.bin", "version https://git-lfs.github.com/spec/v1\n");
+  const Outcome failed = run_program(at + "jam/dynamic-icp");
+  EXPECT_EQ(failed.status, 1) << failed.text;
+  EXPECT_NE(failed.text.find("00003.bin"), std::string::npos) << failed.text;
+  json plan = json::parse(read_file(out() / "plan.json"));
+  plan["program"]["checksum"] = "of another build";
+  write_file(out() / "plan.json", plan.dump());
+  const Outcome other = run_program(at + "street/dynamic-icp");
+  EXPECT_EQ(other.status, 1);
+  EXPECT_NE(other.text.find("another build"), std::string::npos) << other.text;
+  EXPECT_EQ(run_program("benchmark --output " + (folder_ / "nowhere").string() + " --cell a/b").status, 1);
+  EXPECT_FALSE(fs::exists(folder_ / "nowhere"));
+  for (const char* both : {" --plan", " --collect x", " --tables x", " --manifest x"}) {
+    EXPECT_EQ(run_program(at + "street/dynamic-icp" + both).status, 2) << both;
+  }
+}
+
 TEST_F(Benchmark, TwoInOneFolderAreRefused) {
   ASSERT_EQ(benchmark(kOurs + "--ablations none --quiet").status, 0);
   const Outcome outcome = run_shell("flock " + (out() / "benchmark.lock").string() + " '" + DYNAMIC_ICP_PROGRAM +

@@ -22,14 +22,17 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kLockName = "benchmark.lock";
-constexpr std::array<std::string_view, 6> kOwnNames = {"tables",  "tables.md",   "results.json",
+constexpr std::array<std::string_view, 7> kOwnNames = {"tables",  "tables.md",   "results.json",   "plan.json",
                                                        kLockName, "report.html", "comparison.html"};
 constexpr std::size_t kLongestName = 200;  // file systems take 255, some of which go to endings
 
-void check_usable(const fs::path& path) {
+/// The folder of a benchmark, made where it is missing.
+fs::path usable_folder(const fs::path& given) {
+  const fs::path path = fs::absolute(given).lexically_normal();
   std::error_code fault;
   if (!fs::exists(path, fault)) {
-    return;
+    formats::make_folder(path);
+    return path;
   }
   if (!fs::is_directory(path, fault)) {
     throw DataError(fmt::format("{}: exists and is not a folder", path.string()));
@@ -38,14 +41,16 @@ void check_usable(const fs::path& path) {
     throw DataError(
         fmt::format("{}: folder is not empty and holds no {}; choose another one", path.string(), kLockName));
   }
+  return path;
 }
 
-int open_locked(const fs::path& path) {
+int open_locked(const fs::path& path, FolderLock::Kind kind) {
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
   if (descriptor < 0) {
     throw DataError(fmt::format("{}: cannot create: {}", path.string(), std::strerror(errno)));
   }
-  if (::flock(descriptor, LOCK_EX | LOCK_NB) != 0) {
+  const int operation = kind == FolderLock::Kind::kAlone ? LOCK_EX : LOCK_SH;
+  if (::flock(descriptor, operation | LOCK_NB) != 0) {
     const int reason = errno;
     ::close(descriptor);
     throw DataError(reason == EWOULDBLOCK
@@ -57,14 +62,17 @@ int open_locked(const fs::path& path) {
 
 }  // namespace
 
-BenchmarkFolder::BenchmarkFolder(const fs::path& path) : path_(fs::absolute(path).lexically_normal()) {
-  check_usable(path_);
-  formats::make_folder(path_);
-  lock_ = open_locked(path_ / kLockName);
-  remove_partial_files(path_);
-}
+FolderLock::FolderLock(const fs::path& folder, const char* name, Kind kind)
+    : descriptor_(open_locked(folder / name, kind)) {}
 
-BenchmarkFolder::~BenchmarkFolder() { ::close(lock_); }
+FolderLock::~FolderLock() { ::close(descriptor_); }
+
+BenchmarkFolder::BenchmarkFolder(const fs::path& path, FolderLock::Kind kind)
+    : path_(usable_folder(path)), lock_(path_, kLockName, kind) {
+  if (kind == FolderLock::Kind::kAlone) {
+    remove_partial_files(path_);
+  }
+}
 
 bool is_own_name(std::string_view name) {
   return std::find(kOwnNames.begin(), kOwnNames.end(), name) != kOwnNames.end();

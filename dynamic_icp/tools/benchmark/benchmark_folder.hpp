@@ -8,23 +8,35 @@
 
 namespace dynamic_icp::benchmark {
 
-/// The folder of a benchmark, held by this process alone as long as the object lives. The lock ends with the process,
-/// however that ends.
+/// A file that processes hold while they work in its folder. The lock ends with the process, however that ends.
+class FolderLock {
+ public:
+  enum class Kind { kAlone, kWithOthers };
+
+  /// Makes the file `name` in a folder that exists. Throws DataError when another process works there.
+  FolderLock(const std::filesystem::path& folder, const char* name, Kind kind);
+  ~FolderLock();
+  FolderLock(const FolderLock&) = delete;
+  FolderLock& operator=(const FolderLock&) = delete;
+
+ private:
+  int descriptor_ = -1;
+};
+
+/// The folder of a benchmark, held as long as the object lives: by this process alone, or by processes that each run
+/// one of its cells.
 class BenchmarkFolder {
  public:
   /// The folder must be new, empty or that of an earlier benchmark: it holds the file "benchmark.lock" then. Throws
   /// DataError for any other, and when another process works in it.
-  explicit BenchmarkFolder(const std::filesystem::path& path);
-  ~BenchmarkFolder();
-  BenchmarkFolder(const BenchmarkFolder&) = delete;
-  BenchmarkFolder& operator=(const BenchmarkFolder&) = delete;
+  explicit BenchmarkFolder(const std::filesystem::path& path, FolderLock::Kind kind = FolderLock::Kind::kAlone);
 
   /// Absolute.
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
 
  private:
   std::filesystem::path path_;
-  int lock_ = -1;
+  FolderLock lock_;
 };
 
 /// Whether the benchmark's own files have that name, so that no folder of runs can.

@@ -28,6 +28,19 @@ TEST_F(BenchmarkFolderTest, IsTakenByOneAtATime) {
   EXPECT_NO_THROW(BenchmarkFolder{path}) << "free again";
 }
 
+TEST_F(BenchmarkFolderTest, IsSharedByThoseWhoRunOneCellEach) {
+  const auto shared = FolderLock::Kind::kWithOthers;
+  {
+    const BenchmarkFolder first(folder_, shared);
+    write_file(folder_ / "results.json.partial-123", "{");
+    EXPECT_NO_THROW((BenchmarkFolder{folder_, shared}));
+    EXPECT_TRUE(fs::exists(folder_ / "results.json.partial-123")) << "another one may be writing it";
+    EXPECT_THROW(BenchmarkFolder{folder_}, DataError) << "all of it while cells are running";
+  }
+  const BenchmarkFolder whole(folder_);
+  EXPECT_THROW((BenchmarkFolder{folder_, shared}), DataError);
+}
+
 TEST_F(BenchmarkFolderTest, IsNeverSomebodyElses) {
   EXPECT_NO_THROW(BenchmarkFolder{folder_}) << "an empty folder";
   write_file(folder_ / "other" / "thesis.txt", "years of work");

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <set>
 #include <string_view>
 
 #include <fmt/format.h>
@@ -51,6 +52,18 @@ std::string assumptions_text(const BenchmarkResults& results) {
   return text;
 }
 
+/// That of the benchmark, and others that ran some of its cells, whose times are not to be compared.
+std::string machines_text(const BenchmarkResults& results) {
+  std::set<std::string> others;
+  for (const CellResult& cell : results.cells) {
+    if (!cell.processor.empty()) {
+      others.insert(cell.processor);
+    }
+  }
+  return others.empty() ? results.info.machine
+                        : fmt::format("{}, some runs on {}", results.info.machine, fmt::join(others, " and "));
+}
+
 }  // namespace
 
 std::string setup_text(const BenchmarkResults& results) {
@@ -61,8 +74,9 @@ std::string setup_text(const BenchmarkResults& results) {
   }
   return fmt::format(
       "Measured with dynamic-icp {}, preset {}{}{}; {}; threads of a run: {}; runs at the same time: {}. Inputs: {}.{}",
-      info.version, info.preset, info.settings.empty() ? "" : " with ", fmt::join(info.settings, " "), info.machine,
-      info.threads == 0 ? "all" : std::to_string(info.threads), jobs, inputs_text(info), assumptions_text(results));
+      info.version, info.preset, info.settings.empty() ? "" : " with ", fmt::join(info.settings, " "),
+      machines_text(results), info.threads == 0 ? "all" : std::to_string(info.threads), jobs, inputs_text(info),
+      assumptions_text(results));
 }
 
 std::string own_caption(const Table& table, const BenchmarkResults& results) {

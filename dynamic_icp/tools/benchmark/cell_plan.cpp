@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/benchmark/cell_plan.hpp"
 
+#include <algorithm>
+
 #include <nlohmann/json.hpp>
 
 namespace dynamic_icp::benchmark {
@@ -55,6 +57,9 @@ CellPlan plan_cell(const Program& program, const Sequence& sequence, const std::
   plan.folder = std::filesystem::path(sequence.label) / (ablation == "none" ? method : method + "_" + ablation);
   plan.arguments = run_arguments(sequence, plan.key, settings);
   plan.object_truth = sequence.object_truth;
+  plan.scans = sequence.scans - std::min(settings.start, sequence.scans);
+  plan.scans = std::min(plan.scans, settings.max_frames.value_or(plan.scans));
+  plan.bytes_per_scan = sequence.bytes / std::max<std::size_t>(sequence.scans, 1);
   Json fingerprint = {{"version", program.version},
                       {"program", program.checksum},
                       {"processor", program.processor},

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -40,6 +41,8 @@ struct CellPlan {
   std::vector<std::string> arguments;  ///< of the program, without the output
   std::string fingerprint;             ///< equal for two runs that give the same result
   std::filesystem::path object_truth;  ///< empty without
+  std::size_t scans = 0;               ///< that the run will process
+  std::uintmax_t bytes_per_scan = 0;   ///< mean size in the recording
 };
 
 /// `configuration` is what the run will use, resolved: "key=value" for all keys.

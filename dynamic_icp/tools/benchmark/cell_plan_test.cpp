@@ -43,6 +43,19 @@ TEST(CellPlan, SaysWhereAndHow) {
   EXPECT_EQ(plan(from).folder, "street/dynamic-icp");
 }
 
+TEST(CellPlan, SaysHowMuchItIs) {
+  Ingredients from;
+  from.sequence.bytes = 1000;
+  EXPECT_EQ(plan(from).scans, 10u);
+  EXPECT_EQ(plan(from).bytes_per_scan, 100u);
+  from.settings.start = 3;
+  EXPECT_EQ(plan(from).scans, 7u);
+  from.settings.max_frames = 5;
+  EXPECT_EQ(plan(from).scans, 5u);
+  from.settings.start = 8;
+  EXPECT_EQ(plan(from).scans, 2u);
+}
+
 TEST(CellPlan, TheFingerprintIsThatOfWhatDecidesTheResult) {
   const std::string before = plan({}).fingerprint;
   EXPECT_EQ(plan({}).fingerprint, before);

@@ -18,6 +18,7 @@
 #include "dynamic_icp/recording/runs/lost_scans.hpp"
 #include "dynamic_icp/recording/runs/run_values.hpp"
 #include "dynamic_icp/tools/benchmark/benchmark_folder.hpp"
+#include "dynamic_icp/tools/benchmark/machine.hpp"
 
 namespace dynamic_icp::benchmark {
 namespace {
@@ -125,6 +126,13 @@ std::string last_messages(const fs::path& path) {
   return text.starts_with(name) ? text.substr(name.size()) : text;
 }
 
+/// This machine's processor when the plan is of a machine with another one, whose times are not to be compared.
+std::string other_processor(const CellPlan& plan) {
+  const Json fingerprint = Json::parse(plan.fingerprint);
+  const std::string here = describe_processor();
+  return fingerprint.value("processor", here) == here ? "" : here;
+}
+
 std::string failure_of(const EndedChild& child, const fs::path& messages) {
   const std::string said = last_messages(messages);
   const std::string ending = child.signal != 0
@@ -135,20 +143,27 @@ std::string failure_of(const EndedChild& child, const fs::path& messages) {
 
 }  // namespace
 
-std::optional<CellResult> saved_result(const fs::path& benchmark_folder, const CellPlan& plan) {
-  const fs::path folder = benchmark_folder / plan.folder;
+std::optional<CellResult> ended_result(const fs::path& benchmark_folder, const CellPlan& plan) {
+  const fs::path path = benchmark_folder / plan.folder / kResultName;
   std::error_code ignored;
-  if (!fs::exists(folder / kResultName, ignored) || !fs::exists(folder / "run" / "summary.json", ignored)) {
+  if (!fs::exists(path, ignored)) {
     return std::nullopt;
   }
   try {
-    const Json saved = formats::read_json_object(folder / kResultName);
-    const CellResult result = cell_from_json(saved.at("result").dump(), folder / kResultName);
+    const Json saved = formats::read_json_object(path);
+    const CellResult result = cell_from_json(saved.at("result").dump(), path);
     const bool same = saved.at("fingerprint") == Json::parse(plan.fingerprint) && result.key == plan.key;
-    return same && result.finished ? std::optional(result) : std::nullopt;
+    return same ? std::optional(result) : std::nullopt;
   } catch (const std::exception&) {
     return std::nullopt;  // of another version or damaged: as good as none
   }
+}
+
+std::optional<CellResult> saved_result(const fs::path& benchmark_folder, const CellPlan& plan) {
+  std::error_code ignored;
+  const bool is_there = fs::exists(benchmark_folder / plan.folder / "run" / "summary.json", ignored);
+  const auto result = is_there ? ended_result(benchmark_folder, plan) : std::nullopt;
+  return result && result->finished ? result : std::nullopt;
 }
 
 pid_t start_cell(const fs::path& benchmark_folder, const fs::path& program, const CellPlan& plan) {
@@ -174,6 +189,7 @@ CellResult finish_cell(const fs::path& benchmark_folder, const CellPlan& plan, c
   result.key = plan.key;
   result.folder = plan.folder;
   result.jobs = jobs;
+  result.processor = other_processor(plan);
   result.peak_memory_mib = child.peak_memory_mib;
   // A method that loses most scans has numbers all the same, which a comparison is about.
   if (!child.succeeded() && child.exit_status != runs::kMostScansLost) {

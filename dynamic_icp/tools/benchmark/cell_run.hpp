@@ -16,6 +16,9 @@
 // beside files of another run, wherever the process is killed.
 namespace dynamic_icp::benchmark {
 
+/// The result of the last run of this cell, finished or not, when its fingerprint is the same.
+std::optional<CellResult> ended_result(const std::filesystem::path& benchmark_folder, const CellPlan& plan);
+
 /// The result of an earlier run of the same cell that finished, when its fingerprint is the same and its run is there.
 std::optional<CellResult> saved_result(const std::filesystem::path& benchmark_folder, const CellPlan& plan);
 

@@ -48,6 +48,17 @@ void collect_files(const fs::path& folder, std::set<fs::path>& seen, std::vector
   }
 }
 
+std::vector<fs::path> files_below(const fs::path& folder, const fs::path& except) {
+  std::vector<fs::path> files;
+  std::set<fs::path> seen;
+  if (!except.empty()) {
+    std::error_code ignored;
+    seen.insert(fs::weakly_canonical(except, ignored));
+  }
+  collect_files(folder, seen, files);
+  return files;
+}
+
 }  // namespace
 
 void Checksum::mix(std::uint64_t word) {
@@ -97,17 +108,21 @@ std::string content_checksum(const fs::path& path, const fs::path& except) {
     checksum.add_file(path);
     return checksum.text();
   }
-  std::vector<fs::path> files;
-  std::set<fs::path> seen;
-  if (!except.empty()) {
-    seen.insert(fs::weakly_canonical(except, ignored));
-  }
-  collect_files(path, seen, files);
-  for (const fs::path& file : files) {
+  for (const fs::path& file : files_below(path, except)) {
     checksum.add(file.lexically_relative(path).string());
     checksum.add_file(file);
   }
   return checksum.text();
+}
+
+std::uintmax_t content_bytes(const fs::path& path, const fs::path& except) {
+  std::error_code ignored;
+  std::uintmax_t bytes = 0;
+  for (const fs::path& file : fs::is_directory(path, ignored) ? files_below(path, except) : std::vector{path}) {
+    const std::uintmax_t size = fs::file_size(file, ignored);
+    bytes += ignored ? 0 : size;
+  }
+  return bytes;
 }
 
 std::string file_checksum(const fs::path& path) {

@@ -33,6 +33,9 @@ class Checksum {
 /// links to folders. Hidden files, pictures, which no recording is read from, and what lies in `except` are left out.
 std::string content_checksum(const std::filesystem::path& path, const std::filesystem::path& except = {});
 
+/// The sizes of the same files together.
+std::uintmax_t content_bytes(const std::filesystem::path& path, const std::filesystem::path& except = {});
+
 /// The checksum of a whole file. Throws DataError when it cannot be read.
 std::string file_checksum(const std::filesystem::path& path);
 

@@ -30,6 +30,16 @@ class ContentChecksumTest : public FolderTest {
   std::string before_;
 };
 
+TEST_F(ContentChecksumTest, SizesAreThoseOfTheSameFiles) {
+  EXPECT_EQ(content_bytes(data()), 3 * big_.size() + 5);
+  EXPECT_EQ(content_bytes(data() / "poses.txt"), 5u);
+  write_file(data() / "picture.png", "many pixels");
+  write_file(data() / ".hidden", "notes");
+  EXPECT_EQ(content_bytes(data()), 3 * big_.size() + 5);
+  EXPECT_EQ(content_bytes(data(), data() / "scans"), 5u);
+  EXPECT_EQ(content_bytes(data() / "nowhere"), 0u);
+}
+
 TEST_F(ContentChecksumTest, IsThatOfNamesAndContents) {
   EXPECT_EQ(content_checksum(data()), before_);
   write_file(data() / "poses.txt", "1 2 4");

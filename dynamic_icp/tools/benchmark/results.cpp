@@ -20,6 +20,7 @@ Json cell_json(const CellResult& result) {
                {"failure", result.failure},
                {"folder", result.folder.string()},
                {"jobs", result.jobs},
+               {"processor", result.processor},
                {"frames", result.frames}};
   const auto write = [&](const char* key, const std::optional<double>& value) {
     json[key] = value ? Json(*value) : Json(nullptr);
@@ -39,6 +40,7 @@ CellResult cell_result(const Json& json) {
   result.failure = json.at("failure").get<std::string>();
   result.folder = json.at("folder").get<std::string>();
   result.jobs = json.at("jobs").get<int>();
+  result.processor = json.value("processor", "");
   result.frames = json.at("frames").get<std::size_t>();
   const auto read = [&](const char* key, std::optional<double>& value) {
     const Json& number = json.at(key);

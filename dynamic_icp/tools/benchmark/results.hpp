@@ -78,6 +78,7 @@ struct CellResult {
   std::vector<std::string> notes;  ///< what the run had to assume
   std::size_t warnings = 0;        ///< of the run; they are in its run.json
   int jobs = 1;                    ///< runs at the same time when this one was measured
+  std::string processor;           ///< of the machine that ran it; empty: that of the benchmark
 };
 
 /// Calls visit(key, number) for each number of a result, those of summary.json by the keys they have there: one list
@@ -145,6 +146,9 @@ struct BenchmarkResults {
   BenchmarkInfo info;
   std::vector<CellResult> cells;  ///< in the order of sequences, methods, ablations
 };
+
+/// Name of the file with the results in the folder of a benchmark.
+inline constexpr const char* kResultsName = "results.json";
 
 /// One cell as text and back, for the file beside its run. `cell_from_json` throws DataError naming `origin`.
 std::string to_json(const CellResult& result);

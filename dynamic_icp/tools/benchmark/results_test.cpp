@@ -39,6 +39,7 @@ CellResult full_cell() {
   cell.notes = {"a scan period of 0.1 s is assumed", "\"quoted\""};
   cell.warnings = 4;
   cell.jobs = 3;
+  cell.processor = "another processor";
   return cell;
 }
 
@@ -88,6 +89,7 @@ void expect_equal(const CellResult& a, const CellResult& b) {
   EXPECT_EQ(a.notes, b.notes);
   EXPECT_EQ(a.warnings, b.warnings);
   EXPECT_EQ(a.jobs, b.jobs);
+  EXPECT_EQ(a.processor, b.processor);
 }
 
 TEST(Results, ACellReadsBackAsItWas) {

@@ -135,6 +135,7 @@ Sequence open_sequence(const fs::path& path, const datasets::InputSettings& sett
   sequence.first_stamp = dataset->stamp(0);
   sequence.last_stamp = dataset->stamp(dataset->size() - 1);
   sequence.object_truth = object_truth_of(path, *dataset);
+  sequence.bytes = content_bytes(whole_recording(path), output);
   sequence.content = recording_checksum(path, *dataset, sequence.object_truth, output);
   return sequence;
 }

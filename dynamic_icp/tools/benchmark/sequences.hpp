@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -22,6 +23,7 @@ struct Sequence {
   Stamp last_stamp;
   std::string content;                 ///< checksum of all that is read of it
   std::filesystem::path object_truth;  ///< objects.jsonl of a simulated recording; empty without
+  std::uintmax_t bytes = 0;            ///< of all that is read of it
 };
 
 struct Sequences {

@@ -198,12 +198,13 @@ TEST(Tables, EveryCaptionSaysWithWhatWhereAndOnWhat) {
   ours.tracks.false_per_1000_scans = 0.0;
   ours.jobs = 3;
   ours.notes = {"the sensor sees"};
+  ours.processor = "a slow processor";
   const auto tables = all_tables(with({"a"}, {ours, cell("a", "dynamic-icp", 0.1, "no-vf")}));
   EXPECT_EQ(tables.size(), 6u);
   for (const Table& table : tables) {
     for (const char* words :
-         {"9.8.7", "preset paper with a.b=3", "a good machine", "threads of a run: 4", "runs at the same time: 3",
-          "Inputs: a in /data.", "Assumed (dynamic-icp): the sensor sees."}) {
+         {"9.8.7", "preset paper with a.b=3", "a good machine, some runs on a slow processor", "threads of a run: 4",
+          "runs at the same time: 3", "Inputs: a in /data.", "Assumed (dynamic-icp): the sensor sees."}) {
       EXPECT_NE(table.caption.find(words), std::string::npos) << table.name << ": " << table.caption;
     }
     for (const auto& cells : table.rows) {
