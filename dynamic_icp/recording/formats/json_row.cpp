@@ -7,7 +7,6 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/formats/text_lines.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::formats {
@@ -106,15 +105,13 @@ Json read_json_object(const std::filesystem::path& path) {
 }
 
 void for_each_json_line(const std::filesystem::path& path, const std::function<void(const JsonRow&)>& use) {
-  const std::string content = read_text_file(path);
-  std::string_view rest = content;
-  for (std::size_t line = 1; const auto text = take_line(rest); ++line) {
-    if (!text->empty()) {
+  for_each_text_line(path, [&](std::string_view text, std::size_t line) {
+    if (!text.empty()) {
       const std::string place = fmt::format("{}, line {}", path.string(), line);
-      const Json object = parse(*text, place);
+      const Json object = parse(text, place);
       use(JsonRow(object, place));
     }
-  }
+  });
 }
 
 }  // namespace dynamic_icp::formats

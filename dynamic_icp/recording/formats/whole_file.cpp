@@ -63,6 +63,35 @@ std::string read_to_end(int descriptor, const std::filesystem::path& path, std::
   }
 }
 
+/// Fills the rest of a buffer; how much of it, less than all only at the end of the file.
+std::size_t read_into(std::string& buffer, std::size_t used, int descriptor, const std::filesystem::path& path) {
+  const std::size_t before = used;
+  while (used < buffer.size()) {
+    const ssize_t got = ::read(descriptor, buffer.data() + used, buffer.size() - used);
+    if (got == 0) {
+      break;
+    }
+    if (got < 0 && errno != EINTR) {
+      throw_error(path, "read");
+    }
+    used += got > 0 ? static_cast<std::size_t>(got) : 0;
+  }
+  return used - before;
+}
+
+Descriptor open_to_read(const std::filesystem::path& path) {
+  refuse_irregular(path);
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
+  if (descriptor < 0) {
+    throw_error(path, "open");
+  }
+  return Descriptor(descriptor);
+}
+
+[[noreturn]] void refuse_zero_byte(const std::filesystem::path& path, std::size_t line) {
+  throw DataError(fmt::format("{}: line {}: has a zero byte, expected text", path.string(), line));
+}
+
 }  // namespace
 
 OutputFile::OutputFile(const std::filesystem::path& path) : OutputFile(path, path) {}
@@ -145,11 +174,7 @@ void write_whole_file(const std::filesystem::path& path, std::string_view conten
 }
 
 std::string read_whole_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
-  refuse_irregular(path);
-  const Descriptor file(::open(path.c_str(), O_RDONLY | O_CLOEXEC));
-  if (file.number < 0) {
-    throw_error(path, "open");
-  }
+  const Descriptor file = open_to_read(path);
   std::error_code unknown_size;
   const std::uintmax_t size = std::filesystem::file_size(path, unknown_size);
   const std::uintmax_t expected = unknown_size ? 0 : size;
@@ -161,10 +186,46 @@ std::string read_text_file(const std::filesystem::path& path) {
   std::string text = read_whole_file(path, kMaxTextBytes);
   refuse_other_kind(path, text, FileKind::kUnknown);
   if (const std::size_t zero = text.find('\0'); zero != std::string::npos) {
-    const auto line = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n') + 1;
-    throw DataError(fmt::format("{}: line {}: has a zero byte, expected text", path.string(), line));
+    const auto lines = std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+    refuse_zero_byte(path, static_cast<std::size_t>(lines) + 1);
   }
   return text;
+}
+
+void for_each_text_line(const std::filesystem::path& path,
+                        const std::function<void(std::string_view line, std::size_t number)>& use) {
+  constexpr std::size_t kBlockBytes = std::size_t{1} << 20U;
+  const Descriptor file = open_to_read(path);
+  std::string buffer;
+  std::size_t used = 0;  // bytes of the buffer that were read and not used yet
+  std::size_t number = 0;
+  const auto use_line = [&](std::string_view line) {
+    ++number;
+    if (line.find('\0') != std::string_view::npos) {
+      refuse_zero_byte(path, number);
+    }
+    use(line, number);
+  };
+  for (bool at_end = false; !at_end;) {
+    refuse_longer(path, used, kMaxTextBytes);
+    with_memory_for(path, [&] { buffer.resize(used + kBlockBytes); });
+    const std::size_t got = read_into(buffer, used, file.number, path);
+    at_end = got < kBlockBytes;
+    std::string_view rest = std::string_view(buffer).substr(0, used + got);
+    if (number == 0) {
+      refuse_other_kind(path, rest, FileKind::kUnknown);
+    }
+    for (std::size_t end = rest.find('\n', used); end != std::string_view::npos; end = rest.find('\n')) {
+      use_line(rest.substr(0, end));
+      rest.remove_prefix(end + 1);
+    }
+    if (at_end && !rest.empty()) {
+      use_line(rest);
+    }
+    const std::size_t begin = used + got - rest.size();
+    used = rest.size();
+    buffer.erase(0, begin);
+  }
 }
 
 }  // namespace dynamic_icp::formats

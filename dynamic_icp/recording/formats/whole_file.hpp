@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -73,5 +74,11 @@ constexpr std::uintmax_t kMaxTextBytes = std::uintmax_t{1} << 30U;
 /// The same for a text: one that is too long or has a zero byte in it is refused, and so is a file that is known to be
 /// no text (see kind_of). Some parsers take a zero byte for the end and would miss what follows.
 std::string read_text_file(const std::filesystem::path& path);
+
+/// Calls use(line, number) for each line of a text, without its line feed and counted from 1: of a file of any length,
+/// in as much memory as its longest line takes, which must not be longer than kMaxTextBytes. Throws as read_text_file
+/// does.
+void for_each_text_line(const std::filesystem::path& path,
+                        const std::function<void(std::string_view line, std::size_t number)>& use);
 
 }  // namespace dynamic_icp::formats

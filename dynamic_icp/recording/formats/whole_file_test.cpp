@@ -127,5 +127,34 @@ TEST_F(WholeFile, TextsHoldNoZeroBytesAndNothingElse) {
   expect_refusal([&] { (void)read_text_file(folder_ / "a"); }, "is a zip archive");
 }
 
+TEST_F(WholeFile, LinesAreReadOfFilesOfAnyLength) {
+  const std::string long_line(2'500'000, 'x');  // over the ends of blocks
+  const std::vector<std::string> lines = {"a", "", long_line, "b", std::string((1U << 20U) - 1, 'y'), long_line};
+  for (const bool has_end : {true, false}) {
+    std::string text;
+    for (const std::string& line : lines) {
+      text += (text.empty() ? "" : "\n") + line;
+    }
+    write_whole_file(folder_ / "a", text + (has_end ? "\n" : ""));
+    std::vector<std::string> read;
+    for_each_text_line(folder_ / "a", [&](std::string_view line, std::size_t number) {
+      read.emplace_back(line);
+      EXPECT_EQ(number, read.size());
+    });
+    EXPECT_TRUE(read == lines);
+  }
+  write_whole_file(folder_ / "a", "");
+  for_each_text_line(folder_ / "a", [](std::string_view, std::size_t) { ADD_FAILURE() << "there is none"; });
+  const auto read = [&] { for_each_text_line(folder_ / "a", [](std::string_view, std::size_t) {}); };
+  write_whole_file(folder_ / "a", std::string("{}\n\0\0", 5));
+  expect_refusal(read, "line 2: has a zero byte, expected text");
+  write_whole_file(folder_ / "a", std::string("PK\x03\x04\0", 5));
+  expect_refusal(read, "is a zip archive");
+  fs::remove(folder_ / "a");
+  expect_refusal(read, "cannot open");
+  fs::create_directory(folder_ / "a");
+  EXPECT_THROW(read(), DataError);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::formats
