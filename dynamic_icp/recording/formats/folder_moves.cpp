@@ -13,7 +13,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/formats/folder_lock.hpp"
+#include "dynamic_icp/recording/formats/path_lock.hpp"
 #include "dynamic_icp/recording/formats/staged_names.hpp"
 
 namespace dynamic_icp::formats {
@@ -76,10 +76,10 @@ void settle_within(const fs::path& target) {
   if (names.found().empty()) {
     return;
   }
-  const FolderLock moving(target, FolderLock::Wait::kYes);
+  const PathLock moving(target, PathLock::Wait::kYes);
   for (const StagedNames::Found& left : names.found()) {
     std::error_code ignored;
-    const FolderLock lock(left.path);
+    const PathLock lock(left.path);
     if (!lock.is_of(left.path)) {
       continue;  // being written
     }
@@ -103,7 +103,7 @@ void settle_within(const fs::path& target) {
 
 void settle_beside(const fs::path& target) {
   for (const StagedNames::Found& left : StagedNames::beside(target).found()) {
-    const FolderLock lock(left.path);
+    const PathLock lock(left.path);
     if (!lock.is_of(left.path)) {
       continue;
     }
@@ -184,7 +184,7 @@ void move_beside(const fs::path& target, const std::string& number, const Folder
       }
       continue;  // another one was faster
     }
-    const FolderLock replacing(target, FolderLock::Wait::kYes);  // nor must it look left behind while it is checked
+    const PathLock replacing(target, PathLock::Wait::kYes);  // nor must it look left behind while it is checked
     if (replacing.held() && !replacing.is_of(target)) {
       continue;
     }
@@ -205,7 +205,7 @@ void move_within(const fs::path& target, const std::string& number, const std::s
   const fs::path partial = names.path(Staged::kPartial, number);
   const fs::path arriving = names.path(Staged::kArriving, number);
   const fs::path replaced = names.path(Staged::kReplaced, number);
-  const FolderLock moving(target, FolderLock::Wait::kYes);
+  const PathLock moving(target, PathLock::Wait::kYes);
   check(target);
   const bool replacing = !is_vacant(target);
   try {
@@ -229,7 +229,7 @@ void move_within(const fs::path& target, const std::string& number, const std::s
 
 void remove_abandoned(const fs::path& folder, const ResultKind& kind) {
   for (const fs::path& left : partial_folders(folder)) {
-    const FolderLock lock(left);
+    const PathLock lock(left);
     try {
       if (lock.is_of(left) && !foreign_entry(left, kind)) {
         clear_away(left);

@@ -10,7 +10,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include "dynamic_icp/recording/formats/folder_lock.hpp"
+#include "dynamic_icp/recording/formats/path_lock.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -134,8 +134,8 @@ TEST_F(FolderMovesTest, WhatOthersHoldOrIsNotOursStays) {
   make(parent_ / ".out.partial-mine", "not ours");
   make(parent_ / ".other.partial-1", "not of this one");
   {
-    const FolderLock beside(staging_);
-    const FolderLock within(out_ / ".dynamic-icp.partial-1");
+    const PathLock beside(staging_);
+    const PathLock within(out_ / ".dynamic-icp.partial-1");
     ASSERT_TRUE(beside.held() && within.held());
     remove_leftovers(out_);
     EXPECT_EQ(entries(parent_), 4);

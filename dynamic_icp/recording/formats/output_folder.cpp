@@ -93,7 +93,7 @@ OutputFolder::~OutputFolder() {
 
 void OutputFolder::check_final() const {
   while (true) {
-    const FolderLock looking(final_, FolderLock::Wait::kYes);  // who replaces it may do so first
+    const PathLock looking(final_, PathLock::Wait::kYes);  // who replaces it may do so first
     if (!looking.held() || looking.is_of(final_)) {
       check_replaceable(final_);
       return;
@@ -166,7 +166,7 @@ void OutputFolder::make_staging() {
       }
       continue;
     }
-    lock_ = std::make_unique<FolderLock>(staging);
+    lock_ = std::make_unique<PathLock>(staging);
     // Until it is locked, another one may take it for left behind.
     std::error_code ignored;
     const bool there = lock_->held() ? lock_->is_of(staging) : !lock_->taken() && fs::exists(staging, ignored);

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/formats/folder_lock.hpp"
+#include "dynamic_icp/recording/formats/path_lock.hpp"
 #include "dynamic_icp/recording/formats/result_kind.hpp"
 #include "dynamic_icp/recording/formats/unfinished.hpp"
 
@@ -76,7 +76,7 @@ class OutputFolder {
   bool within_;         ///< whether staging_ lies in final_
   std::string number_;  ///< of staging_
   std::filesystem::path staging_;
-  std::unique_ptr<FolderLock> lock_;  ///< on the staging folder, so that others can tell it from one left behind
+  std::unique_ptr<PathLock> lock_;  ///< on the staging folder, so that others can tell it from one left behind
   std::unique_ptr<Unfinished> unfinished_;
 };
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -139,10 +140,26 @@ StagedFile::StagedFile(const std::filesystem::path& path) : path_(path) {
     file_.emplace(path);  // a device or pipe: a file in its place would take it from everybody
     return;
   }
-  partial_ = path;
-  partial_ += fmt::format(".partial-{}", ::getpid());
+  make_partial();
   unfinished_.emplace(partial_);
   file_.emplace(partial_, path);
+}
+
+void StagedFile::make_partial() {
+  for (int number = 1; partial_.empty(); ++number) {
+    std::filesystem::path partial = path_;
+    partial += fmt::format(".partial-{}", number);
+    const Descriptor made(::open(partial.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666));
+    const bool is_new = made.number >= 0;
+    if (!is_new && errno != EEXIST) {
+      throw_error(path_, "create");
+    }
+    lock_.emplace(partial);
+    // Where there are no locks nobody knows whether an earlier one is still being written.
+    if (lock_->held() ? lock_->is_of(partial) : is_new && !lock_->taken()) {
+      partial_ = std::move(partial);
+    }
+  }
 }
 
 StagedFile::~StagedFile() {
@@ -165,6 +182,7 @@ void StagedFile::commit() {
   }
   partial_.clear();
   unfinished_.reset();
+  lock_.reset();
 }
 
 void write_whole_file(const std::filesystem::path& path, std::string_view content) {

@@ -10,6 +10,7 @@
 #include <string>
 #include <string_view>
 
+#include "dynamic_icp/recording/formats/path_lock.hpp"
 #include "dynamic_icp/recording/formats/unfinished.hpp"
 
 namespace dynamic_icp::formats {
@@ -38,8 +39,9 @@ class OutputFile {
 };
 
 /// A file written piece by piece that appears whole or not at all: under a temporary name beside `path` until commit().
-/// Without that nothing is left, and an earlier file of that name stays untouched. A device or pipe of that name is
-/// written into. Every failure of the machine is a DataError that names `path`.
+/// Without that nothing is left, and an earlier file of that name stays untouched. What a
+/// writer that was killed has left is written over by the next one. A device or pipe of that name is written into.
+/// Every failure of the machine is a DataError that names `path`.
 class StagedFile {
  public:
   explicit StagedFile(const std::filesystem::path& path);
@@ -53,8 +55,11 @@ class StagedFile {
   void commit();
 
  private:
+  void make_partial();
+
   std::filesystem::path path_;
   std::filesystem::path partial_;  ///< empty: written into what there is, or committed
+  std::optional<PathLock> lock_;   ///< of it: it is being written
   std::optional<Unfinished> unfinished_;
   std::optional<OutputFile> file_;
 };

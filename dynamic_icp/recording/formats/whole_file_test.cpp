@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
+#include <csignal>
 #include <fstream>
 #include <new>
 #include <stdexcept>
@@ -9,6 +10,7 @@
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
@@ -64,6 +66,42 @@ TEST_F(WholeFile, FailureNamesTheFileAndLeavesTheEarlierOne) {
   EXPECT_THROW(write_whole_file(folder_ / "missing" / "a", "x"), DataError);
   EXPECT_EQ(read_whole_file(folder_ / "a"), "earlier");
   EXPECT_EQ(entries(), 2u);
+}
+
+TEST_F(WholeFile, WhatAKilledWriterLeftIsWrittenOver) {
+  const pid_t child = ::fork();
+  if (child == 0) {
+    StagedFile file(folder_ / "a");
+    file.write("longer than what comes after it");
+    ::raise(SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  ASSERT_EQ(entries(), 1U) << "what it left";
+  write_whole_file(folder_ / "b", "x");
+  EXPECT_EQ(entries(), 2U) << "that of another file is nobody else's";
+  write_whole_file(folder_ / "a", "whole");
+  EXPECT_EQ(read_whole_file(folder_ / "a"), "whole");
+  EXPECT_EQ(entries(), 2U);
+}
+
+TEST_F(WholeFile, TwoWritersDoNotMeet) {
+  StagedFile slow(folder_ / "a");
+  slow.write("slow");
+  write_whole_file(folder_ / "a", "fast");
+  EXPECT_EQ(read_whole_file(folder_ / "a"), "fast");
+  slow.write("er");
+  slow.commit();
+  EXPECT_EQ(read_whole_file(folder_ / "a"), "slower");
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(WholeFile, ALinkInTheWayIsNotFollowed) {
+  write_whole_file(folder_ / "other", "untouched");
+  fs::create_symlink(folder_ / "other", folder_ / "a.partial-1");
+  write_whole_file(folder_ / "a", "x");
+  EXPECT_EQ(read_whole_file(folder_ / "other"), "untouched");
 }
 
 TEST_F(WholeFile, ADeviceOrPipeIsWrittenIntoAndStays) {

@@ -6,25 +6,25 @@
 
 namespace dynamic_icp::formats {
 
-/// A lock on a folder, whatever its name becomes. It ends with the process, however that ends.
-class FolderLock {
+/// A lock on a folder or file, whatever its name becomes. It ends with the process, however that ends.
+class PathLock {
  public:
   enum class Wait { kNo, kYes };
 
   /// Throws DataError when it was to wait and another one holds the lock for longer than moving folders takes.
-  explicit FolderLock(const std::filesystem::path& folder, Wait wait = Wait::kNo);
-  ~FolderLock() { release(); }
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
+  explicit PathLock(const std::filesystem::path& path, Wait wait = Wait::kNo);
+  ~PathLock() { release(); }
+  PathLock(const PathLock&) = delete;
+  PathLock& operator=(const PathLock&) = delete;
 
-  /// False when another one holds it, or where there is no such folder or no locks.
+  /// False when another one holds it, or where there is no such path or no locks.
   [[nodiscard]] bool held() const { return descriptor_ >= 0; }
 
   /// Another one holds it.
   [[nodiscard]] bool taken() const { return taken_; }
 
-  /// Whether the folder that was locked still has this name.
-  [[nodiscard]] bool is_of(const std::filesystem::path& folder) const;
+  /// Whether what was locked still has this name.
+  [[nodiscard]] bool is_of(const std::filesystem::path& path) const;
 
   void release();
 

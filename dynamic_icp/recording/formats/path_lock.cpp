@@ -1,6 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-#include "dynamic_icp/recording/formats/folder_lock.hpp"
+#include "dynamic_icp/recording/formats/path_lock.hpp"
 
 #include <cerrno>
 #include <chrono>
@@ -20,10 +20,16 @@ namespace {
 constexpr std::chrono::seconds kLongestWait{30};
 constexpr std::chrono::milliseconds kBetweenLooks{2};
 
+/// A file behind a link is not opened, a folder is; network file systems lock only files that may be written.
+int open_to_lock(const std::filesystem::path& path) {
+  const int file = ::open(path.c_str(), O_RDWR | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  return file >= 0 || (errno != EISDIR && errno != ELOOP) ? file
+                                                          : ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+}
+
 }  // namespace
 
-FolderLock::FolderLock(const std::filesystem::path& folder, Wait wait)
-    : descriptor_(::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC)) {
+PathLock::PathLock(const std::filesystem::path& path, Wait wait) : descriptor_(open_to_lock(path)) {
   if (descriptor_ < 0) {
     return;
   }
@@ -38,18 +44,18 @@ FolderLock::FolderLock(const std::filesystem::path& folder, Wait wait)
     release();
   }
   if (taken_ && wait == Wait::kYes) {
-    throw DataError(fmt::format("{}: another process has locked this folder", folder.string()));
+    throw DataError(fmt::format("{}: another process has locked it", path.string()));
   }
 }
 
-bool FolderLock::is_of(const std::filesystem::path& folder) const {
+bool PathLock::is_of(const std::filesystem::path& path) const {
   struct stat own = {};
   struct stat there = {};
-  return held() && ::fstat(descriptor_, &own) == 0 && ::stat(folder.c_str(), &there) == 0 &&
-         own.st_dev == there.st_dev && own.st_ino == there.st_ino;
+  return held() && ::fstat(descriptor_, &own) == 0 && ::stat(path.c_str(), &there) == 0 && own.st_dev == there.st_dev &&
+         own.st_ino == there.st_ino;
 }
 
-void FolderLock::release() {
+void PathLock::release() {
   if (descriptor_ >= 0) {
     ::close(descriptor_);
     descriptor_ = -1;
