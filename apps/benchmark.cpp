@@ -149,8 +149,8 @@ int run_benchmark(BenchmarkOptions options) {
   const std::vector<Candidate> rivals = choose_candidates(
       options.methods, options.ablations.value_or(options.methods == "all" ? "all" : "none"), options.run);
   const benchmark::Sequences opened = open_recordings(options);
-  for (const std::string& reason : opened.skipped) {
-    tell("dynamic-icp: warning: left out: {}\n", reason);
+  for (const benchmark::Skipped& skipped : opened.skipped) {
+    tell("dynamic-icp: warning: left out: {}\n", with_options(skipped.reason, skipped.proposal));
   }
   const benchmark::BenchmarkFolder folder(options.output);
   const benchmark::Program program = this_program();

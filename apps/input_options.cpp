@@ -123,11 +123,12 @@ std::string as_options(const std::vector<std::pair<std::string, std::string>>& s
   return options;
 }
 
-std::string with_options(const datasets::UnclearInput& error) {
-  const std::string what = error.what();
+std::string with_options(const std::string& what, const datasets::UnclearInput::Settings& proposal) {
+  if (proposal.empty()) {
+    return what;
+  }
   const bool is_list = what.find('\n') != std::string::npos;
-  return fmt::format("{}{} {}", what, is_list ? "\nfor instance" : "; state it, e.g. with",
-                     as_options(error.proposal()));
+  return fmt::format("{}{} {}", what, is_list ? "\nfor instance" : "; state it, e.g. with", as_options(proposal));
 }
 
 std::string fixing_options(const diagnosis::Finding& finding, const datasets::InputSettings& settings) {

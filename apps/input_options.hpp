@@ -29,8 +29,8 @@ void add_correction_options(CLI::App& command, datasets::InputSettings& settings
 /// Settings of an input (input_settings.hpp) as the options that state them, as a shell takes them.
 std::string as_options(const std::vector<std::pair<std::string, std::string>>& settings);
 
-/// What stands in the way of reading an input, with the options that help.
-std::string with_options(const datasets::UnclearInput& error);
+/// What stands in the way of reading an input, with the options that help, if there are any.
+std::string with_options(const std::string& what, const datasets::UnclearInput::Settings& proposal);
 
 /// The options that fix what is found of an input that was opened with these settings, to be stated instead of or
 /// beside those; "" where none do.

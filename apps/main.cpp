@@ -116,7 +116,7 @@ int main(int argc, char** argv) {
   } catch (const dynamic_icp::formats::EarlierResult& error) {
     return report(fmt::format("{}; use --force to replace it", error.what()), kDataOrMachineFailed);
   } catch (const dynamic_icp::datasets::UnclearInput& error) {
-    return report(apps::with_options(error), kDataOrMachineFailed);
+    return report(apps::with_options(error.what(), error.proposal()), kDataOrMachineFailed);
   } catch (const std::bad_alloc&) {
     return report("the machine has no memory left", kDataOrMachineFailed);
   } catch (const std::system_error& error) {

@@ -128,19 +128,23 @@ Sequences open_manifest(const Manifest& manifest, const fs::path& root, const da
     const fs::path folder = find(entry, folders);
     if (folder.empty()) {
       opened.skipped.push_back(
-          fmt::format("{}: no folder '{}' below {}", entry.name, fmt::join(entry.folders, "' or '"), root.string()));
+          {fmt::format("{}: no folder '{}' below {}", entry.name, fmt::join(entry.folders, "' or '"), root.string()),
+           {}});
       continue;
     }
     try {
       opened.sequences.push_back(open_sequence(folder, settings, output));
       opened.sequences.back().label = entry.name;
+    } catch (const datasets::UnclearInput& error) {
+      opened.skipped.push_back({fmt::format("{}: {}", entry.name, error.what()), error.proposal()});
     } catch (const DataError& error) {
-      opened.skipped.push_back(fmt::format("{}: {}", entry.name, error.what()));
+      opened.skipped.push_back({fmt::format("{}: {}", entry.name, error.what()), {}});
     }
   }
   if (opened.sequences.empty()) {
-    throw DataError(fmt::format("{}: none of the {} recordings of the manifest is there:\n  {}", root.string(),
-                                manifest.sequences.size(), fmt::join(opened.skipped, "\n  ")));
+    refuse_all(
+        fmt::format("{}: none of the {} recordings of the manifest is there", root.string(), manifest.sequences.size()),
+        opened.skipped);
   }
   return opened;
 }

@@ -72,7 +72,7 @@ TEST_F(ManifestTest, WhatIsNotThereIsTold) {
   const Sequences opened = open_manifest(manifest(kList), folder_ / "data", {}, folder_ / "out");
   EXPECT_EQ(opened.sequences.size(), 1u);
   ASSERT_EQ(opened.skipped.size(), 1u);
-  EXPECT_NE(opened.skipped[0].find("library"), std::string::npos) << opened.skipped[0];
+  EXPECT_NE(opened.skipped[0].reason.find("library"), std::string::npos) << opened.skipped[0].reason;
   fs::remove_all(folder_ / "data" / "bridge");
   try {
     open_manifest(manifest(kList), folder_ / "data", {}, folder_ / "out");

@@ -4,9 +4,9 @@
 
 #include <memory>
 #include <set>
+#include <utility>
 
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/folder_search.hpp"
@@ -34,26 +34,27 @@ fs::path object_truth_of(const fs::path& path, const datasets::Dataset& dataset)
 bool append_folders(Sequences& into, const fs::path& path, const datasets::InputSettings& settings,
                     const fs::path& output) {
   const std::size_t before = into.sequences.size();
-  std::vector<std::string> skipped;
-  std::vector<std::string> damaged;
+  std::vector<Skipped> skipped;
+  std::vector<Skipped> damaged;
   for (const fs::path& folder : datasets::entries_of(path, datasets::is_visible_folder)) {
     try {
       if (folder != output) {
         into.sequences.push_back(open_sequence(folder, settings, output));
       }
     } catch (const datasets::NotARecording& error) {
-      skipped.emplace_back(error.what());
+      skipped.push_back({error.what(), {}});
+    } catch (const datasets::UnclearInput& error) {
+      damaged.push_back({error.what(), error.proposal()});
     } catch (const DataError& error) {
-      skipped.emplace_back(error.what());
-      damaged.emplace_back(error.what());
+      damaged.push_back({error.what(), {}});
     }
   }
   const bool found = into.sequences.size() > before;
   if (!found && !damaged.empty()) {
-    throw DataError(
-        fmt::format("{}: none of the recordings in it can be read:\n  {}", path.string(), fmt::join(damaged, "\n  ")));
+    refuse_all(fmt::format("{}: none of the recordings in it can be read", path.string()), damaged);
   }
   if (found) {
+    into.skipped.insert(into.skipped.end(), damaged.begin(), damaged.end());
     into.skipped.insert(into.skipped.end(), skipped.begin(), skipped.end());
   }
   return found;
@@ -123,6 +124,19 @@ void label_sequences(std::vector<Sequence>& sequences) {
 }
 
 }  // namespace
+
+void refuse_all(const std::string& what, const std::vector<Skipped>& skipped) {
+  std::string text = what + ":";
+  datasets::UnclearInput::Settings proposal;
+  for (const Skipped& one : skipped) {
+    text += "\n  " + one.reason;
+    proposal = proposal.empty() ? one.proposal : proposal;
+  }
+  if (proposal.empty()) {
+    throw DataError(text);
+  }
+  throw datasets::UnclearInput(text, std::move(proposal));
+}
 
 Sequence open_sequence(const fs::path& path, const datasets::InputSettings& settings, const fs::path& output) {
   const std::unique_ptr<datasets::Dataset> dataset = datasets::open_input(path, settings);

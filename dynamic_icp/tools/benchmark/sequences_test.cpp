@@ -2,9 +2,11 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/benchmark/sequences.hpp"
 
+#include <cmath>
 #include <set>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
 
 #include "testing/temporary_folder.hpp"
 
@@ -53,7 +55,7 @@ TEST_F(SequencesTest, AFolderOfRecordingsCountsAsAllOfThem) {
   const Sequences opened = open_sequences({(folder_ / "data").string()}, {}, folder_ / "out");
   EXPECT_EQ(labels({folder_ / "data"}), (Labels{"a", "b", "c"}));
   ASSERT_EQ(opened.skipped.size(), 1u);
-  EXPECT_NE(opened.skipped[0].find("notes"), std::string::npos) << "what is left out is told";
+  EXPECT_NE(opened.skipped[0].reason.find("notes"), std::string::npos) << "what is left out is told";
 }
 
 TEST_F(SequencesTest, RefusesWhatIsNoRecordingOrGivenTwice) {
@@ -91,6 +93,31 @@ TEST_F(SequencesTest, ADamagedRecordingIsNotTakenApart) {
   EXPECT_NE(all.find((rec / "ref_poses.txt").string()), std::string::npos) << all;
   make_recording(folder_ / "data" / "whole");
   EXPECT_EQ(labels({folder_ / "data"}), Labels{"whole"}) << "the damaged ones are left out, and told";
+}
+
+// Records of five numbers, of which nobody said what they are.
+TEST_F(SequencesTest, WhatCouldBeReadIsProposed) {
+  std::string records;
+  for (int i = 0; i < 5000; ++i) {
+    const float azimuth = 0.001F * static_cast<float>(i);
+    for (const float value : {20.0F * std::cos(azimuth), 20.0F * std::sin(azimuth), 1.0F, 100.0F, std::cos(azimuth)}) {
+      formats::append_value(records, value);
+    }
+  }
+  for (const char* name : {"a", "b"}) {
+    write_file(folder_ / "data" / name / "point_clouds" / "00000.bin", records);
+  }
+  try {
+    labels({folder_ / "data"});
+    FAIL() << "is unclear";
+  } catch (const datasets::UnclearInput& error) {
+    EXPECT_EQ(error.proposal().at(0).first, "columns");
+    EXPECT_NE(std::string(error.what()).find("looks like records of 5"), std::string::npos) << error.what();
+  }
+  make_recording(folder_ / "data" / "plain");
+  const Sequences opened = open_sequences({(folder_ / "data").string()}, {}, folder_ / "out");
+  ASSERT_EQ(opened.skipped.size(), 2U);
+  EXPECT_FALSE(opened.skipped[0].proposal.empty());
 }
 
 TEST_F(SequencesTest, LabelsHoldNoControlCharactersAndAreNoFilesOfTheBenchmark) {
