@@ -115,8 +115,8 @@ class TopicChoice {
     std::erase_if(clouds, [](const TopicSummary& topic) { return !topic.is_cloud || topic.messages == 0; });
     if (clouds.empty()) {
       throw DataError(
-          fmt::format("{}: holds no clouds of points (sensor_msgs/PointCloud2, sensor_msgs/PointCloud or "
-                      "foxglove.PointCloud); its topics:{}",
+          fmt::format("{}: holds no clouds of points (sensor_msgs/PointCloud2, sensor_msgs/PointCloud, "
+                      "radar_msgs/RadarScan or foxglove.PointCloud); its topics:{}",
                       path_.string(), listed_topics(all)));
     }
     std::vector<TopicSummary> usable = clouds;

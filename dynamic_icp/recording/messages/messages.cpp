@@ -16,6 +16,7 @@ namespace {
 
 constexpr std::string_view kPointCloud2 = "sensor_msgs/PointCloud2";
 constexpr std::string_view kPointCloud1 = "sensor_msgs/PointCloud";
+constexpr std::string_view kRadarScan = "radar_msgs/RadarScan";
 constexpr std::string_view kFoxgloveCloud = "foxglove.PointCloud";
 constexpr std::string_view kImu = "sensor_msgs/Imu";
 
@@ -38,9 +39,10 @@ Transforms one_json_transform(std::string_view text, const std::string& origin) 
   return {read_json_transform(text, origin)};
 }
 
-constexpr std::array<Decoder<PointCloud>, 3> kCloudDecoders = {
+constexpr std::array<Decoder<PointCloud>, 4> kCloudDecoders = {
     {{kPointCloud2, read_point_cloud2, nullptr, nullptr},
      {kPointCloud1, read_point_cloud1, nullptr, nullptr},
+     {kRadarScan, read_radar_scan, nullptr, nullptr},
      {kFoxgloveCloud, nullptr, read_protobuf_cloud, read_json_cloud}}};
 
 constexpr std::array<Decoder<StampedTransform>, 5> kPoseDecoders = {

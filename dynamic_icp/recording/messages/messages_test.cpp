@@ -232,6 +232,30 @@ TEST_P(OfEachWire, TheOldCloudOfChannels) {
   EXPECT_EQ(columns.values("Doppler"), (std::vector<double>{-1.5, 2.5}));
 }
 
+TEST_P(OfEachWire, ReturnsOfARadar) {
+  const Wire wire = GetParam();
+  const double quarter = 0.5 * std::numbers::pi;
+  Writer writer(wire);
+  writer.header(5'000'000'000, "radar").put(std::uint32_t{3});
+  for (const double number :
+       {10.0, 0.0, 0.0, -3.5, 20.0, 20.0, quarter, 0.0, 1.5, 21.0, 4.0, 0.0, quarter, 0.25, 22.0}) {
+    writer.put(static_cast<float>(number));
+  }
+  const bags::Topic topic = topic_of("radar_msgs/RadarScan", wire);
+  const CloudColumns columns(decode_cloud(topic, writer.bytes(), "bag"), "bag");
+  EXPECT_EQ(columns.cloud().header.stamp.ns, 5'000'000'000);
+  const double expected[][3] = {{10, 0, 0}, {0, 20, 0}, {0, 0, 4}};
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_NEAR(columns.values("x").at(i), expected[i][0], 1e-5);
+    EXPECT_NEAR(columns.values("y").at(i), expected[i][1], 1e-5);
+    EXPECT_NEAR(columns.values("z").at(i), expected[i][2], 1e-5);
+  }
+  EXPECT_EQ(columns.values("doppler_velocity"), (std::vector<double>{-3.5, 1.5, 0.25}));
+  EXPECT_EQ(columns.values("amplitude"), (std::vector<double>{20, 21, 22}));
+  expect_part(fault_of([&] { decode_cloud(topic, writer.bytes().substr(0, writer.bytes().size() - 1), "bag"); }),
+              "bag: ");
+}
+
 TEST_P(OfEachWire, TheHeaderIsInTheFront) {
   const Wire wire = GetParam();
   const std::string cloud = ros::float_cloud(77, "lidar", {"x", "y", "z", "v"}, {100, {1, 2, 3, 4}}).bytes(wire);

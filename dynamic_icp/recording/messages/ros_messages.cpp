@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/messages/ros_messages.hpp"
 
+#include <cmath>
+
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
@@ -54,6 +56,22 @@ void check_finite(const Eigen::Vector3d& vector, const std::string& origin, std:
   if (!vector.allFinite()) {
     throw DataError(fmt::format("{}: {} is ({}, {}, {}), expected finite numbers", origin, field, vector.x(),
                                 vector.y(), vector.z()));
+  }
+}
+
+/// Columns of float32, all of one length, as the points of a cloud.
+void put_columns(const std::vector<std::string>& names, const std::vector<std::vector<float>>& columns,
+                 PointCloud& cloud) {
+  const std::size_t points = columns.front().size();
+  cloud.width = static_cast<std::uint32_t>(points);
+  cloud.point_step = static_cast<std::uint32_t>(kFloat * columns.size());
+  cloud.row_step = std::uint64_t{cloud.point_step} * points;
+  cloud.data.resize(cloud.row_step);
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    cloud.fields.push_back({names[k], FieldType::kFloat32, static_cast<std::uint32_t>(kFloat * k), 1});
+    for (std::size_t i = 0; i < points; ++i) {
+      std::memcpy(cloud.data.data() + i * cloud.point_step + kFloat * k, &columns[k][i], kFloat);
+    }
   }
 }
 
@@ -118,17 +136,30 @@ PointCloud read_point_cloud1(WireCursor cursor, const std::string& origin) {
     }
   }
   cursor.finish();
+  put_columns(names, columns, cloud);
+  return cloud;
+}
 
-  cloud.width = static_cast<std::uint32_t>(points);
-  cloud.point_step = static_cast<std::uint32_t>(kFloat * columns.size());
-  cloud.row_step = std::uint64_t{cloud.point_step} * points;
-  cloud.data.resize(cloud.row_step);
-  for (std::size_t k = 0; k < columns.size(); ++k) {
-    cloud.fields.push_back({names[k], FieldType::kFloat32, static_cast<std::uint32_t>(kFloat * k), 1});
-    for (std::size_t i = 0; i < points; ++i) {
-      std::memcpy(cloud.data.data() + i * cloud.point_step + kFloat * k, &columns[k][i], kFloat);
+PointCloud read_radar_scan(WireCursor cursor, const std::string& /*origin*/) {
+  static const std::vector<std::string> kNames = {
+      "x", "y", "z", "range", "azimuth", "elevation", "doppler_velocity", "amplitude"};
+  constexpr std::size_t kNumbers = 5;  // of a return
+  PointCloud cloud;
+  cloud.header = read_header(cursor);
+  std::vector<std::vector<float>> columns(kNames.size());
+  for (std::size_t left = cursor.count(kNumbers * kFloat, "returns"); left > 0; --left) {
+    for (std::size_t k = 3; k < columns.size(); ++k) {
+      columns[k].push_back(cursor.number<float>("returns"));
     }
+    const double range = columns[3].back();
+    const double azimuth = columns[4].back();
+    const double elevation = columns[5].back();
+    columns[0].push_back(static_cast<float>(range * std::cos(elevation) * std::cos(azimuth)));
+    columns[1].push_back(static_cast<float>(range * std::cos(elevation) * std::sin(azimuth)));
+    columns[2].push_back(static_cast<float>(range * std::sin(elevation)));
   }
+  cursor.finish();
+  put_columns(kNames, columns, cloud);
   return cloud;
 }
 

@@ -19,6 +19,10 @@ PointCloud read_point_cloud2(WireCursor cursor, const std::string& origin);
 /// sensor_msgs/PointCloud: points of three float32, and channels of one number each.
 PointCloud read_point_cloud1(WireCursor cursor, const std::string& origin);
 
+/// radar_msgs/RadarScan: range, azimuth (counter-clockwise) and elevation of each return, rad, with Doppler and
+/// amplitude, float32; x, y, z in front of them.
+PointCloud read_radar_scan(WireCursor cursor, const std::string& origin);
+
 StampedTransform read_pose_stamped(WireCursor cursor, const std::string& origin);
 StampedTransform read_pose_with_covariance_stamped(WireCursor cursor, const std::string& origin);
 StampedTransform read_transform_stamped(WireCursor cursor, const std::string& origin);
