@@ -103,13 +103,16 @@ UnitGuess guess_units(std::span<const RawScan> scans) {
 
 ColumnScores score_columns(std::span<const RawScan> scans, const Workers& workers) {
   ColumnScores scores;
+  // Coordinates in km are so small that any velocity explains them.
+  const UnitGuess as_stored = guess_units(scans);
+  const UnitGuess at_least_metres{std::max(1.0, as_stored.points), 1.0};
   for (int column = 0; column < 4; ++column) {
     std::vector<double> residuals;
     for (const RawScan& scan : scans) {
       if (!tells_columns(scan)) {
         continue;
       }
-      const RawScan few = prepared(thinned(scan), column, {});
+      const RawScan few = prepared(prepared(thinned(scan), 3, at_least_metres), column, {});
       // Each order of columns has its own guess: what is taken for the Doppler may be millimetres.
       const UnitGuess units = guess_units(std::span(&few, 1));
       residuals.push_back(static_residual(prepared(few, 3, units), workers));

@@ -11,6 +11,8 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr double kNearPower = 0.15;
+constexpr double kFeetPerMetre = 3.28084;
+constexpr double kNearFeet = 0.03;
 
 /// How much farther the sensor moves by the points than by what knows metres: truth, else the Doppler.
 std::optional<double> scale_by_motion(const Evidence& evidence) {
@@ -47,7 +49,8 @@ Finding point_units(const Evidence& evidence) {
     return finding;
   }
   double factor = evidence.units.points;
-  if (const std::optional<double> scale = scale_by_motion(evidence); scale && *scale > 0.0) {
+  const std::optional<double> scale = scale_by_motion(evidence);
+  if (scale && *scale > 0.0) {
     finding.evidence.emplace_back("way_by_points_over_way", *scale / evidence.units.points);
     const double power = std::round(std::log10(*scale));
     if (power != 0.0 && std::abs(std::log10(*scale) - power) < kNearPower) {
@@ -63,6 +66,13 @@ Finding point_units(const Evidence& evidence) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format("95 % of the points are nearer than {:.4g}: these are not metres", as_stored);
     finding.fix.point_scale = rounded(evidence.applied.point_scale.value_or(1.0) * factor, 6);
+  } else if (scale && std::abs(std::log(*scale / kFeetPerMetre)) < kNearFeet) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence = fmt::format(
+        "the points move {:.2f} times as far as the Doppler says: they may be in feet; or scans follow each other "
+        "faster than the stamps say",
+        *scale);
+    finding.fix.point_scale = rounded(evidence.applied.point_scale.value_or(1.0) / kFeetPerMetre, 4);
   } else {
     finding.sentence = fmt::format("m: 95 % of the points are nearer than {:.1f} m", as_stored);
   }
