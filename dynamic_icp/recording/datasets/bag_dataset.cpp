@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <limits>
 #include <utility>
 
@@ -12,40 +11,22 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/datasets/bag_stamps.hpp"
+#include "dynamic_icp/recording/datasets/bag_clouds.hpp"
 #include "dynamic_icp/recording/datasets/bag_topic_choice.hpp"
 #include "dynamic_icp/recording/datasets/bag_topics.hpp"
+#include "dynamic_icp/recording/datasets/bag_transforms.hpp"
 #include "dynamic_icp/recording/datasets/bag_truth.hpp"
 #include "dynamic_icp/recording/datasets/calibration.hpp"
 #include "dynamic_icp/recording/datasets/column_scan.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/message_columns.hpp"
 #include "dynamic_icp/recording/datasets/named_rows.hpp"
+#include "dynamic_icp/recording/datasets/rig_scan.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kAbsent = std::numeric_limits<std::size_t>::max();
-
-/// The clouds of one topic: its messages that are kept, and how they are read.
-struct CloudTopic {
-  std::string name;
-  std::vector<bags::MessageEntry> entries;
-  std::vector<std::size_t> numbers;  ///< of the messages among all of the topic
-  std::vector<Stamp> stamps;
-  std::string frame_id;
-  Eigen::Isometry3d T_frame_cloud = Eigen::Isometry3d::Identity();
-  Eigen::Isometry3d T_scan_sensor = Eigen::Isometry3d::Identity();
-  ColumnMeaning meaning;
-};
-
-/// Messages with the stamps in their headers.
-struct Headers {
-  std::vector<std::int64_t> recorded_ns;
-  std::vector<Stamp> stamps;
-};
 
 class BagDataset final : public Dataset {
  public:
@@ -59,7 +40,7 @@ class BagDataset final : public Dataset {
     for (const std::string& name : choose_topics(*bag_, path_, options, assumptions_)) {
       topics_.emplace_back().name = name;
     }
-    find_stamps();
+    find_clouds(*bag_, path_, topics_, assumptions_);
     for (CloudTopic& topic : topics_) {
       find_meaning_of(topic, options);
     }
@@ -99,7 +80,7 @@ class BagDataset final : public Dataset {
     std::vector<PointColumn> columns;
     std::size_t rows = 0;
     for (std::size_t k = 0; k < topics_.size(); ++k) {
-      const std::size_t message = is_rig() ? groups_.at(index)[k] : index;
+      const std::size_t message = message_of(index, k);
       if (message == kAbsent) {
         continue;
       }
@@ -119,6 +100,11 @@ class BagDataset final : public Dataset {
  private:
   [[nodiscard]] bool is_rig() const { return topics_.size() > 1; }
 
+  /// The cloud of a topic in a scan; kAbsent: none.
+  [[nodiscard]] std::size_t message_of(std::size_t index, std::size_t topic) const {
+    return topic == 0 ? index : groups_.at(index)[topic - 1];
+  }
+
   static void append_column(std::vector<PointColumn>& columns, std::size_t rows_before, PointColumn column) {
     const auto found =
         std::find_if(columns.begin(), columns.end(), [&](const PointColumn& c) { return c.name == column.name; });
@@ -127,66 +113,6 @@ class BagDataset final : public Dataset {
       found->is_integer = found->is_integer && column.is_integer;
     } else if (found == columns.end() && rows_before == 0) {
       columns.push_back(std::move(column));
-    }
-  }
-
-  /// The header of a message, by its front where that tells.
-  [[nodiscard]] messages::Header header_of(const bags::MessageEntry& entry, std::size_t number) const {
-    const bags::Topic& topic = bag_->topics()[entry.topic];
-    std::optional<messages::Header> header =
-        messages::header_in_front(topic, bag_->read_front(entry, messages::kFrontBytes));
-    return header ? std::move(*header)
-                  : messages::decode_cloud(topic, bag_->read(entry), message_origin(*bag_, entry, number)).header;
-  }
-
-  /// All messages of a topic; those behind the first that cannot be read are left out, which is said.
-  Headers read_headers(CloudTopic& topic) {
-    topic.entries = bag_->messages(topics_named(*bag_, topic.name));
-    std::erase_if(topic.entries, [&](const auto& entry) { return !messages::is_cloud(bag_->topics()[entry.topic]); });
-    if (topic.entries.empty()) {
-      throw DataError(fmt::format("{}: topic '{}' has no messages", path_.string(), topic.name));
-    }
-    Headers headers;
-    for (std::size_t i = 0; i < topic.entries.size(); ++i) {
-      try {
-        headers.stamps.push_back(header_of(topic.entries[i], i).stamp);
-      } catch (const DataError& error) {
-        if (i == 0) {
-          throw;
-        }
-        assumptions_.push_back(fmt::format("{}: this message and the {} behind it are left out", error.what(),
-                                           topic.entries.size() - i - 1));
-        topic.entries.resize(i);
-        break;
-      }
-      headers.recorded_ns.push_back(topic.entries[i].recorded_ns);
-    }
-    return headers;
-  }
-
-  /// One clock for all topics: where one has to go by the times of recording, all do.
-  void find_stamps() {
-    std::vector<Headers> headers;
-    std::vector<ChosenStamps> chosen;
-    for (CloudTopic& topic : topics_) {
-      headers.push_back(read_headers(topic));
-      chosen.push_back(choose_stamps(headers.back().recorded_ns, headers.back().stamps, topic.name));
-    }
-    const bool are_recorded =
-        std::any_of(chosen.begin(), chosen.end(), [](const ChosenStamps& c) { return c.are_recorded; });
-    for (std::size_t k = 0; k < topics_.size(); ++k) {
-      CloudTopic& topic = topics_[k];
-      if (are_recorded && !chosen[k].are_recorded) {
-        chosen[k] = recorded_stamps(headers[k].recorded_ns, topic.name);
-      }
-      assumptions_.insert(assumptions_.end(), chosen[k].assumptions.begin(), chosen[k].assumptions.end());
-      std::vector<bags::MessageEntry> kept;
-      for (const std::size_t message : chosen[k].kept) {
-        kept.push_back(topic.entries[message]);
-      }
-      topic.entries = std::move(kept);
-      topic.numbers = std::move(chosen[k].kept);
-      topic.stamps = std::move(chosen[k].stamps);
     }
   }
 
@@ -211,22 +137,18 @@ class BagDataset final : public Dataset {
         period_of(topic, options.period_s), assumptions_);
   }
 
-  static double period_of(const CloudTopic& topic, double otherwise_s) {
-    std::vector<double> periods;
-    for (std::size_t i = 1; i < topic.stamps.size(); ++i) {
-      periods.push_back(seconds_between(topic.stamps[i - 1], topic.stamps[i]));
-    }
-    if (periods.empty()) {
-      return otherwise_s;
-    }
-    const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-    std::nth_element(periods.begin(), middle, periods.end());
-    return *middle;
-  }
-
+  /// What /tf repeats is sought only where /tf_static leaves a sensor in the air: such a bag may be long.
   StaticFrames read_frames() {
     try {
-      return read_static_frames(*bag_);
+      StaticFrames frames = read_static_frames(*bag_);
+      const bool is_known = std::all_of(topics_.begin(), topics_.end(), [&](const CloudTopic& topic) {
+        return topic.frame_id.empty() || !frames.base_of(topic.frame_id).empty();
+      });
+      if (const std::size_t added = is_known ? 0 : add_repeated_frames(*bag_, frames); added > 0) {
+        assumptions_.push_back(
+            fmt::format("{} transforms that topics of moving ones repeat without change are taken as static", added));
+      }
+      return frames;
     } catch (const DataError& error) {
       assumptions_.push_back(fmt::format("static transforms are not used: {}", error.what()));
       return {};
@@ -249,7 +171,7 @@ class BagDataset final : public Dataset {
         const std::vector<std::string> pairs = frames.pairs();
         throw DataError(
             fmt::format("{}: where topic '{}' (frame '{}') is seen from '{}' (frame '{}') is not known: a rig "
-                        "needs the static transforms between them in /tf_static; there are: {}",
+                        "needs the transforms between them in /tf_static, or in /tf without change; there are: {}",
                         path_.string(), topic.name, topic.frame_id, first.name, first.frame_id,
                         pairs.empty() ? "none" : fmt::format("{}", fmt::join(pairs, ", "))));
       }
@@ -308,13 +230,15 @@ class BagDataset final : public Dataset {
     if (!is_rig()) {
       return;
     }
-    groups_.assign(stamps_.size(), std::vector<std::size_t>(topics_.size(), kAbsent));
-    const double half_period_s = 0.5 * period_of(topics_.front(), std::numeric_limits<double>::infinity());
-    for (std::size_t i = 0; i < stamps_.size(); ++i) {
-      groups_[i][0] = i;
-    }
+    std::vector<std::vector<Stamp>> others;
     for (std::size_t k = 1; k < topics_.size(); ++k) {
-      const std::size_t without = group_topic(k, half_period_s);
+      others.push_back(topics_[k].stamps);
+    }
+    groups_ =
+        nearest_in_time(stamps_, others, 0.5 * period_of(topics_.front(), std::numeric_limits<double>::infinity()));
+    for (std::size_t k = 1; k < topics_.size(); ++k) {
+      const auto without =
+          std::count_if(groups_.begin(), groups_.end(), [&](const auto& group) { return group[k - 1] == kAbsent; });
       if (without > 0) {
         assumptions_.push_back(fmt::format("topic '{}': {} of {} scans have no cloud of it within half a period",
                                            topics_[k].name, without, stamps_.size()));
@@ -322,28 +246,6 @@ class BagDataset final : public Dataset {
     }
     has_times_ = std::any_of(topics_.begin(), topics_.end(),
                              [](const CloudTopic& topic) { return topic.meaning.fields.time.has_value(); });
-  }
-
-  /// How many scans found no cloud of a topic. A cloud serves one scan, the nearest.
-  std::size_t group_topic(std::size_t k, double half_period_s) {
-    const std::vector<Stamp>& stamps = topics_[k].stamps;
-    const auto distance_s = [&](std::size_t scan, std::size_t message) {
-      return std::abs(seconds_between(stamps_[scan], stamps[message]));
-    };
-    std::size_t without = 0;
-    std::size_t message = 0;
-    for (std::size_t i = 0; i < stamps_.size(); ++i) {
-      while (message + 1 < stamps.size() && distance_s(i, message + 1) <= distance_s(i, message)) {
-        ++message;
-      }
-      const bool is_nearer_to_next = i + 1 < stamps_.size() && distance_s(i + 1, message) < distance_s(i, message);
-      if (distance_s(i, message) <= half_period_s && !is_nearer_to_next) {
-        groups_[i][k] = message;
-      } else {
-        ++without;
-      }
-    }
-    return without;
   }
 
   void find_doppler_kind() {
@@ -368,55 +270,12 @@ class BagDataset final : public Dataset {
     rig.stamp = stamps_.at(index);
     for (std::size_t k = 0; k < topics_.size(); ++k) {
       rig.mountings.push_back(topics_[k].T_scan_sensor);
-      const std::size_t message = groups_[index][k];
-      if (message != kAbsent) {
-        append(scan_of(topics_[k], message), k, rig);
+      if (const std::size_t message = message_of(index, k); message != kAbsent) {
+        append_sensor(scan_of(topics_[k], message), k, has_times_, rig);
       }
     }
-    const auto drop_partial = [&](auto& column) {
-      column.resize(column.size() == rig.points.size() ? column.size() : 0);
-    };
-    drop_partial(rig.channels.line);
-    drop_partial(rig.channels.face);
-    drop_partial(rig.channels.intensity);
-    drop_partial(rig.channels.return_number);
+    drop_partial_channels(rig);
     return rig;
-  }
-
-  /// Adds the points of a sensor. A column that one of the sensors lacks stays too short, and is dropped at the end.
-  void append(const RawScan& scan, std::size_t sensor, RawScan& rig) const {
-    const std::size_t before = rig.points.size();
-    const Eigen::Isometry3d& T = topics_[sensor].T_scan_sensor;
-    const double later_s = seconds_between(rig.stamp, scan.stamp);
-    for (std::size_t i = 0; i < scan.points.size(); ++i) {
-      const Eigen::Vector3d& point = scan.points[i];
-      // No line of sight leads to the sensor's own origin: the zero that stays here marks the point as unusable.
-      const Eigen::Vector3d line_of_sight = scan.directions.empty() ? point.stableNormalized() : scan.directions[i];
-      rig.points.emplace_back(T * point);
-      rig.directions.emplace_back(T.linear() * line_of_sight);
-      if (has_times_) {
-        rig.times.push_back(later_s + (scan.times.empty() ? 0.0 : scan.times[i]));
-      }
-    }
-    const auto add = [&](const auto& from, auto& to) {
-      if (to.size() == before) {
-        to.insert(to.end(), from.begin(), from.end());
-      }
-    };
-    add(scan.doppler, rig.doppler);
-    add(scan.channels.line, rig.channels.line);
-    add(scan.channels.face, rig.channels.face);
-    add(scan.channels.intensity, rig.channels.intensity);
-    add(scan.channels.return_number, rig.channels.return_number);
-    if (!scan.is_unusable.empty() || !rig.is_unusable.empty()) {
-      rig.is_unusable.resize(before, 0);
-      rig.is_unusable.insert(rig.is_unusable.end(), scan.is_unusable.begin(), scan.is_unusable.end());
-      rig.is_unusable.resize(rig.points.size(), 0);
-    }
-    rig.channels.sensor.resize(rig.points.size(), static_cast<std::uint8_t>(sensor));
-    if (!scan.warning.empty()) {
-      rig.warning += (rig.warning.empty() ? "" : "; ") + scan.warning;
-    }
   }
 
   std::shared_ptr<const bags::Bag> bag_;
@@ -424,7 +283,7 @@ class BagDataset final : public Dataset {
   std::vector<std::string> assumptions_;
   std::vector<CloudTopic> topics_;
   std::vector<Stamp> stamps_;                     ///< of the scans
-  std::vector<std::vector<std::size_t>> groups_;  ///< of a rig: the clouds of each scan, by topic
+  std::vector<std::vector<std::size_t>> groups_;  ///< of a rig: the clouds of each scan, by topic behind the first
   bool has_times_ = false;                        ///< a rig with times of points
   std::optional<Eigen::Isometry3d> T_vehicle_sensor_;
   std::vector<Eigen::Isometry3d> mountings_;  ///< of one topic whose points name their sensors

@@ -104,23 +104,4 @@ void for_each_message(const bags::Bag& bag, const std::vector<std::size_t>& topi
   }
 }
 
-StaticFrames read_static_frames(const bags::Bag& bag) {
-  std::vector<std::size_t> topics;
-  for (std::size_t k = 0; k < bag.topics().size(); ++k) {
-    const bags::Topic& topic = bag.topics()[k];
-    if (messages::is_transforms(topic) && topic.name.ends_with("tf_static")) {
-      topics.push_back(k);
-    }
-  }
-  StaticFrames frames;
-  for_each_message(bag, topics,
-                   [&](const bags::Topic& topic, const bags::MessageEntry& /*entry*/, const std::string& bytes,
-                       const std::string& origin) {
-                     for (const messages::StampedTransform& one : messages::decode_transforms(topic, bytes, origin)) {
-                       frames.add(one);
-                     }
-                   });
-  return frames;
-}
-
 }  // namespace dynamic_icp::datasets

@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "dynamic_icp/recording/bags/bag.hpp"
-#include "dynamic_icp/recording/datasets/static_frames.hpp"
 #include "dynamic_icp/recording/messages/messages.hpp"
 
 namespace dynamic_icp::datasets {
@@ -57,8 +56,5 @@ std::vector<std::string> topic_names(const bags::Bag& bag, const std::function<b
 void for_each_message(const bags::Bag& bag, const std::vector<std::size_t>& topics,
                       const std::function<void(const bags::Topic& topic, const bags::MessageEntry& entry,
                                                const std::string& bytes, const std::string& origin)>& use);
-
-/// All transforms of topics named tf_static.
-StaticFrames read_static_frames(const bags::Bag& bag);
 
 }  // namespace dynamic_icp::datasets

@@ -3,41 +3,17 @@
 #include "dynamic_icp/recording/datasets/bag_truth.hpp"
 
 #include <algorithm>
-#include <set>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/datasets/bag_stamps.hpp"
 #include "dynamic_icp/recording/datasets/bag_topics.hpp"
+#include "dynamic_icp/recording/datasets/bag_transforms.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
-
-/// Poses of one child frame, in the order of their recording.
-struct RecordedPoses {
-  std::string name;  ///< of the topic or the pair, for messages
-  std::string child;
-  std::filesystem::path file;
-  std::vector<std::int64_t> recorded_ns;
-  std::vector<Stamp> headers;
-  std::vector<Eigen::Isometry3d> poses;
-
-  void add(const bags::Bag& bag, const bags::MessageEntry& entry, const messages::StampedTransform& pose) {
-    if (poses.empty()) {
-      file = bag.file(entry);
-      child = pose.child_frame_id;
-    }
-    recorded_ns.push_back(entry.recorded_ns);
-    headers.push_back(pose.header.stamp);
-    poses.push_back(pose.T_parent_child);
-  }
-};
-
-bool is_moving_transforms(const bags::Topic& topic) {
-  return messages::is_transforms(topic) && !topic.name.ends_with("tf_static");
-}
 
 RecordedPoses poses_of_topic(const bags::Bag& bag, const std::string& name) {
   RecordedPoses recorded;
@@ -46,36 +22,6 @@ RecordedPoses poses_of_topic(const bags::Bag& bag, const std::string& name) {
       bag, topics_named(bag, name),
       [&](const bags::Topic& topic, const bags::MessageEntry& entry, const std::string& bytes,
           const std::string& origin) { recorded.add(bag, entry, messages::decode_pose(topic, bytes, origin)); });
-  return recorded;
-}
-
-/// The transforms of a pair of frames. Throws UsageError that names the pairs there are where it is none of them.
-RecordedPoses poses_of_pair(const bags::Bag& bag, const std::string& pair) {
-  RecordedPoses recorded;
-  recorded.name = fmt::format("transform '{}'", pair);
-  std::set<std::string> pairs;
-  std::vector<std::size_t> topics;
-  for (std::size_t k = 0; k < bag.topics().size(); ++k) {
-    if (is_moving_transforms(bag.topics()[k])) {
-      topics.push_back(k);
-    }
-  }
-  for_each_message(bag, topics,
-                   [&](const bags::Topic& topic, const bags::MessageEntry& entry, const std::string& bytes,
-                       const std::string& origin) {
-                     for (const messages::StampedTransform& one : messages::decode_transforms(topic, bytes, origin)) {
-                       const std::string name = one.header.frame_id + '>' + one.child_frame_id;
-                       pairs.insert(name);
-                       if (name == pair) {
-                         recorded.add(bag, entry, one);
-                       }
-                     }
-                   });
-  if (recorded.poses.empty()) {
-    throw UsageError(
-        fmt::format("truth-topic is '{}', but no topic of transforms has that pair of frames; there are: {}", pair,
-                    pairs.empty() ? "none" : fmt::format("{}", fmt::join(pairs, ", "))));
-  }
   return recorded;
 }
 
@@ -99,17 +45,6 @@ Eigen::Isometry3d child_to_scan(const RecordedPoses& recorded, const StaticFrame
                 "transforms lead to its frame '{}'",
                 recorded.name, recorded.child, scans.frame_id));
   return Eigen::Isometry3d::Identity();
-}
-
-formats::Trajectory trajectory_of(const RecordedPoses& recorded, const Eigen::Isometry3d& T_child_scan,
-                                  std::vector<std::string>& assumptions) {
-  const ChosenStamps chosen = choose_stamps(recorded.recorded_ns, recorded.headers, recorded.name);
-  assumptions.insert(assumptions.end(), chosen.assumptions.begin(), chosen.assumptions.end());
-  formats::Trajectory poses;
-  for (std::size_t k = 0; k < chosen.kept.size(); ++k) {
-    poses.push_back({chosen.stamps[k], recorded.poses[chosen.kept[k]] * T_child_scan});
-  }
-  return near_origin(std::move(poses));
 }
 
 /// Why the poses are not those of the scans; empty when they may be.
@@ -188,9 +123,13 @@ Truth bag_truth(const bags::Bag& bag, const std::string& wanted, const StaticFra
   if (!is_pair && topic.empty()) {
     return {};
   }
-  const RecordedPoses recorded = is_pair ? poses_of_pair(bag, wanted) : poses_of_topic(bag, topic);
+  const RecordedPoses recorded = is_pair ? poses_of_pair(bag, wanted, frames) : poses_of_topic(bag, topic);
   const Eigen::Isometry3d T_child_scan = child_to_scan(recorded, frames, scans, assumptions);
-  formats::Trajectory poses = trajectory_of(recorded, T_child_scan, assumptions);
+  formats::Trajectory poses = trajectory_of(recorded, assumptions);
+  for (formats::StampedPose& pose : poses) {
+    pose.T_world_sensor = pose.T_world_sensor * T_child_scan;
+  }
+  poses = near_origin(std::move(poses));
   if (const std::string misfit = time_misfit(poses, scans.stamps); !misfit.empty()) {
     if (!wanted.empty()) {
       throw DataError(fmt::format("{}: {}: {}", recorded.file.string(), recorded.name, misfit));

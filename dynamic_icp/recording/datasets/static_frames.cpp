@@ -25,6 +25,8 @@ bool is_among(const Names& names, const std::string& frame) {
 
 }  // namespace
 
+bool StaticFrames::is_world(const std::string& frame) { return is_among(kWorldNames, frame); }
+
 void StaticFrames::add(const messages::StampedTransform& transform) {
   if (transform.child_frame_id != transform.header.frame_id) {
     parents_[transform.child_frame_id] = {transform.header.frame_id, transform.T_parent_child};
@@ -65,7 +67,7 @@ std::string StaticFrames::base_of(const std::string& frame) const {
     }
   }
   std::size_t top = 0;
-  while (top + 1 < chain.size() && !is_among(kWorldNames, chain[top + 1].frame)) {
+  while (top + 1 < chain.size() && !is_world(chain[top + 1].frame)) {
     ++top;
   }
   return top == 0 ? std::string() : chain[top].frame;

@@ -19,6 +19,12 @@ class StaticFrames {
   /// A later transform of the same child replaces the earlier one.
   void add(const messages::StampedTransform& transform);
 
+  /// Whether a frame is fixed to another one above it.
+  [[nodiscard]] bool has_parent(const std::string& frame) const { return parents_.contains(frame); }
+
+  /// "map", "odom" and the like: what hangs on them moves.
+  static bool is_world(const std::string& frame);
+
   [[nodiscard]] bool empty() const { return parents_.empty(); }
 
   /// T_a_b, nothing where no chain of transforms leads from one to the other. Any frame is itself.
