@@ -361,8 +361,8 @@ const std::vector<Form>& forms() {
       {"CSV of five columns without names", Door::kWithAdvice, counted("{}.csv", text(xyzid, ",")),
        "has 5 columns without names"},
 
-      {"LAS", Door::kRefused, foreign("scan.las", "LASF" + std::string(300, '\0')), "pdal translate"},
-      {"E57", Door::kRefused, foreign("scan.e57", "ASTM-E57" + std::string(300, '\0')), "pye57"},
+      {"LAS", Door::kRefused, foreign("scan.las", "LASF" + std::string(300, '\0')), "laspy.read"},
+      {"E57", Door::kRefused, foreign("scan.e57", "ASTM-E57" + std::string(300, '\0')), "PCD, PLY or text"},
       {"HDF5", Door::kRefused, foreign("scan.h5", "\x89HDF\r\n\x1A\n" + std::string(300, '\0')), "h5py"},
       {"MATLAB", Door::kRefused, foreign("scan.mat", "MATLAB 5.0 MAT-file" + std::string(300, ' ')), "scipy.io"},
   };

@@ -1,7 +1,10 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <fstream>
+#include <set>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -14,6 +17,7 @@
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/named_rows.hpp"
 #include "dynamic_icp/recording/datasets/numbered_files.hpp"
+#include "dynamic_icp/recording/datasets/point_times.hpp"
 #include "dynamic_icp/recording/datasets/scan_stamps.hpp"
 #include "dynamic_icp/recording/datasets/truth_search.hpp"
 
@@ -23,6 +27,9 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kDopplerEnding = "_dop.npy";
+
+/// Of texts that may be tables of points; the first that a folder has counts.
+constexpr std::array<std::string_view, 4> kTextEndings = {".csv", ".txt", ".xyz", ".asc"};
 
 std::string_view extension(ColumnFileKind kind) {
   switch (kind) {
@@ -94,19 +101,45 @@ bool is_npy_pair(const fs::path& points) {
          fs::is_regular_file(ColumnFile::doppler_file(points));
 }
 
-/// Refuses a table whose rows are those of several scans, by a column of their numbers: as one scan they would be
+/// Whether the numbers of a column tell scans apart, by its name, or because it has the time of the scan and not that
+/// of each point.
+bool tells_scans_apart(const std::string& name, const formats::NpyArray& column, double period_s) {
+  static const std::set<std::string> kNumbers = {"scan", "scan_id", "scan_index", "frame", "frame_id", "frame_index"};
+  static const std::set<std::string> kTimes = {"timestamp", "time_stamp", "time", "stamp", "t"};
+  if (kNumbers.contains(name)) {
+    return true;
+  }
+  if (!kTimes.contains(name)) {
+    return false;
+  }
+  constexpr double kFewPoints = 5.0;
+  constexpr double kManyPoints = 300.0;  // more than sensors measure at once
+  constexpr double kShortestPeriod_s = 0.01;
+  constexpr double kLongestPeriod_s = 0.5;
+  std::vector<double> times = formats::column_as_doubles(column);
+  std::erase_if(times, [](double time) { return !std::isfinite(time); });
+  const std::set<double> different(times.begin(), times.end());
+  if (different.size() < 2) {
+    return false;
+  }
+  const double of_each = static_cast<double>(times.size()) / static_cast<double>(different.size());
+  const double gap = (*different.rbegin() - *different.begin()) / static_cast<double>(different.size() - 1);
+  const double gap_s = 1e-9 * static_cast<double>(time_unit(name, column, period_s).ns) * gap;
+  // What spans ten seconds and more is not taken for seconds by the rule for times of points.
+  const bool are_seconds = formats::is_float(column.type) && of_each >= kManyPoints && gap <= kLongestPeriod_s;
+  return of_each >= kFewPoints && (gap_s >= kShortestPeriod_s || (are_seconds && gap >= kShortestPeriod_s));
+}
+
+/// Refuses a table whose rows are those of several scans, by a column that tells them apart: as one scan they would be
 /// nonsense.
-void refuse_several_scans(const NamedColumns& table, const fs::path& path) {
+void refuse_several_scans(const NamedColumns& table, const fs::path& path, double period_s) {
   const std::vector<std::string>& names = table.names();
   for (std::size_t k = 0; k < names.size(); ++k) {
-    if (names[k] != "scan" && names[k] != "scan_id" && names[k] != "scan_index" && names[k] != "frame" &&
-        names[k] != "frame_id" && names[k] != "frame_index") {
-      continue;
-    }
-    const std::vector<double> numbers = formats::column_as_doubles(table.read(names[k]));
+    const formats::NpyArray column = table.read(names[k]);
+    const std::vector<double> numbers = formats::column_as_doubles(column);
     const auto other =
         std::find_if(numbers.begin(), numbers.end(), [&](double number) { return number != numbers.front(); });
-    if (other != numbers.end()) {
+    if (other != numbers.end() && tells_scans_apart(names[k], column, period_s)) {
       throw DataError(fmt::format(
           "{}: holds several scans, told apart by its column '{}' ({}, {}, ...); write a file for each, e.g. where "
           "commas stand between the columns: mkdir scans; awk -F, 'NR == 1 {{ head = $0; next }} {{ file = \"scans/\" "
@@ -114,6 +147,18 @@ void refuse_several_scans(const NamedColumns& table, const fs::path& path) {
           path.string(), names[k], numbers.front(), *other, k + 1, path.string()));
     }
   }
+}
+
+/// Those of the first ending of which there are some.
+std::vector<fs::path> cloud_tables(const fs::path& folder) {
+  for (const std::string_view ending : kTextEndings) {
+    std::vector<fs::path> files = files_ending_with(folder, ending);
+    std::erase_if(files, [](const fs::path& file) { return !is_cloud_table(file); });
+    if (!files.empty()) {
+      return files;
+    }
+  }
+  return {};
 }
 
 class ColumnDataset final : public Dataset {
@@ -133,7 +178,7 @@ class ColumnDataset final : public Dataset {
     auto first = std::make_unique<ColumnFile>(kind_, files_.front());
     const std::vector<std::string> unusable = first->unusable();
     if (kind_ == ColumnFileKind::kCsv) {
-      refuse_several_scans(*first, files_.front());
+      refuse_several_scans(*first, files_.front(), options.period_s);
     }
     const ArrayReading reading = read_arrays_as(*first, options, files_.front());
     assumptions_.insert(assumptions_.end(), reading.assumptions.begin(), reading.assumptions.end());
@@ -190,10 +235,7 @@ class ColumnDataset final : public Dataset {
       std::erase_if(files, [](const fs::path& file) { return !is_npy_table(file); });
     }
     if (kind_ == ColumnFileKind::kCsv) {
-      if (files.empty()) {
-        files = files_ending_with(folder, ".txt");
-      }
-      std::erase_if(files, [](const fs::path& file) { return !is_cloud_table(file); });
+      files = cloud_tables(folder);
     }
     files = order_names(std::move(files)).files;
     if (pairs) {
@@ -292,7 +334,8 @@ bool holds_any(const fs::path& folder, bool (*test)(const fs::path&), std::strin
 bool holds_npy_tables(const fs::path& folder) { return holds_any(folder, is_npy_table, ".npy"); }
 
 bool holds_cloud_tables(const fs::path& folder) {
-  return holds_any(folder, is_cloud_table, ".csv") || holds_any(folder, is_cloud_table, ".txt");
+  return std::any_of(kTextEndings.begin(), kTextEndings.end(),
+                     [&](std::string_view ending) { return holds_any(folder, is_cloud_table, ending); });
 }
 
 fs::path find_files_of(ColumnFileKind kind, const fs::path& input) {
@@ -317,10 +360,9 @@ fs::path find_npz(const fs::path& input) {
 
 fs::path find_csv(const fs::path& input) {
   if (fs::is_regular_file(input)) {
-    const fs::path ending = input.extension();
-    return ending == ".csv" || ((ending == ".txt" || ending == ".xyz" || ending == ".asc") && is_cloud_table(input))
-               ? input
-               : fs::path();
+    const std::string ending = input.extension().string();
+    const bool is_text = std::find(kTextEndings.begin(), kTextEndings.end(), ending) != kTextEndings.end();
+    return ending == ".csv" || (is_text && is_cloud_table(input)) ? input : fs::path();
   }
   return find_folder(input, holds_cloud_tables);
 }

@@ -3,10 +3,12 @@
 #include <cmath>
 #include <limits>
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
 #include "dynamic_icp/recording/datasets/layouts.hpp"
+#include "dynamic_icp/recording/datasets/unclear_input.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
@@ -228,6 +230,72 @@ TEST_F(ColumnFolder, FilesWithoutNumbersComeInTheOrderOfTheirNames) {
   EXPECT_EQ(dataset->scan(0).points.at(0).x(), 1.0);
   EXPECT_TRUE(said(*dataset, "no number tells the scans apart"));
   EXPECT_EQ(open_dataset(folder_ / "first.pcd")->stamp(0).ns, 0);
+}
+
+/// A table in which the points of a line have one time.
+std::string table_of_lines(const std::string& name, int lines, int points_of_each, double begin, double step) {
+  std::string text = name + ",x,y,z,doppler\n";
+  for (int line = 0; line < lines; ++line) {
+    for (int i = 0; i < points_of_each; ++i) {
+      text += fmt::format("{:.6f},{},{},1,2\n", begin + step * line, i, line);
+    }
+  }
+  return text;
+}
+
+TEST_F(ColumnFolder, ATableWithTheTimesOfScansIsSeveral) {
+  const std::string said = "holds several scans, told apart by its column";
+  write("all.csv", table_of_lines("timestamp", 4, 40, 1.7e9, 0.1));
+  expect_message(said);
+  write("all.csv", table_of_lines("time", 30, 400, 0.0, 0.5));
+  expect_message(said);
+  write("all.csv", table_of_lines("time", 5, 40, 0.0, 0.1));
+  expect_message(said);
+  // Lines and packets of one scan.
+  write("all.csv", table_of_lines("timestamp", 100, 64, 1.7e9, 0.001));
+  EXPECT_EQ(open_dataset(folder_)->scan(0).points.size(), 6400U);
+  write("all.csv", table_of_lines("time", 64, 400, 0.0, 1.5));  // milliseconds
+  EXPECT_NEAR(open_dataset(folder_)->scan(0).times.back(), 0.0945, 1e-9);
+}
+
+TEST_F(ColumnFolder, WhatIsNoTableOrArrayOfPointsSaysWhy) {
+  write("0.csv", "x;y;z;doppler\n1,5;2,5;3,5;4,5\n");
+  expect_message("line 2: column 1 is '1,5', expected a number with a decimal point");
+  fs::remove(folder_ / "0.csv");
+  write("all.npy", formats::npy_bytes(formats::npy_array<float>({2, 3, 4}, std::vector<float>(24))));
+  expect_message("all.npy: has the shape (2, 3, 4), expected (N, 4) or wider");
+  fs::remove(folder_ / "all.npy");
+  write("0.npy", formats::npy_bytes(formats::npy_array<float>({4, 100}, std::vector<float>(400))));
+  expect_message("0.npy: has the shape (4, 100), expected a row for each point");
+  fs::remove(folder_ / "0.npy");
+  for (const char* name : {"0.dat", "1.dat", "notes.md"}) {
+    write(name, std::string(160, '\1'));
+  }
+  expect_message(": it holds 2 *.dat, 1 *.md; records of numbers are read where their names end in .bin");
+  write("run.json", "{}");
+  expect_message("it holds the results of a run; name the recording");
+}
+
+TEST_F(ColumnFolder, TextsOfOtherEndingsAndNamesWithBlanks) {
+  write("0.xyz", "1 2 3 4\n5 6 7 8\n");
+  EXPECT_EQ(open_dataset(folder_)->scan(0).doppler, (std::vector<double>{4, 8}));
+  fs::remove(folder_ / "0.xyz");
+  write("0.csv", "X [m],Y [m],Z [m],Radial Velocity (m/s),time_ms\n1,2,3,4,50\n");
+  const RawScan scan = open_dataset(folder_)->scan(0);
+  EXPECT_EQ(scan.doppler, std::vector<double>{4});
+  EXPECT_NEAR(scan.times.at(0), 0.05, 1e-12);
+}
+
+TEST_F(ColumnFolder, AVelocityInSpaceIsNotProposedAsDoppler) {
+  write("0.csv", "x,y,z,vx,vy,vz\n1,2,3,4,5,6\n");
+  EXPECT_NE(message(), "no error");
+  EXPECT_THROW(open_dataset(folder_), DataError);
+  try {
+    open_dataset(folder_);
+  } catch (const UnclearInput& error) {
+    ADD_FAILURE() << "proposes " << error.proposal().at(0).second;
+  } catch (const DataError&) {
+  }
 }
 
 TEST_F(ColumnFolder, SeveralRecordingsMustBeNamed) {

@@ -54,7 +54,7 @@ constexpr Layout kLayouts[] = {
     {"ply", "*.ply", find_ply, open_ply, nullptr, kTakesFields},
     {"bin", "a folder of *.bin whose record layout is recognised by content", find_bin_folder, open_bin_folder,
      find_bin_scans, kTakesColumns},
-    {"csv", "*.csv or *.txt, rows of points with or without names", find_csv, open_csv, nullptr,
+    {"csv", "*.csv, *.txt, *.xyz or *.asc, rows of points with or without names", find_csv, open_csv, nullptr,
      kTakesFields | kTakesColumns, true},
 };
 
@@ -173,8 +173,8 @@ Match match_of(const fs::path& input, const OpenOptions& options) {
   if (const std::string obstacle = known_obstacle(input); !obstacle.empty()) {
     throw NotARecording(obstacle);
   }
-  throw NotARecording(
-      fmt::format("{}: not a recording of a known layout. Looked for:{}", input.string(), looked_for()));
+  throw NotARecording(fmt::format("{}: not a recording of a known layout{}. Looked for:{}", input.string(),
+                                  what_is_there(input), looked_for()));
 }
 
 }  // namespace

@@ -1,5 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
 #include <bit>
 #include <string>
 
@@ -9,6 +10,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/not_a_recording.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -68,6 +70,42 @@ TEST_F(Dicp, ReadsTimesOfPointsWhereThereAreSome) {
     EXPECT_NE(std::string(error.what()).find("00001.bin: 1 points, expected 4 as there are times in"),
               std::string::npos)
         << error.what();
+  }
+}
+
+// Three scans 0.1 s apart, each measured in 0.1 s.
+TEST_F(Dicp, TimesInAnotherUnitAreTakenByWhatTheySpan) {
+  write("ref_poses.txt", kThreePoses);
+  fs::create_directories(folder_ / "times");
+  for (const float per_second : {1.0F, 1e3F, 1e6F, 1e9F}) {
+    std::string points;
+    std::string times;
+    for (int i = 0; i <= 100; ++i) {
+      points += record(1, 2, 3, 4);
+      formats::append_value(times, per_second * 0.001F * static_cast<float>(i));
+    }
+    formats::append_value(times, 1e3F * per_second);  // an odd one
+    points += record(1, 2, 3, 4);
+    for (const char* name : {"00001.bin", "00002.bin", "00003.bin"}) {
+      write(std::string("point_clouds/") + name, points);
+      write(std::string("times/") + name, times);
+    }
+    const std::unique_ptr<Dataset> dataset = open_dataset(folder_);
+    EXPECT_NEAR(dataset->scan(1).times.at(50), 0.05, 1e-6) << per_second;
+    const std::vector<std::string>& said = dataset->assumptions();
+    EXPECT_EQ(std::any_of(said.begin(), said.end(), [](const auto& s) { return s.starts_with("times of points"); }),
+              per_second != 1.0F);
+  }
+}
+
+TEST_F(Dicp, TimesOfTwiceTheSizeAreNamed) {
+  fs::create_directories(folder_ / "times");
+  write("times/00001.bin", std::string(sizeof(double), '\0'));
+  try {
+    (void)open_dataset(folder_)->scan(0);
+    FAIL();
+  } catch (const DataError& error) {
+    EXPECT_NE(std::string(error.what()).find("float64?"), std::string::npos) << error.what();
   }
 }
 

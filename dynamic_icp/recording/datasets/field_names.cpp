@@ -16,8 +16,6 @@
 namespace dynamic_icp::datasets {
 namespace {
 
-using Aliases = std::span<const std::string_view>;
-
 constexpr std::array<std::string_view, 4> kPoints = {"points", "xyz", "pts", "positions"};
 constexpr std::array<std::string_view, 17> kDoppler = {"doppler",      "velocity",     "radial_velocity",
                                                        "radial_vel",   "v_radial",     "doppler_velocity",
@@ -25,9 +23,19 @@ constexpr std::array<std::string_view, 17> kDoppler = {"doppler",      "velocity
                                                        "range_rate",   "vel",          "v_r",
                                                        "vr",           "rv",           "v",
                                                        "radial_speed", "speed"};
-constexpr std::array<std::string_view, 11> kTime = {
-    "time_offset_ns", "time_offset_s",        "offset_time",    "t", "time_stamp", "timestamp", "time", "time_offset",
-    "time_offsets",   "nanosecs_since_frame", "timestamp_nsecs"};
+constexpr std::array<std::string_view, 12> kTime = {"time_offset_ns",
+                                                    "time_offset_s",
+                                                    "offset_time",
+                                                    "t",
+                                                    "time_stamp",
+                                                    "timestamp",
+                                                    "time",
+                                                    "time_offset",
+                                                    "time_offsets",
+                                                    "nanosecs_since_frame",
+                                                    "timestamp_nsecs",
+                                                    "point_time"};
+constexpr std::array<std::string_view, 4> kTimeEndings = {"_ns", "_us", "_ms", "_s"};
 constexpr std::array<std::string_view, 2> kLineOfSight = {"los", "directions"};
 constexpr std::array<std::string_view, 6> kKeys = {"x", "y", "z", "doppler", "time", "los"};
 
@@ -40,7 +48,7 @@ constexpr std::array<ChannelNames, 10> kChannels = {
     {{formats::Channel::kSensor, {"sensor", "lidar", "sensor_id"}},
      {formats::Channel::kLine, {"ring", "line", "line_index", "channel", "beam_id"}},
      {formats::Channel::kFace, {"face"}},
-     {formats::Channel::kIntensity, {"intensity", "reflectivity", "rcs"}},
+     {formats::Channel::kIntensity, {"intensity", "reflectivity", "rcs", "amplitude"}},
      {formats::Channel::kReturnNumber, {"return", "return_index", "echo"}},
      {formats::Channel::kValid, {"valid"}},
      {formats::Channel::kValid, {"is_valid"}},
@@ -50,6 +58,28 @@ constexpr std::array<ChannelNames, 10> kChannels = {
 
 bool is_flag(formats::Channel channel) {
   return channel == formats::Channel::kValid || channel == formats::Channel::kInvalid;
+}
+
+/// In lower case, the words of "Radial Velocity" and "radial-velocity" joined as in radial_velocity.
+std::string plain_name(std::string_view name) {
+  std::string plain = formats::lower_case(name);
+  std::replace_if(
+      plain.begin(), plain.end(), [](char c) { return c == ' ' || c == '-'; }, '_');
+  return plain;
+}
+
+/// With the units that may stand behind them, each once.
+std::vector<std::string> time_names() {
+  std::vector<std::string> names(kTime.begin(), kTime.end());
+  for (const std::string_view ending : kTimeEndings) {
+    for (const std::string_view name : kTime) {
+      const std::string with_unit = std::string(name) + std::string(ending);
+      if (std::find(names.begin(), names.end(), with_unit) == names.end()) {
+        names.push_back(with_unit);
+      }
+    }
+  }
+  return names;
 }
 
 /// Names that go without saying.
@@ -71,18 +101,18 @@ class FieldFinder {
     }
     find_point();
     find_doppler();
-    map_.time = find_column("time", kTime);
+    map_.time = find_column("time", time_names());
     find_line_of_sight();
     find_channels();
     return std::move(map_);
   }
 
  private:
-  /// The name in the file that is, but for its case, the one given.
+  /// The name in the file that is, but for its case and blanks, the one given.
   [[nodiscard]] const std::string* same_as(std::string_view name) const {
     const auto exact = std::find(names_.begin(), names_.end(), name);
     const auto found = exact != names_.end() ? exact : std::find_if(names_.begin(), names_.end(), [&](const auto& own) {
-      return formats::lower_case(own) == formats::lower_case(name);
+      return plain_name(own) == plain_name(name);
     });
     return found == names_.end() ? nullptr : &*found;
   }
@@ -118,7 +148,8 @@ class FieldFinder {
   }
 
   /// The first of the aliases that is there, told where it is not the obvious one.
-  std::optional<FieldColumn> find_column(const std::string& key, Aliases aliases) {
+  template <class Aliases>
+  std::optional<FieldColumn> find_column(const std::string& key, const Aliases& aliases) {
     if (std::optional<FieldColumn> asked = wanted_column(key)) {
       return asked;
     }
@@ -226,7 +257,7 @@ bool FieldMap::uses(const std::string& array) const {
 
 bool has_doppler_name(const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(), [](const std::string& name) {
-    return std::find(kDoppler.begin(), kDoppler.end(), formats::lower_case(name)) != kDoppler.end();
+    return std::find(kDoppler.begin(), kDoppler.end(), plain_name(name)) != kDoppler.end();
   });
 }
 

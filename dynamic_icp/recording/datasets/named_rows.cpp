@@ -20,6 +20,7 @@ namespace {
 constexpr std::string_view kFirstUnnamed = "arr_0";
 constexpr std::string_view kSecondUnnamed = "arr_1";
 constexpr std::size_t kPlainColumns = 4;
+constexpr std::size_t kMaxColumns = 64;  // a wider array has its points side by side
 
 bool same_text(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
@@ -177,6 +178,12 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
     }
     return reading;  // what reads the points says what is wrong with them
   }
+  if (formats::rows_of(array) <= kMaxColumns && width > kMaxColumns) {
+    throw DataError(
+        fmt::format("{}: has the shape ({}), expected a row for each point; write it the other way round with Python: "
+                    "import numpy; numpy.save(FILE, numpy.load(FILE).T)",
+                    array.origin, fmt::join(array.shape, ", ")));
+  }
   reading.rows.array = *points;
   if (states_more) {
     if (options.columns.size() != width) {
@@ -237,6 +244,12 @@ std::vector<Eigen::Vector3d> points_of(const std::vector<double>& x, const std::
   return points;
 }
 
+/// Whether a name is that of a part of a velocity in space.
+bool is_part_of_velocity(const std::string& name) {
+  static const std::array<std::string_view, 6> kParts = {"vx", "vy", "vz", "v_x", "v_y", "v_z"};
+  return std::any_of(kParts.begin(), kParts.end(), [&](std::string_view part) { return same_text(name, part); });
+}
+
 /// What may be meant; empty: nothing that one could say.
 UnclearInput::Settings likely_fields(const NamedColumns& scan, const std::map<std::string, std::string>& fields) {
   UnclearInput::Settings proposal;
@@ -281,7 +294,7 @@ UnclearInput::Settings likely_fields(const NamedColumns& scan, const std::map<st
     const formats::NpyArray column = scan.read(name);
     if (name != array && width_of(column) == 1 && column.shape.front() == points.size() &&
         formats::is_float(column.type) && std::find(axes.begin(), axes.end(), name) == axes.end() &&
-        !same_text(name, "x") && !same_text(name, "y") && !same_text(name, "z")) {
+        !same_text(name, "x") && !same_text(name, "y") && !same_text(name, "z") && !is_part_of_velocity(name)) {
       names.push_back(name);
       columns.push_back(formats::column_as_doubles(column));
     }

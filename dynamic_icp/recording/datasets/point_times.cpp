@@ -61,15 +61,22 @@ std::int64_t unix_unit(double value) {
   return value >= 1e18 ? 1 : value >= 1e15 ? kMicrosecond : value >= 1e12 ? kMillisecond : kSecond;
 }
 
+/// Whether a scan that spans so many of a unit takes most of a period.
+bool is_most_of(double period_s, double span, std::int64_t unit_ns) {
+  const double span_s = kNanosecond * static_cast<double>(unit_ns) * span;
+  return span_s >= 0.1 * period_s && span_s <= 2.0 * period_s;
+}
+
 std::int64_t unit_of_offsets(const formats::NpyArray& column, const Range& range, double period_s) {
-  if (!formats::is_float(column.type)) {
-    return 1;
-  }
-  if (range.span() < kLongestSpan_s) {
+  if (formats::is_float(column.type) && range.span() < kLongestSpan_s) {
     return kSecond;
   }
-  const double as_microseconds_s = 1e-6 * range.span();
-  return as_microseconds_s >= 0.1 * period_s && as_microseconds_s <= 2.0 * period_s ? kMicrosecond : 1;
+  for (const std::int64_t unit : {std::int64_t{1}, kMicrosecond, kMillisecond}) {
+    if (is_most_of(period_s, range.span(), unit)) {
+      return unit;
+    }
+  }
+  return 1;
 }
 
 }  // namespace

@@ -20,11 +20,10 @@ struct TimeUnit {
 };
 
 /// Finds the unit of a column by its name ("..._ns", "..._nsecs", "nanosecs_since_frame", "..._us", "..._ms", "..._s"),
-/// else by its type and by the numbers
-/// of a scan: integers are nanoseconds; floating-point numbers seconds where they span less than 10, microseconds where
-/// they span most of a period of `period_s` as such, nanoseconds else. Numbers that can only be times since 1970 are
-/// taken as such, in the unit of their magnitude. `column` is of the shape (N,) or (N, 1); infinite ones and NaN are
-/// left out.
+/// else by its type and by the numbers of a scan: floating-point numbers that span less than 10 are seconds; others are
+/// nano-, micro- or milliseconds, the first of these in which they span most of a period of `period_s`, else
+/// nanoseconds. Numbers that can only be times since 1970 are taken as such, in the unit of their magnitude. `column`
+/// is of the shape (N,) or (N, 1); infinite ones and NaN are left out.
 TimeUnit time_unit(std::string_view name, const formats::NpyArray& column, double period_s);
 
 /// The times of points in seconds after `stamp`. Unix times that are more than 10 s away from it, because the scan's

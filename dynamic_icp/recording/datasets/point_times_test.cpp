@@ -27,6 +27,13 @@ void expect_near(const std::vector<double>& times, const std::vector<double>& ex
   }
 }
 
+TEST(PointTimes, WhatSpansAPeriodSaysItsUnit) {
+  expect_near(read<float>("time", {0.0F, 99.5F}), {0, 0.0995}, 1e-8);
+  expect_near(read<std::int32_t>("time", {0, 99}), {0, 0.099}, 1e-12);
+  expect_near(read<std::uint32_t>("time", {0, 98'765}), {0, 0.098765}, 1e-12);
+  expect_near(read<std::uint32_t>("time", {0, 98'765'432}), {0, 0.098765432}, 1e-12);
+}
+
 TEST(PointTimes, IntegersAreNanoseconds) {
   expect_near(read<std::int32_t>("t", {-5, 0, 99'999'999}), {-5e-9, 0, 0.099999999}, 1e-15);
   expect_near(read<std::uint32_t>("time", {4'000'000'000U}), {4.0}, 1e-15);

@@ -20,7 +20,9 @@ struct RecordRecording {
   std::string_view format;
   StampedFiles scans;  ///< at least one
   std::function<const formats::RecordLayout&(const std::filesystem::path& file, Stamp stamp)> layout_of;
-  std::filesystem::path times = {};  ///< folder of the times of points, a file of float32 for each scan; empty: none
+  /// Folder of the times of points, a file of float32 for each scan, seconds after its stamp unless numbers and period
+  /// say otherwise (point_times.hpp); empty: none.
+  std::filesystem::path times = {};
   Truth truth;
   std::optional<Eigen::Isometry3d> T_vehicle_sensor = {};
   DopplerKind doppler_kind = DopplerKind::kRelative;

@@ -76,17 +76,27 @@ double middle_of(std::vector<double> values) {
   return *middle;
 }
 
-double median_of_column(const std::vector<double>& scaled, std::size_t column, std::size_t stride) {
+/// The numbers of one column, NaN and infinite ones left out.
+std::vector<double> column_of(const std::vector<double>& scaled, std::size_t column, std::size_t stride) {
   std::vector<double> values;
   for (std::size_t i = column; i < scaled.size(); i += stride) {
     if (std::isfinite(scaled[i])) {
       values.push_back(scaled[i]);
     }
   }
-  if (values.empty()) {
-    return 0.0;
+  return values;
+}
+
+/// Whether two columns are of one kind: not one of them padding, and about as large.
+bool are_alike(std::vector<double> one, std::vector<double> other) {
+  if (one.empty() || other.empty()) {
+    return true;
   }
-  return middle_of(std::move(values));
+  const auto is_constant = [](const std::vector<double>& values) {
+    return std::all_of(values.begin(), values.end(), [&](double value) { return value == values.front(); });
+  };
+  return is_constant(one) == is_constant(other) &&
+         std::abs(middle_of(std::move(one)) - middle_of(std::move(other))) <= 1.0;
 }
 
 /// Whether records of `stride` numbers are no records of `shorter` ones that take turns, such as those of several
@@ -97,9 +107,7 @@ bool is_own_length(const std::vector<double>& scaled, std::size_t stride, std::s
   }
   std::size_t different = 0;
   for (std::size_t k = 0; k < shorter; ++k) {
-    const double here = median_of_column(scaled, k, stride);
-    const double there = median_of_column(scaled, k + shorter, stride);
-    different += std::abs(here - there) > 1.0 ? 1 : 0;
+    different += are_alike(column_of(scaled, k, stride), column_of(scaled, k + shorter, stride)) ? 0 : 1;
   }
   return different >= 2;
 }

@@ -139,6 +139,18 @@ TEST_F(RecordShapes, OtherRecordsAreProposed) {
   });
   expect_proposed(records<float>(five), {{"columns", "x,y,z,_,doppler"}});
   expect_proposed(records<float>(eight), {{"columns", "x,y,z,_,_,doppler,_,_"}});
+  // As PCL pads its points: a one behind the coordinates, zeros behind the rest.
+  for (const std::size_t numbers : {8U, 12U, 16U}) {
+    const Rows padded = each(rows, [&](Row& row, std::size_t) {
+      row = {row[0], row[1], row[2], 1.0, row[3]};
+      row.resize(numbers, 0.0);
+    });
+    std::string columns = "x,y,z,_,doppler";
+    for (std::size_t k = 5; k < numbers; ++k) {
+      columns += ",_";
+    }
+    expect_proposed(records<float>(padded), {{"columns", columns}});
+  }
   expect_proposed(records<double>(rows), {{"columns", "x,y,z,doppler"}, {"dtype", "float64"}});
   expect_proposed(records<double>(five), {{"columns", "x,y,z,_,doppler"}, {"dtype", "float64"}});
   EXPECT_EQ(other_shape({folder_ / "0.bin"}, 5, NpyType::kFloat64), std::nullopt);

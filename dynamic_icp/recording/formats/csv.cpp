@@ -90,7 +90,7 @@ class GrowingColumn {
 }  // namespace
 
 char delimiter_of(std::string_view line) {
-  for (const char delimiter : {',', ';', '\t'}) {
+  for (const char delimiter : {';', ',', '\t'}) {
     if (line.find(delimiter) != std::string_view::npos) {
       return delimiter;
     }
@@ -202,9 +202,9 @@ CsvTable parse_csv(std::string_view text, std::string_view origin) {
     }
     for (std::size_t k = 0; k < cells.size(); ++k) {
       if (!columns[k].add(cells[k])) {
-        throw DataError(fmt::format("{}: line {}: column {} is {}, expected a number{}", origin, line, k + 1,
-                                    quoted_text(cells[k]),
-                                    cells[k].find(',') != std::string_view::npos ? " with a decimal point" : ""));
+        throw DataError(
+            fmt::format("{}: line {}: column {} is {}, expected a number{}", origin, line, k + 1, quoted_text(cells[k]),
+                        cells[k].find(',') != std::string_view::npos ? " with a decimal point (sed 's/,/./g')" : ""));
       }
     }
   }

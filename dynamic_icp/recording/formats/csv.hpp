@@ -16,7 +16,8 @@ namespace dynamic_icp::formats {
 // the first row has. A header of names may stand in front, also behind a '#'. Further lines that begin with '#' are
 // comments; empty lines count for nothing.
 
-/// ',', ';' or tab where the line has one, in this order; else a blank, for any run of blanks.
+/// ';', ',' or tab where the line has one, in this order (commas may be decimal ones); else a blank, for any run of
+/// blanks.
 char delimiter_of(std::string_view line);
 
 /// The cells of a line, without blanks and quotation marks around them.

@@ -61,7 +61,8 @@ TEST(Csv, WhatIsNoTableIsNamedWithItsLine) {
   EXPECT_EQ(csv_fault("x,y\n1,2,3\n"), "a.csv: line 1: 2 names, but the row after it has 3 numbers");
   EXPECT_EQ(csv_fault("1,2\n\n1\n"), "a.csv: line 3: 1 columns, expected 2 as in the first row");
   EXPECT_EQ(csv_fault("x,y\n1,2\n1,two\n"), "a.csv: line 3: column 2 is 'two', expected a number");
-  EXPECT_EQ(csv_fault("x;y\n1,5;2\n"), "a.csv: line 1: 1 names, but the row after it has 2 numbers");
+  EXPECT_EQ(csv_fault("x;y\n1,5;2\n"),
+            "a.csv: line 2: column 1 is '1,5', expected a number with a decimal point (sed 's/,/./g')");
 }
 
 }  // namespace

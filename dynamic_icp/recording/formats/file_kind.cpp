@@ -64,10 +64,13 @@ constexpr std::string_view kSentences[] = {
     "is an SQLite database; if it is of a ROS 2 bag, format rosbag2 reads it",
     "is a PLY file",
     "is a PCD file",
-    "is a LAS or LAZ file, which is not read; write each scan as text with 'pdal translate IN.las OUT.csv', where the "
-    "Doppler is one of its extra dimensions",
-    "is an E57 file, which is not read; write each scan with Python: import numpy, pye57; numpy.savez('00000.npz', "
-    "**pye57.E57('IN.e57').read_scan_raw(0))",
+    "is a LAS or LAZ file, which is not read; write each scan, with the Doppler among its extra dimensions, with "
+    "Python: "
+    "import laspy, numpy; las = laspy.read('IN.las'); numpy.savez('00000.npz', points=las.xyz, **{n: "
+    "numpy.asarray(las[n]) for n in las.point_format.extra_dimension_names})",
+    "is an E57 file, which is not read: it has no field for a Doppler, and what software adds to the standard only "
+    "that "
+    "software reads; have it export each scan as PCD, PLY or text",
     "is an HDF5 file, which is not read; write each scan with Python: import h5py, numpy; numpy.savez('00000.npz', "
     "points=..., doppler=...) of its data sets of shape (N, 3) and (N,)",
     "is a MATLAB file, which is not read; write each scan with Python: import numpy, scipy.io; "
