@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/recording/messages/base64.hpp"
+#include "dynamic_icp/recording/formats/base64.hpp"
 #include "dynamic_icp/recording/messages/foxglove_messages.hpp"
 #include "dynamic_icp/recording/messages/rigid_pose.hpp"
 
@@ -151,7 +151,7 @@ PointCloud read_json_cloud(std::string_view text, const std::string& origin) {
     cloud.fields.push_back(std::move(field));
   }
   const Value data = message.at("data");
-  std::optional<std::string> bytes = bytes_of_base64(data.text());
+  std::optional<std::string> bytes = formats::bytes_of_base64(data.text());
   if (!bytes) {
     data.fail("a text of base64");
   }

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <string>
-#include <string_view>
 #include <vector>
 
 #include "dynamic_icp/tools/drawing/colour_map.hpp"
@@ -30,8 +29,5 @@ class Raster {
 
 /// The picture as the bytes of a PNG file.
 std::string png(const Raster& raster);
-
-/// Bytes as text of 64 different characters (RFC 4648), as URLs with data in them need it.
-std::string base64(std::string_view bytes);
 
 }  // namespace dynamic_icp::drawing

@@ -38,16 +38,5 @@ TEST(Raster, PixelsOutsideAreRefused) {
   EXPECT_THROW((void)raster.at(1, 2), std::out_of_range);
 }
 
-TEST(Base64, ExamplesOfTheStandard) {
-  EXPECT_EQ(base64(""), "");
-  EXPECT_EQ(base64("f"), "Zg==");
-  EXPECT_EQ(base64("fo"), "Zm8=");
-  EXPECT_EQ(base64("foo"), "Zm9v");
-  EXPECT_EQ(base64("foob"), "Zm9vYg==");
-  EXPECT_EQ(base64("fooba"), "Zm9vYmE=");
-  EXPECT_EQ(base64("foobar"), "Zm9vYmFy");
-  EXPECT_EQ(base64("\xFF\xFE\xFD"), "//79");
-}
-
 }  // namespace
 }  // namespace dynamic_icp::drawing

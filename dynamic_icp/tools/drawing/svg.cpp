@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/recording/formats/base64.hpp"
 #include "dynamic_icp/tools/drawing/markup.hpp"
 
 namespace dynamic_icp::drawing {
@@ -101,7 +102,7 @@ void Svg::image(const PixelBox& box, const Raster& raster) {
       "<image x=\"{}\" y=\"{}\" width=\"{}\" height=\"{}\" preserveAspectRatio=\"none\" "
       "style=\"image-rendering:pixelated\" href=\"data:image/png;base64,{}\"/>\n",
       compact_number(box.left), compact_number(box.top), compact_number(box.width), compact_number(box.height),
-      base64(png(raster)));
+      formats::base64(png(raster)));
 }
 
 void Svg::circle(Pixel centre, double radius, const Paint& paint) {

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/recording/formats/base64.hpp"
 #include "dynamic_icp/tools/drawing/raster.hpp"
 
 #include "testing/sensor_calibration.hpp"
@@ -22,7 +23,7 @@ TEST(FieldPlot, ShowsTheErrorAsTheSensorLooksOut) {
         expected.set(x, y, drawing::diverging_colour(-1.0, ground));
       }
     }
-    EXPECT_NE(svg.find(drawing::base64(drawing::png(expected))), std::string::npos) << "left is left";
+    EXPECT_NE(svg.find(formats::base64(drawing::png(expected))), std::string::npos) << "left is left";
     EXPECT_NE(svg.find("-100 mm/s"), std::string::npos);
     EXPECT_NE(svg.find("standard deviation"), std::string::npos);
   }

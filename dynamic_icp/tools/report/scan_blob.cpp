@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "dynamic_icp/recording/formats/base64.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
-#include "dynamic_icp/tools/drawing/raster.hpp"
 #include "dynamic_icp/tools/report/zlib_stream.hpp"
 
 namespace dynamic_icp::report {
@@ -108,6 +108,6 @@ std::string map_bytes(const std::vector<Eigen::Vector3d>& points) {
   return bytes;
 }
 
-std::string blob(const std::string& bytes) { return drawing::base64(zlib_stream(bytes)); }
+std::string blob(const std::string& bytes) { return formats::base64(zlib_stream(bytes)); }
 
 }  // namespace dynamic_icp::report
