@@ -9,7 +9,7 @@ set -euo pipefail
 optional=()
 packages=(g++ cmake ninja-build ccache libeigen3-dev libcli11-dev nlohmann-json3-dev libyaml-cpp-dev libfmt-dev
   libpng-dev libembree-dev libzip-dev liblzf-dev zlib1g-dev
-  libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev)
+  libsqlite3-dev libzstd-dev liblz4-dev libbz2-dev libboost-dev)
 for purpose in "$@"; do
   case $purpose in
     clang)
