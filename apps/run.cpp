@@ -16,6 +16,7 @@
 #include "apps/commands.hpp"
 #include "apps/exit_status.hpp"
 #include "apps/input_options.hpp"
+#include "apps/live_options.hpp"
 #include "apps/messages.hpp"
 #include "apps/method_options.hpp"
 #include "apps/options.hpp"
@@ -38,6 +39,7 @@ struct RunOptions {
   runs::Recording recording;
   runs::RunSettings settings;
   MethodOptions method;
+  LiveOptions live;
   bool report = false;
   bool quiet = false;
 };
@@ -109,6 +111,7 @@ runs::RunSettings settings_of(const RunOptions& options) {
   settings.threads = options.method.threads;
   settings.save_labels = settings.save_labels || options.report;
   settings.inputs = {options.method.config_file};
+  settings.live = live_view_settings(options.live);
   settings.command = command_line();
   return settings;
 }
@@ -143,6 +146,9 @@ int run(const RunOptions& options) {
     return fixing_options(finding, options.recording.settings);
   };
   callbacks.warning = [&](const std::string& text) { warnings.show(text); };
+  if (!options.quiet) {
+    callbacks.listening = tell_where_to_watch;
+  }
   callbacks.progress = [&](std::size_t done, std::size_t total) {
     if (done == 0) {
       progress.emplace("odometry", total, options.quiet);
@@ -214,6 +220,7 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
       *command, "--mcap", options->settings.mcap_file, "FILE",
       "Write FILE.mcap for Foxglove and Lichtblick: scans with Doppler and labels, poses, paths, objects, status "
       "and deviations over time; foxglove_layout.json beside it arranges them");
+  add_live_options(*command, options->live);
   add_option(*command, "--save-kitti", options->settings.kitti_file, "FILE",
              "Write the poses as KITTI has them, FILE.txt: 12 numbers a scan, T_world_sensor row by row");
   add_option(*command, "--calibration", options->settings.calibration, "FILE",

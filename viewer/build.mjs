@@ -1,5 +1,6 @@
 // Bundles the viewer: node build.mjs [--output FOLDER] [--cpp FILE.cpp]
-//   FOLDER gets viewer.js and viewer.css; FILE.cpp gets both as the C++ source behind report/viewer_bundle.hpp.
+//   FOLDER gets viewer.js and viewer.css; FILE.cpp gets both, and those of the live page, as the C++ source behind
+//   report/viewer_bundle.hpp.
 // Needs nothing but what `npm ci` put into node_modules.
 import { mkdir, writeFile } from 'node:fs/promises';
 import { dirname, join } from 'node:path';
@@ -9,10 +10,13 @@ import { cppSource } from './cpp_source.mjs';
 
 const here = dirname(fileURLToPath(import.meta.url));
 
-/** @returns {Promise<{script: string, style: string}>} */
-export async function bundle() {
+/**
+ * @param {string} [entry] of the page of a run; 'live/main.js' is that of the live page
+ * @returns {Promise<{script: string, style: string}>}
+ */
+export async function bundle(entry = 'main.js') {
   const { outputFiles } = await build({
-    entryPoints: [join(here, 'src/main.js')],
+    entryPoints: [join(here, 'src', entry)],
     bundle: true,
     minify: true,
     write: false,
@@ -42,7 +46,7 @@ async function main(args) {
     await writeFile(join(folder, 'viewer.js'), made.script);
     await writeFile(join(folder, 'viewer.css'), made.style);
   }
-  if (cpp) await writeFile(cpp, cppSource(made));
+  if (cpp) await writeFile(cpp, cppSource({ viewer_bundle: made, live_bundle: await bundle('live/main.js') }));
   if (!folder && !cpp) console.log(`script ${made.script.length} bytes, style ${made.style.length} bytes`);
 }
 

@@ -12,11 +12,11 @@
 #include <boost/asio/post.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <fmt/format.h>
-#include <sys/resource.h>
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/live/client.hpp"
+#include "dynamic_icp/recording/live/low_priority.hpp"
 #include "dynamic_icp/recording/live/visitor.hpp"
 
 namespace dynamic_icp::live {
@@ -24,16 +24,8 @@ namespace {
 
 using std::chrono::seconds;
 
-constexpr int kLowPriority = 10;   ///< of `nice`
 constexpr seconds kFarewell_s{2};  ///< until the last client is disconnected at the end
 constexpr seconds kRetryAccept_s{1};
-
-/// Odometry goes before those who watch it. What the system does not allow is left as it is.
-void lower_own_priority() {
-#ifdef __linux__
-  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLowPriority));
-#endif
-}
 
 /// Another one for every server.
 std::string new_session() {

@@ -3,10 +3,12 @@
 #include "dynamic_icp/recording/runs/run_recording.hpp"
 
 #include <memory>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/recording/datasets/read_ahead.hpp"
 #include "dynamic_icp/recording/datasets/scan_range.hpp"
@@ -14,6 +16,7 @@
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
+#include "dynamic_icp/recording/runs/live_view.hpp"
 #include "dynamic_icp/recording/runs/map_writer.hpp"
 #include "dynamic_icp/recording/runs/mcap_recorder.hpp"
 #include "dynamic_icp/recording/runs/recording_check.hpp"
@@ -93,6 +96,11 @@ void refuse_without_points(const Usability& seen, const fs::path& input) {
                   "as unusable by the sensor, {} remain after thinning. The diagnosis of the recording says more",
                   input.string(), seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.implausible,
                   seen.dropped.zero_range, seen.dropped.out_of_range, seen.dropped.flagged, seen.points_used));
+}
+
+/// What those who watch a run are told that it is.
+std::string live_name(const fs::path& recording) {
+  return fmt::format("dynamic-icp {}: {}", version(), fs::absolute(recording).lexically_normal().filename().string());
 }
 
 /// A run while it continues.
@@ -200,12 +208,14 @@ class Run {
       warn(truth_.warning);
     }
     RunWriter writer(output.path(), settings_.save_labels);
-    if (!mcap_file.empty()) {
-      make_recorder(mcap_file);
+    if (!mcap_file.empty()) {  // a path that cannot be written to is an error before the first scan
+      recorder_.emplace(mcap_file, truth_.trajectory, messages_settings());
     }
+    open_live_view();
     if (!process_scans(*odometry, writer)) {
       return false;
     }
+    end_live_view();
     if (const std::optional<window::SensorCalibration> learned = odometry->calibration()) {
       formats::write_whole_file(output.path() / "calibration.yaml", calibration_text(*learned));
     }
@@ -244,16 +254,19 @@ class Run {
       if (callbacks_.cancelled && callbacks_.cancelled()) {
         return false;
       }
-      const RawScan scan = reader.next();
+      RawScan scan = reader.next();
       if (!scan.warning.empty()) {
         warn(scan.warning);
       }
-      const odometry::Frame frame = odometry.process(scan);
+      odometry::Frame frame = odometry.process(scan);
       writer.add(i, frame);
       usability.add(frame);
       result_.sweep.add(frame, scan);
       add_to_map(frame);
       record(scan, frame);
+      if (live_) {
+        live_->add(std::move(scan), std::move(frame));
+      }
       report_progress(i + 1 - scans_.begin);
       if (i + 1 < scans_.end && callbacks_.stop && callbacks_.stop()) {
         stopped_ = true;
@@ -290,15 +303,34 @@ class Run {
     return mcap_file.empty() || fs::exists(layout, ignored) ? fs::path() : layout;
   }
 
-  /// A path that cannot be written to is an error before the first scan.
-  void make_recorder(const fs::path& path) {
+  [[nodiscard]] RunMessagesSettings messages_settings() {
     const motion::SweepConfig* sweep = sweep_config(settings_.config);
-    McapRecorderSettings recorder;
-    recorder.sweep = sweep != nullptr ? *sweep : motion::SweepConfig{};
-    recorder.tells_moving = settings_.method == "dynamic-icp";
-    recorder.period_s = check_.period_s;
-    recorder.threads = settings_.threads;
-    recorder_.emplace(path, truth_.trajectory, recorder);
+    RunMessagesSettings messages;
+    messages.sweep = sweep != nullptr ? *sweep : motion::SweepConfig{};
+    messages.tells_moving = settings_.method == "dynamic-icp";
+    messages.period_s = check_.period_s;
+    messages.threads = settings_.threads;
+    return messages;
+  }
+
+  /// An address that cannot be listened at is an error before the first scan.
+  void open_live_view() {
+    if (!settings_.live) {
+      return;
+    }
+    live_.emplace(*settings_.live, live_name(recording_.path), truth_.trajectory, messages_settings());
+    if (callbacks_.listening) {
+      callbacks_.listening(live_->authority());
+    }
+  }
+
+  void end_live_view() {
+    if (live_) {
+      if (const std::size_t left_out = live_->end("the run has ended"); left_out > 0) {
+        warn(fmt::format("the live view left out {} scans: the machine is too slow for both", left_out));
+      }
+      live_.reset();
+    }
   }
 
   /// A file for a viewer that cannot be is no reason to lose the run.
@@ -373,6 +405,7 @@ class Run {
   RunTruth truth_;
   RecordingCheck check_;
   std::optional<McapRecorder> recorder_;
+  std::optional<LiveView> live_;
   bool stopped_ = false;
   RunResult result_;
 };

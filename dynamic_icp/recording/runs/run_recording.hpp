@@ -11,6 +11,7 @@
 
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/runs/live_view_settings.hpp"
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 #include "dynamic_icp/recording/runs/run_summary.hpp"
 #include "dynamic_icp/recording/runs/sweep_record.hpp"
@@ -38,6 +39,7 @@ struct RunSettings {
   std::optional<std::filesystem::path> map_file;  ///< static points of all scans, .ply or .pcd; dynamic-icp only
   double map_voxel_m = 0.1;
   std::optional<std::filesystem::path> mcap_file;    ///< scans and results for Foxglove, .mcap (mcap_recorder.hpp)
+  std::optional<LiveViewSettings> live;              ///< who may watch the run, and where (live_view.hpp)
   std::optional<std::filesystem::path> kitti_file;   ///< poses as KITTI has them, .txt
   std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of another run with this sensor
   std::vector<std::filesystem::path> inputs;         ///< further files that were read and must not be replaced
@@ -51,6 +53,8 @@ struct RunCallbacks {
   std::function<void(std::size_t done, std::size_t total)> progress;
   /// What the user should know, as soon as it is known.
   std::function<void(const std::string& text)> warning;
+  /// Where the run can be watched from now on: "127.0.0.1:8765".
+  std::function<void(const std::string& authority)> listening;
   /// See check_recording: how messages word the corrections of what the diagnosis finds.
   FixInWords fix_in_words;
   /// Asked before each scan whether the run is to be given up.

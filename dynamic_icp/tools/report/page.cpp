@@ -85,8 +85,22 @@ void check_bundle(const ViewerBundle& viewer) {
 
 std::string generator() { return fmt::format("dynamic-icp {}", version()); }
 
-std::string html_page(const PageContent& content, const ViewerBundle& viewer) {
+std::string page_head(std::string_view policy, std::string_view title, const ViewerBundle& viewer) {
   check_bundle(viewer);
+  const std::string policy_line =
+      policy.empty() ? std::string()
+                     : fmt::format("<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n", policy);
+  std::string html = fmt::format(
+      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n{}"
+      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
+      "<meta name=\"color-scheme\" content=\"light dark\">\n"
+      "<meta name=\"generator\" content=\"{}\">\n<title>{}</title>\n<style>\n",
+      policy_line, escape_markup(generator()), escape_markup(std::string(title)));
+  html += viewer.style;
+  return html += "\n</style>\n</head>\n";
+}
+
+std::string html_page(const PageContent& content, const ViewerBundle& viewer) {
   std::size_t size = viewer.script.size() + viewer.style.size();
   for (const auto& [id, bytes] : content.blobs) {
     size += bytes.size() + 80;
@@ -95,15 +109,9 @@ std::string html_page(const PageContent& content, const ViewerBundle& viewer) {
   const std::string plain = plain_content(content.report);
   std::string html;
   html.reserve(size + data.size() + plain.size() + 2000);
-  html += fmt::format(
-      "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n"
-      "<meta http-equiv=\"Content-Security-Policy\" content=\"{}\">\n"
-      "<meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n"
-      "<meta name=\"color-scheme\" content=\"light dark\">\n"
-      "<meta name=\"generator\" content=\"{}\">\n<title>{}</title>\n<style>\n",
-      kPolicy, escape_markup(generator()), text(content.report["title"]));
-  html += viewer.style;
-  html += "\n</style>\n</head>\n<body>\n<div id=\"app\">\n" + plain + "</div>\n";
+  html +=
+      page_head(kPolicy, content.report["title"].is_string() ? content.report["title"].get<std::string>() : "", viewer);
+  html += "<body>\n<div id=\"app\">\n" + plain + "</div>\n";
   html += "<script type=\"application/json\" id=\"report\">";
   html += data;
   html += "</script>\n";

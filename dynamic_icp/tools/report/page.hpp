@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -19,6 +20,10 @@ struct PageContent {
 
 /// "dynamic-icp 0.1.0".
 std::string generator();
+
+/// All of a page up to its body. `policy`: what it may load, for the browser; empty: who serves the page says it.
+/// Throws std::runtime_error where the bundle holds the end of its own element.
+std::string page_head(std::string_view policy, std::string_view title, const ViewerBundle& viewer);
 
 /// The HTML page: needs no other file and no network, and says so to the browser. Without JavaScript it still shows
 /// title, facts, notes, warnings, summaries and tables. All text of `content` is shown as text whatever is in it.

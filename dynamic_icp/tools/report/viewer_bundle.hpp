@@ -16,4 +16,7 @@ struct ViewerBundle {
 /// Empty: built without node.
 std::optional<ViewerBundle> viewer_bundle();
 
+/// Likewise, of the page that shows a run while it goes on (live_page.hpp).
+std::optional<ViewerBundle> live_bundle();
+
 }  // namespace dynamic_icp::report

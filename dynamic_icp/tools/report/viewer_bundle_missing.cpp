@@ -6,5 +6,6 @@
 namespace dynamic_icp::report {
 
 std::optional<ViewerBundle> viewer_bundle() { return std::nullopt; }
+std::optional<ViewerBundle> live_bundle() { return std::nullopt; }
 
 }  // namespace dynamic_icp::report

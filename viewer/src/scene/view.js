@@ -1,5 +1,5 @@
 // The view: puts the scene together and draws it whenever something changed, and only then.
-import { Color, LinearSRGBColorSpace, Matrix4, Quaternion, Scene, Vector3, WebGLRenderer } from 'three';
+import { Color, LinearSRGBColorSpace, Matrix4, Scene, Vector3, WebGLRenderer } from 'three';
 import { canInflate } from '../bytes.js';
 import { colouring, quantile } from '../colour/colourings.js';
 import { mapStops } from '../colour/maps.js';
@@ -12,6 +12,7 @@ import { groupAt, runAt, runsShown, sameScan } from '../session.js';
 import { headingInWorld, nearestOf, objectAt, tracksOf, yawOf } from '../tracks.js';
 import { cssColour, groundOf } from '../theme.js';
 import { createCameraRig } from './camera_rig.js';
+import { openContext, poseMatrix } from './context.js';
 import { createLabels } from './labels.js';
 import { createObjects } from './objects.js';
 import { createOverlay } from './overlay.js';
@@ -29,26 +30,6 @@ const MOST_PIXELS_PER_POINT = 2;
 // Where the processor draws: so many points while something moves, all of them once it rests (ms).
 const POINTS_IN_MOTION = 8000;
 const REST = 180;
-
-/** Whether lines are drawn by the processor: then every pixel counts. */
-function isSoftware(gl) {
-  const info = gl.getExtension('WEBGL_debug_renderer_info');
-  return /swiftshader|llvmpipe|software|basic render/i.test(String(info && gl.getParameter(info.UNMASKED_RENDERER_WEBGL)));
-}
-
-/** A WebGL 2 context on a canvas, or null. */
-function openContext(canvas) {
-  const probe = document.createElement('canvas').getContext('webgl2');
-  if (!probe) return null;
-  const software = isSoftware(probe);
-  probe.getExtension('WEBGL_lose_context')?.loseContext();
-  const gl = canvas.getContext('webgl2', { alpha: false, antialias: !software, powerPreference: 'high-performance' });
-  return gl && { gl, software };
-}
-
-const poseMatrix = (pose, origin) => new Matrix4().compose(
-  new Vector3(pose[0] - origin[0], pose[1] - origin[1], pose[2] - origin[2]),
-  new Quaternion(pose[3], pose[4], pose[5], pose[6]), new Vector3(1, 1, 1));
 
 /** The middle and size of all positions of the runs. */
 function boundsOf(runs, origin) {

@@ -1,0 +1,17 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/live/low_priority.hpp"
+
+#include <sys/resource.h>
+#include <unistd.h>
+
+namespace dynamic_icp::live {
+
+void lower_own_priority() {
+#ifdef __linux__
+  constexpr int kLow = 10;  // of `nice`; Linux keeps it for each thread
+  static_cast<void>(::setpriority(PRIO_PROCESS, static_cast<id_t>(::gettid()), kLow));
+#endif
+}
+
+}  // namespace dynamic_icp::live

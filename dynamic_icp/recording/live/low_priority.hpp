@@ -1,0 +1,11 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+namespace dynamic_icp::live {
+
+/// Odometry goes before those who watch it: the calling thread yields to others. What the system does not allow is left
+/// as it is.
+void lower_own_priority();
+
+}  // namespace dynamic_icp::live
