@@ -8,8 +8,8 @@ import process from 'node:process';
 const require = createRequire(import.meta.url);
 
 /// Ends with the status for a skipped test where the packages are missing.
-export function skipWithoutPackages() {
-  for (const name of ['@mcap/core', '@mcap/support', '@mcap/nodejs', 'protobufjs']) {
+export function skipWithoutPackages(others = []) {
+  for (const name of ['@mcap/core', '@mcap/support', '@mcap/nodejs', 'protobufjs', ...others]) {
     try {
       require.resolve(name);
     } catch {
@@ -50,6 +50,7 @@ export async function readMcap(file) {
         publishTime: message.publishTime,
         sequence: message.sequence,
         value: decoders.get(channel.schemaId)(message.data),
+        bytes: message.data,
       });
     }
     const metadata = [];
