@@ -23,6 +23,8 @@ void add_info_command(CLI::App& app, std::function<int()>& selected);
 void add_plot_command(CLI::App& app, std::function<int()>& selected);
 void add_report_command(CLI::App& app, std::function<int()>& selected);
 void add_config_command(CLI::App& app, std::function<int()>& selected);
+void add_manual_command(CLI::App& app, std::function<int()>& selected);
+void add_completion_command(CLI::App& app, std::function<int()>& selected);
 
 /// Whether this program was built with what draws the HTML pages.
 bool has_viewer();

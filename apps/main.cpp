@@ -13,10 +13,10 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/recording/datasets/unclear_input.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 
+#include "apps/build_info.hpp"
 #include "apps/command_line.hpp"
 #include "apps/commands.hpp"
 #include "apps/exit_status.hpp"
@@ -33,7 +33,6 @@ namespace {
 namespace apps = dynamic_icp::apps;
 using dynamic_icp::DataError;
 using dynamic_icp::UsageError;
-using dynamic_icp::version;
 
 using apps::kDataOrMachineFailed;
 using apps::kWrongUsage;
@@ -77,14 +76,14 @@ int run(int argc, char** argv) {
   const std::vector<std::string> words = words_of(argc, argv);
   CLI::App app{"Registration and odometry for FMCW LiDAR in highly dynamic scenes", "dynamic-icp"};
   app.formatter(std::make_shared<apps::HelpFormat>(apps::terminal_width(words.empty() ? stderr : stdout)));
-  app.set_version_flag("-v,--version", std::string(version()));
+  app.set_version_flag("-v,--version", apps::build_info());
   app.footer("'dynamic-icp COMMAND --help' and 'dynamic-icp help COMMAND' explain a command and its options.");
   app.require_subcommand(1);
   std::function<int()> selected;
   for (const auto add :
        {apps::add_run_command, apps::add_register_command, apps::add_evaluate_command, apps::add_benchmark_command,
         apps::add_simulate_command, apps::add_report_command, apps::add_plot_command, apps::add_convert_command,
-        apps::add_info_command, apps::add_config_command}) {
+        apps::add_info_command, apps::add_config_command, apps::add_manual_command, apps::add_completion_command}) {
     add(app, selected);
   }
   if (words.empty()) {

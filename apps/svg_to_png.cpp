@@ -30,6 +30,8 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int lengt
 
 }  // namespace
 
+bool has_png() { return true; }
+
 void require_png() {}
 
 std::string png_of_svg(const std::string& document, double scale) {

@@ -6,6 +6,9 @@
 
 namespace dynamic_icp::apps {
 
+/// Whether this program was built with librsvg.
+bool has_png();
+
 /// Throws DataError when this program was built without librsvg, saying how to get it.
 void require_png();
 

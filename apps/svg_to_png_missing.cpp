@@ -7,11 +7,12 @@
 
 namespace dynamic_icp::apps {
 
+bool has_png() { return false; }
+
 void require_png() {
   throw DataError(
       "this program was built without librsvg, which makes PNG files: run 'scripts/install_dependencies.sh pictures' "
-      "in "
-      "the folder of the sources, then configure and build again");
+      "in the folder of the sources, then configure and build again");
 }
 
 std::string png_of_svg(const std::string& /*document*/, double /*scale*/) {
