@@ -96,12 +96,12 @@ report::PageContent content_of(const ReportOptions& options) {
     throw UsageError("--budget-mb and --frames are for the report of one run: others show no scans");
   }
   if (!is_comparison(options)) {
-    return report::benchmark_report(folders.front());
+    return report::benchmark_report(folders.front(), destination(options));
   }
   if (any_is_benchmark) {
     throw UsageError("a benchmark folder has a report of its own, it cannot be one of several");
   }
-  return report::comparison_report(folders);
+  return report::comparison_report(folders, destination(options));
 }
 
 int write_page(const ReportOptions& options) {

@@ -12,7 +12,7 @@ export function shortNumber(value, digits = 3) {
 }
 
 export const withUnit = (value, unit, digits = 3) =>
-  `${shortNumber(value, digits)}${unit && value !== null ? ` ${unit}` : ''}`;
+  `${shortNumber(value, digits)}${unit && value !== null ? `${unit === '°' ? '' : ' '}${unit}` : ''}`;
 
 /** @param {number} count */
 export const counted = (count, one, many = `${one}s`) => `${count.toLocaleString('en')} ${count === 1 ? one : many}`;

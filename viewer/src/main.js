@@ -12,12 +12,14 @@ import { createHeader, firstRun } from './panels/header.js';
 import { createHelp } from './panels/help.js';
 import { createLegend, createPointReading } from './panels/legend.js';
 import { createObjectCard, createObjectSheet } from './panels/objects.js';
-import { createDistributionSheet, createPlotSheet } from './panels/plots.js';
+import { createDistanceSheet, createDistributionSheet, createPlotSheet } from './panels/plots.js';
+import { createRankings } from './panels/ranking.js';
 import { createStatus } from './panels/status.js';
 import { createConfigurationSheet, createSummarySheet } from './panels/summary.js';
 import { createTabs } from './panels/tabs.js';
 import { createTimeline } from './panels/timeline.js';
 import { createToolbar } from './panels/toolbar.js';
+import { createWorstFrames } from './panels/worst_frames.js';
 import { createPlayer } from './player.js';
 import { createFlatMap } from './plots/flat_map.js';
 import { lastFrame } from './runs.js';
@@ -48,12 +50,14 @@ function usualState(report) {
 
 function sheetsOf(report, store, player) {
   const plots = { id: 'plots', name: 'Plots', element: createPlotSheet(report, store, player) };
+  const hasTruth = report.runs.some((run) => run.stretches);
+  const distances = hasTruth ? [{ id: 'distance', name: 'Distance', element: createDistanceSheet(report, store) }] : [];
   const distributions = { id: 'distributions', name: 'CDF', element: createDistributionSheet(report, store) };
   const hasObjects = report.kind === 'run' && report.runs[0].frames.objects.some((list) => list.length > 0);
   const objects = hasObjects ? [{ id: 'objects', name: 'Objects', element: createObjectSheet(report, store, player) }] : [];
   const summary = { id: 'summary', name: report.kind === 'run' ? 'Summary' : 'Run', element: createSummarySheet(report, store) };
   const configuration = { id: 'configuration', name: 'Settings', element: createConfigurationSheet(report, store) };
-  return [plots, ...objects, distributions, summary, configuration];
+  return [plots, ...objects, ...distances, distributions, summary, configuration];
 }
 
 /** Keeps the address in step with the state, not more often than browsers allow. */
@@ -80,8 +84,9 @@ function show(page) {
 }
 
 /** What is decided by where runs are compared comes first, as wide as the page. */
-const createResults = (report, store) => element('section', { class: 'results', 'aria-label': 'Tables' },
-  report.tables?.length ? createTableSheet(report) : null, createComparisonSheet(report, store));
+const createResults = (report, store) => element('section', { class: 'results', 'aria-label': 'Tables and rankings' },
+  report.tables?.length ? createTableSheet(report) : null, createComparisonSheet(report, store),
+  element('div', { class: 'findings' }, createRankings(report, store), createWorstFrames(report, store)));
 
 /** A benchmark of which nothing but its tables is left. */
 const pageWithoutRuns = (report) => element('div', {},

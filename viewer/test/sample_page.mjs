@@ -152,6 +152,8 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
   const poses = [];
   const truePoses = [];
   const egoVelocity = [];
+  const distance = [];
+  const drift = [];
   const objects = [];
   const details = [];
   const kept = { frames: [], dt: [], whole: [], points: [], of: [] };
@@ -163,6 +165,8 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
     poses.push(pose.x + wander[0], pose.y + wander[1], pose.z + wander[2], ...quaternion(pose.yaw));
     // The truth begins late: nulls before.
     truePoses.push(...(k < 2 ? Array(7).fill(null) : [pose.x, pose.y, pose.z, ...quaternion(pose.yaw)]));
+    distance.push(Number((SPEED * PERIOD * k).toFixed(4)));
+    drift.push(k < 2 ? null : Math.hypot(...wander));
     egoVelocity.push(SPEED + 0.02 * (random() - 0.5), 0.02 * (random() - 0.5), 0);
     const list = cars(start).map((car) => {
       const centre = toSensor(pose, [car.x + car.speed * k * PERIOD, car.y, start[2] - 1]);
@@ -184,11 +188,14 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
   const status = Array.from({ length: frames }, (_, k) => (k === 0 ? 'first' : k % 11 === 7 || k % 11 === 8 ? 'degenerate' : k % 17 === 12 ? 'lost' : 'ok'));
   const series = (value) => Array.from({ length: frames }, (_, k) => value(k));
   const jitter = (mean) => mean * (0.6 + 0.8 * random());
-  const plot = (id, title, unit_, list, { log = false, fromZero = true, whole = false } = {}) =>
-    ({ id, title, unit: unit_, log, from_zero: fromZero, whole_numbers: whole, series: list.map(([n, values, broad = false]) => ({ name: n, values, broad })) });
+  const plot = (id, title, unit_, list, { log = false, fromZero = true, whole = false, levels = [] } = {}) =>
+    ({ id, title, unit: unit_, log, from_zero: fromZero, whole_numbers: whole, levels, series: list.map(([n, values, broad = false]) => ({ name: n, values, broad })) });
   const errors = [
     plot('translation_error', 'Translation error', 'mm', [['frame to frame', series((k) => (k < 3 ? null : jitter((1000 * noise) / 3)))]], { log: true, fromZero: false }),
     plot('rotation_error', 'Rotation error', 'deg', [['frame to frame', series((k) => (k < 3 ? null : jitter(noise / 10)))]], { log: true, fromZero: false }),
+    plot('position_error', 'Position error', 'm', [['error', drift]]),
+    plot('nees', 'Consistency: NEES', '', [['translation', series((k) => (k < 3 ? null : jitter(3)))], ['rotation', series((k) => (k < 3 ? null : jitter(2)))]],
+      { log: true, fromZero: false, levels: [[3, 'expected mean']] }),
   ];
   const stages = ['preprocess', 'ego_motion', 'dynamics', 'registration'].map((stage, s) => [stage, series(() => jitter(1 + s))]);
   const run = {
@@ -206,12 +213,13 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
     configuration: [['registration.kernel', 'geman-mcclure'], ['registration.iterations', '30'], ['registration.distance_m', '2'],
       ['dynamics.min_points', '5'], ['dynamics.threshold_mps', '0.2'], ['preprocess.min_range_m', '1']],
     frames: {
-      index: series((k) => 100 + k), seconds: series((k) => Number((k * PERIOD).toFixed(3))), poses, ego_velocity: egoVelocity, status,
+      index: series((k) => 100 + k), seconds: series((k) => Number((k * PERIOD).toFixed(3))), distance, poses, ego_velocity: egoVelocity, status,
       reason: status.map((entry) => (entry === 'degenerate' ? 'planes alone do not hold the position' : entry === 'lost' ? 'nothing fits' : '')),
       lost_directions: status.map((entry) => (entry === 'degenerate' ? ['along x'] : [])),
       objects, object_details: details,
     },
     truth: truth ? { poses: truePoses } : null,
+    stretches: truth && frames > 10 ? { length: [1, 2, 5, 10], count: [20, 19, 16, 12], translation: [3, 2, 1.2, 1].map((v) => v * 10 * noise), rotation: [2, 1, 0.5, 0.3].map((v) => v * noise) } : null,
     pictures: [{ title: 'Learned', caption: 'A square', svg: '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><rect width="40" height="40" fill="#0072b2"/></svg>',
       svg_dark: '<svg xmlns="http://www.w3.org/2000/svg" width="40" height="40"><rect width="40" height="40" fill="#56b4e9"/></svg>' }],
     plots: [
@@ -281,22 +289,31 @@ ${bytes.join('\n')}
 `;
 }
 
+/** What a page of several runs says of each: the frames to look at first, and where its own page is. */
+function compared(part, colour, page) {
+  const [translation, rotation] = ['translation_error', 'rotation_error'].map((id) => part.run.plots.find((plot) => plot.id === id).series[0].values);
+  const worst = translation.map((value, frame) => ({ frame, scan: part.run.frames.index[frame], status: part.run.frames.status[frame], translation_mm: value, rotation_deg: rotation[frame] }))
+    .filter(({ translation_mm: value }) => value !== null).sort((a, b) => b.translation_mm - a.translation_mm).slice(0, 5);
+  Object.assign(part.run, { colour, page, worst });
+  return part;
+}
+
 /** The content of a page of one run, of a comparison, of a benchmark. */
 export const samples = {
   run: (options = {}) => ({ kind: 'run', title: 'street, Dynamic-ICP', parts: [sampleRun(options)], notes: ['Every second scan is thinned to keep the page small.'] }),
   comparison: () => ({
     kind: 'comparison', title: 'street, three methods',
     parts: [
-      sampleRun({ name: 'dynamic-icp', noise: 0.02 }),
-      sampleRun({ name: 'kiss-icp', method: 'kiss-icp', noise: 0.12, seed: 2, scans: false, map: false }),
-      sampleRun({ name: 'gicp', method: 'gicp', noise: 0.3, seed: 3, scans: false, map: false }),
+      compared(sampleRun({ name: 'dynamic-icp', noise: 0.02 }), 0, 'run of #1/report.html'),
+      compared(sampleRun({ name: 'kiss-icp', method: 'kiss-icp', noise: 0.12, seed: 2, scans: false, map: false }), 1, null),
+      compared(sampleRun({ name: 'gicp', method: 'gicp', noise: 0.3, seed: 3, scans: false, map: false }), 2, null),
     ],
-    groups: [{ name: 'street', runs: [0, 1, 2] }],
+    groups: [{ name: 'street', runs: [0, 1, 2], differences: [{ runs: [0, 1], scans: 24, translation_mm: 0.125, rotation_deg: 0 }] }],
   }),
   benchmark: () => ({
     kind: 'benchmark', title: 'Two sequences, two methods',
     parts: ['street', 'tunnel'].flatMap((sequence, s) => ['dynamic-icp', 'kiss-icp'].map((method, m) =>
-      sampleRun({ name: method, method, noise: 0.02 + 0.1 * m, seed: 10 * s + m, scans: false, map: false, frames: 20 + 4 * s }))),
+      compared(sampleRun({ name: method, method, noise: (0.02 + 0.1 * m) * (1 + s), seed: 10 * s + m, scans: false, map: false, frames: 20 + 4 * s }), m, null))),
     groups: [{ name: 'street', runs: [0, 1] }, { name: 'tunnel', runs: [2, 3] }],
     tables: [
       { title: 'Accuracy', caption: 'RTE RMSE in m. Lower is better.', columns: ['sequence', 'dynamic-icp', 'kiss-icp'],

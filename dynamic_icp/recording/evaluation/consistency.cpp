@@ -27,21 +27,15 @@ struct Mean {
   double sum = 0.0;
   std::size_t count = 0;
 
-  void add(double value) {
-    sum += value;
-    ++count;
+  void add(const std::optional<double>& value) {
+    sum += value.value_or(0.0);
+    count += value ? 1 : 0;
   }
   [[nodiscard]] std::optional<double> value() const {
     const double mean = sum / static_cast<double>(count);
     return count > 0 && std::isfinite(mean) ? std::optional(mean) : std::nullopt;
   }
 };
-
-void add_nees(Mean& mean, const Eigen::Vector3d& e, const Eigen::Matrix3d& C) {
-  if (const auto nees = squared_mahalanobis(e, C)) {
-    mean.add(*nees);
-  }
-}
 
 bool is_within_sigmas(const Vector6d& e, const Matrix6d& C) {
   return (e.array().square() <= kSigmas * kSigmas * C.diagonal().array()).all();  // false also for NaN
@@ -58,26 +52,38 @@ std::optional<double> squared_mahalanobis(const Eigen::Vector3d& e, const Eigen:
   return std::isfinite(value) ? std::optional(value) : std::nullopt;
 }
 
-Consistency consistency(const Association& matched, std::span<const StatedMotion> stated) {
+std::vector<MotionConsistency> motion_consistency(const Association& matched, std::span<const StatedMotion> stated) {
   if (stated.size() != matched.estimate_count) {
     throw std::invalid_argument("consistency: expected a statement for each pose of the estimate");
   }
-  Consistency result;
-  Mean rotation;
-  Mean translation;
-  Mean beyond;
+  std::vector<MotionConsistency> motions;
   for (std::size_t k = 1; k < matched.size(); ++k) {
     const std::size_t frame = matched.estimate_indices[k];
     const StatedMotion& motion = stated[frame];
     if (!motion.covariance || matched.estimate_indices[k - 1] + 1 != frame || stated[frame - 1].skipped) {
       continue;
     }
-    ++result.motions;
     const Vector6d e = perturbation(matched, k);
-    add_nees(rotation, e.head<3>(), motion.covariance->topLeftCorner<3, 3>());
-    add_nees(translation, e.tail<3>(), motion.covariance->bottomRightCorner<3, 3>());
-    if (motion.ok) {
-      beyond.add(is_within_sigmas(e, *motion.covariance) ? 0.0 : 1.0);
+    motions.push_back(
+        {.frame = frame,
+         .nees_rotation = squared_mahalanobis(e.head<3>(), motion.covariance->topLeftCorner<3, 3>()),
+         .nees_translation = squared_mahalanobis(e.tail<3>(), motion.covariance->bottomRightCorner<3, 3>()),
+         .within_4_sigma = is_within_sigmas(e, *motion.covariance)});
+  }
+  return motions;
+}
+
+Consistency consistency(const Association& matched, std::span<const StatedMotion> stated) {
+  Consistency result;
+  Mean rotation;
+  Mean translation;
+  Mean beyond;
+  for (const MotionConsistency& motion : motion_consistency(matched, stated)) {
+    ++result.motions;
+    rotation.add(motion.nees_rotation);
+    translation.add(motion.nees_translation);
+    if (stated[motion.frame].ok) {
+      beyond.add(motion.within_4_sigma ? 0.0 : 1.0);
     }
   }
   result.nees_rotation = rotation.value();

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <optional>
 #include <span>
+#include <vector>
 
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/recording/evaluation/association.hpp"
@@ -18,6 +19,14 @@ struct StatedMotion {
   std::optional<Matrix6d> covariance;
   bool ok = false;       ///< the method takes the pose for right: status "ok"
   bool skipped = false;  ///< a frame without a part in the motion: what the next one states does not begin here
+};
+
+/// The error of the motion into one frame against its covariance; the NEES as below.
+struct MotionConsistency {
+  std::size_t frame = 0;                   ///< of the whole estimate
+  std::optional<double> nees_rotation;     ///< empty where the block of the covariance is not positive definite
+  std::optional<double> nees_translation;  ///< the same
+  bool within_4_sigma = false;             ///< |e_i| <= 4 sqrt(C_ii) on all six axes
 };
 
 /// Whether errors are as large as the covariances say. With the true and the estimated motion T_target_source between
@@ -38,6 +47,10 @@ struct Consistency {
 
 /// e^T C^-1 e of an error and its covariance; empty where C is not positive definite or a number is not finite.
 std::optional<double> squared_mahalanobis(const Eigen::Vector3d& e, const Eigen::Matrix3d& C);
+
+/// Of all motions between frames that follow each other with a covariance and a reference at both ends. Throws
+/// std::invalid_argument when `stated` is not as long as the whole estimate.
+std::vector<MotionConsistency> motion_consistency(const Association& matched, std::span<const StatedMotion> stated);
 
 /// The consistency of what is stated for each frame of the whole estimate. Only motions between frames that follow each
 /// other count. A block that is not positive definite has no NEES, but counts among those beyond four sigma. Throws

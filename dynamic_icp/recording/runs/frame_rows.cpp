@@ -27,14 +27,6 @@ Eigen::Vector3d ego_velocity(const JsonRow& row) {
 /// What runs of earlier versions do not hold is unknown.
 double number_if_any(const JsonRow& row, const char* key) { return row.has(key) ? row.number(key) : kNaN; }
 
-std::optional<TwistRow> twist(const JsonRow& row) {
-  if (!row.has("twist") || row.get("twist").is_null()) {
-    return std::nullopt;
-  }
-  const JsonRow twist = row.object("twist");
-  return TwistRow{.angular = twist.vector("angular"), .linear = twist.vector("linear")};
-}
-
 /// A square matrix as a list of its rows.
 template <int kSize>
 Eigen::Matrix<double, kSize, kSize> square(const JsonRow& row, const char* key) {
@@ -52,9 +44,18 @@ Eigen::Matrix<double, kSize, kSize> square(const JsonRow& row, const char* key) 
 }
 
 /// None where the file has null, and in runs of earlier versions.
-std::optional<Matrix6d> pose_covariance(const JsonRow& row) {
-  constexpr const char* kKey = "pose_covariance";
-  return row.has(kKey) && !row.get(kKey).is_null() ? std::optional(square<6>(row, kKey)) : std::nullopt;
+std::optional<Matrix6d> covariance_of_six(const JsonRow& row, const char* key) {
+  return row.has(key) && !row.get(key).is_null() ? std::optional(square<6>(row, key)) : std::nullopt;
+}
+
+std::optional<TwistRow> twist(const JsonRow& row) {
+  if (!row.has("twist") || row.get("twist").is_null()) {
+    return std::nullopt;
+  }
+  const JsonRow twist = row.object("twist");
+  return TwistRow{.angular = twist.vector("angular"),
+                  .linear = twist.vector("linear"),
+                  .covariance = covariance_of_six(twist, "covariance")};
 }
 
 /// NaN in runs of earlier versions.
@@ -89,7 +90,7 @@ FrameRow frame_row(const JsonRow& row) {
   frame.inlier_rmse = row.number("inlier_rmse");
   frame.information_ratio = number_if_any(row, "information_ratio");
   frame.unobservable_directions = unobservable_directions(row);
-  frame.pose_covariance = pose_covariance(row);
+  frame.pose_covariance = covariance_of_six(row, "pose_covariance");
   frame.twist = twist(row);
   frame.doppler_bias = row.has("doppler_bias") ? row.number("doppler_bias") : 0.0;
   const JsonRow::Json& stages = row.get("ms");

@@ -23,6 +23,7 @@ namespace dynamic_icp::runs {
 struct TwistRow {
   Eigen::Vector3d angular = Eigen::Vector3d::Zero();  ///< rad/s
   Eigen::Vector3d linear = Eigen::Vector3d::Zero();   ///< m/s over ground
+  std::optional<Matrix6d> covariance = std::nullopt;  ///< of [angular; linear]; none in runs of earlier versions
 };
 
 /// One line of frames.jsonl. Numbers that are null in the file, and an ego velocity that could not be estimated, are

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/figures/run_context.hpp"
 
+#include <algorithm>
+#include <iterator>
 #include <limits>
 #include <memory>
 
@@ -11,12 +13,15 @@
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/datasets/pose_file.hpp"
 #include "dynamic_icp/recording/evaluation/association.hpp"
+#include "dynamic_icp/recording/evaluation/consistency.hpp"
 #include "dynamic_icp/recording/evaluation/relative_error.hpp"
 
 namespace dynamic_icp::figures {
 namespace {
 
 using formats::Trajectory;
+
+constexpr double kMaxStretch_m = 1e6;
 
 /// What was said about the recording when it was run.
 datasets::InputSettings input_settings(const runs::RunFiles& run) {
@@ -58,6 +63,43 @@ std::vector<double> true_speeds(const evaluation::Association& matched, std::siz
   return speeds;
 }
 
+/// 1, 2, 5, 10, ... m up to the length of the ground truth.
+std::vector<double> stretch_lengths(const evaluation::Association& matched) {
+  const double whole_m = matched.size() > 0 ? evaluation::path_distances(matched.reference).back() : 0.0;
+  std::vector<double> lengths;
+  for (double decade = 1.0; decade <= std::min(whole_m, kMaxStretch_m); decade *= 10.0) {
+    for (const double factor : {1.0, 2.0, 5.0}) {
+      if (factor * decade <= whole_m) {
+        lengths.push_back(factor * decade);
+      }
+    }
+  }
+  return lengths;
+}
+
+std::vector<StretchError> stretch_errors(const evaluation::Association& matched) {
+  std::vector<StretchError> errors;
+  for (const double length : stretch_lengths(matched)) {
+    const evaluation::RelativeError error =
+        evaluation::relative_error(matched, {.unit = evaluation::GapUnit::kMeters, .length = length});
+    if (error.translation_m && error.rotation_deg) {
+      errors.push_back({length, error.steps.size(), error.translation_m->rmse, error.rotation_deg->rmse});
+    }
+  }
+  return errors;
+}
+
+void add_consistency(const runs::RunFiles& run, const evaluation::Association& matched, RunTruth& truth) {
+  truth.nees_rotation.assign(run.frames.size(), std::numeric_limits<double>::quiet_NaN());
+  truth.nees_translation = truth.nees_rotation;
+  std::vector<evaluation::StatedMotion> stated;
+  std::transform(run.frames.begin(), run.frames.end(), std::back_inserter(stated), runs::stated_motion);
+  for (const evaluation::MotionConsistency& motion : evaluation::motion_consistency(matched, stated)) {
+    truth.nees_rotation[motion.frame] = motion.nees_rotation.value_or(std::numeric_limits<double>::quiet_NaN());
+    truth.nees_translation[motion.frame] = motion.nees_translation.value_or(std::numeric_limits<double>::quiet_NaN());
+  }
+}
+
 RunTruth compare(const runs::RunFiles& run, const Trajectory& reference) {
   const evaluation::Association matched = evaluation::associate(run.trajectory, reference);
   RunTruth truth;
@@ -74,6 +116,8 @@ RunTruth compare(const runs::RunFiles& run, const Trajectory& reference) {
     truth.translation_error[matched.estimate_indices[step.to]] = step.error.translation_m;
     truth.rotation_error[matched.estimate_indices[step.to]] = step.error.rotation_deg;
   }
+  truth.stretches = stretch_errors(matched);
+  add_consistency(run, matched, truth);
   return truth;
 }
 

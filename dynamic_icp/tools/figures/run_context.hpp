@@ -16,6 +16,14 @@
 
 namespace dynamic_icp::figures {
 
+/// Errors over stretches of one length: root mean squares over all that begin at a frame.
+struct StretchError {
+  double length_m = 0.0;  ///< along the ground truth
+  std::size_t count = 0;
+  double translation_m = 0.0;
+  double rotation_deg = 0.0;
+};
+
 /// The ground truth of a run at the times of its frames.
 struct RunTruth {
   /// T_world_sensor per frame, moved so that the first matched pose is the estimated one; empty where unknown.
@@ -23,6 +31,9 @@ struct RunTruth {
   std::vector<double> speed;              ///< m/s, per frame; NaN where unknown
   std::vector<double> translation_error;  ///< m, of the motion from the frame before, per frame; NaN where unknown
   std::vector<double> rotation_error;     ///< degrees, the same
+  std::vector<double> nees_rotation;      ///< of that motion, 3 is right; NaN where unknown or no covariance is stated
+  std::vector<double> nees_translation;   ///< the same
+  std::vector<StretchError> stretches;    ///< 1, 2, 5, 10, ... m, as far as the ground truth goes
 };
 
 /// What figures show beyond the files of the run, read again from the recording and its ground truth.

@@ -41,6 +41,32 @@ TEST(RunContext, ComparesWithTheTruthPerFrame) {
   }
 }
 
+TEST(RunContext, ErrorsOverStretchesGrowWithTheirLength) {
+  const TestFolder folder;
+  SampleRun().write_recording(folder);
+  SampleRun().write_run(folder);
+  const std::vector<StretchError> stretches = context_of(folder).truth->stretches;
+  ASSERT_EQ(stretches.size(), 2u) << "the drive is 4 m long: 1 m and 2 m";
+  for (std::size_t k = 0; k < stretches.size(); ++k) {
+    const double length_m = static_cast<double>(k + 1);
+    EXPECT_EQ(stretches[k].length_m, length_m);
+    EXPECT_EQ(stretches[k].count, 4 - k) << "those that begin at the first frames";
+    EXPECT_NEAR(stretches[k].translation_m, 0.01 * length_m, 1e-9) << "1 cm in each metre";
+    EXPECT_NEAR(stretches[k].rotation_deg, 0.0, 1e-9);
+  }
+}
+
+TEST(RunContext, WithoutStatedCovariancesNothingIsKnownOfTheConsistency) {
+  const TestFolder folder;
+  SampleRun().write_recording(folder);
+  SampleRun().write_run(folder);
+  const RunContext context = context_of(folder);
+  ASSERT_EQ(context.truth->nees_translation.size(), 5u);
+  for (std::size_t k = 0; k < 5; ++k) {
+    EXPECT_TRUE(std::isnan(context.truth->nees_rotation[k]) && std::isnan(context.truth->nees_translation[k]));
+  }
+}
+
 TEST(RunContext, ShowsTheScanAskedFor) {
   const TestFolder folder;
   SampleRun().write_recording(folder);

@@ -26,6 +26,7 @@ constexpr struct {
                  {"speed", {"ego_speed"}},
                  {"dynamics", {"dynamic_share", "objects"}},
                  {"convergence", {"iterations", "inlier_rmse"}},
+                 {"consistency", {"nees", "innovation"}},
                  {"timing", {"milliseconds"}}};
 
 std::vector<Eigen::Vector3d> positions_of(const runs::RunFiles& run) {

@@ -8,6 +8,9 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/recording/evaluation/consistency.hpp"
+
 namespace dynamic_icp::figures {
 namespace {
 
@@ -86,6 +89,53 @@ RunSeries objects(const runs::RunFiles& run) {
   return series;
 }
 
+/// How far the run is from the ground truth, which begins at its first matched pose.
+RunSeries position_error(const runs::RunFiles& run, const RunTruth& truth) {
+  std::vector<double> errors(run.frames.size(), std::numeric_limits<double>::quiet_NaN());
+  for (std::size_t k = 0; k < errors.size(); ++k) {
+    if (truth.poses[k]) {
+      errors[k] = (run.trajectory[k].T_world_sensor.translation() - truth.poses[k]->translation()).norm();
+    }
+  }
+  return make_series({"position_error", "Position error, aligned at the start", "error", "m"}, {{"error", errors}});
+}
+
+/// Squared errors over their covariances, of three numbers each.
+RunSeries squared_ratios(const char* id, const char* title, const char* quantity, std::vector<double> rotation,
+                         std::vector<double> translation) {
+  constexpr double kDegreesOfFreedom = 3.0;
+  RunSeries series = make_series({id, title, quantity, ""},
+                                 {{"translation", std::move(translation)}, {"rotation", std::move(rotation)}});
+  series.panel.logarithmic = true;
+  series.panel.levels = {{kDegreesOfFreedom, "expected mean"}};
+  return series;
+}
+
+/// The motion into a frame against the one that the twist at the frame before predicts, as the squared difference over
+/// what both state of themselves.
+RunSeries innovations(const runs::RunFiles& run) {
+  std::vector<double> rotation(run.frames.size(), std::numeric_limits<double>::quiet_NaN());
+  std::vector<double> translation = rotation;
+  for (std::size_t k = 1; k < run.frames.size(); ++k) {
+    const std::optional<runs::TwistRow>& twist = run.frames[k - 1].twist;
+    const std::optional<Matrix6d>& covariance = run.frames[k].pose_covariance;
+    if (!twist || !twist->covariance || !covariance || run.frames[k].status == "lost") {
+      continue;
+    }
+    const double dt_s = run.seconds(k) - run.seconds(k - 1);
+    const Vector6d predicted = dt_s * (Vector6d() << twist->angular, twist->linear).finished();
+    const Eigen::Isometry3d T_before_after =
+        run.trajectory[k - 1].T_world_sensor.inverse() * run.trajectory[k].T_world_sensor;
+    const Vector6d innovation = log_se3(exp_se3(predicted).inverse() * T_before_after);
+    const Matrix6d S = dt_s * dt_s * *twist->covariance + *covariance;
+    constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
+    rotation[k] = evaluation::squared_mahalanobis(innovation.head<3>(), S.topLeftCorner<3, 3>()).value_or(kNone);
+    translation[k] = evaluation::squared_mahalanobis(innovation.tail<3>(), S.bottomRightCorner<3, 3>()).value_or(kNone);
+  }
+  return squared_ratios("innovation", "Normalised innovation squared (constant velocity)", "NIS", std::move(rotation),
+                        std::move(translation));
+}
+
 double stage_time(const runs::FrameRow& frame, const std::string& stage) {
   const auto found = std::find_if(frame.milliseconds.begin(), frame.milliseconds.end(),
                                   [&](const auto& entry) { return entry.first == stage; });
@@ -123,7 +173,10 @@ std::vector<RunSeries> run_series(const runs::RunFiles& run, const std::optional
     all.push_back(error_series({"translation_error", "RTE per scan", "RTE", "mm"},
                                scaled(truth->translation_error, kMillimetres)));
     all.push_back(error_series({"rotation_error", "RRE per scan", "RRE", "degrees"}, truth->rotation_error));
+    all.push_back(position_error(run, *truth));
+    all.push_back(squared_ratios("nees", "Consistency: NEES", "NEES", truth->nees_rotation, truth->nees_translation));
   }
+  all.push_back(innovations(run));
   all.push_back(
       make_series({"iterations", "Iterations", "number", ""}, registration(run, &runs::FrameRow::iterations)));
   all.back().panel.whole_numbers = true;

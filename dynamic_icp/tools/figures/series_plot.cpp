@@ -3,6 +3,7 @@
 #include "dynamic_icp/tools/figures/series_plot.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 
@@ -30,6 +31,9 @@ std::vector<double> values_of(const Panel& panel) {
   std::vector<double> all;
   for (const Series& series : panel.series) {
     all.insert(all.end(), series.values.begin(), series.values.end());
+  }
+  for (const Level& level : panel.levels) {
+    all.push_back(level.value);
   }
   return all;
 }
@@ -124,6 +128,17 @@ std::vector<drawing::LegendEntry> legend_of(const Panel& panel, const drawing::T
   return legend;
 }
 
+void draw_levels(drawing::Svg& svg, const drawing::Theme& theme, const drawing::PixelBox& area,
+                 const drawing::Axes& axes, const drawing::Range& times, const Panel& panel) {
+  for (const Level& level : panel.levels) {
+    const double y = axes.at(times.minimum, level.value).y;
+    const std::array<drawing::Pixel, 2> line = {{{area.left, y}, {area.right(), y}}};
+    svg.polyline(line, {.stroke = theme.ink, .width = 1.0, .opacity = 0.6});
+    svg.text({area.right() - 4.0, y - 4.0}, level.name,
+             {.colour = theme.muted, .size = 11.0, .anchor = drawing::Anchor::kEnd, .halo = theme.panel});
+  }
+}
+
 void draw_panel(drawing::Svg& svg, const drawing::Theme& theme, const drawing::PixelBox& area, const Panel& panel,
                 const std::vector<double>& times) {
   const drawing::Axis vertical = vertical_axis(panel);
@@ -132,6 +147,7 @@ void draw_panel(drawing::Svg& svg, const drawing::Theme& theme, const drawing::P
   const drawing::Axes axes(
       area, {.label = "time (s)", .range = instant ? drawing::padded(time_range, 0.0) : time_range}, vertical);
   axes.draw(svg, theme);
+  draw_levels(svg, theme, area, axes, time_range, panel);
   const std::vector<drawing::LegendEntry> legend = legend_of(panel, theme);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const drawing::Paint paint = panel.series[k].broad
@@ -139,7 +155,8 @@ void draw_panel(drawing::Svg& svg, const drawing::Theme& theme, const drawing::P
                                      : drawing::Paint{.stroke = legend[k].colour, .width = 1.8};
     svg.polyline(pixels_of(axes, times, panel.series[k], vertical), paint);
   }
-  if (!drawing::range_of(values_of(panel))) {
+  if (std::none_of(panel.series.begin(), panel.series.end(),
+                   [](const Series& series) { return drawing::range_of(series.values).has_value(); })) {
     svg.text({area.left + 0.5 * area.width, area.top + 0.5 * area.height}, "no values",
              {.colour = theme.muted, .size = 14.0, .anchor = drawing::Anchor::kMiddle});
   }

@@ -17,6 +17,12 @@ struct Series {
   bool broad = false;          ///< a broad pale line, for what the others are compared with
 };
 
+/// A value that lines are compared with, drawn across the whole area.
+struct Level {
+  double value = 0.0;
+  std::string name;
+};
+
 /// Some lines in one drawing area.
 struct Panel {
   std::string title;
@@ -25,6 +31,7 @@ struct Panel {
   bool from_zero = true;       ///< the axis includes zero (linear scale)
   bool whole_numbers = false;  ///< counts: no ticks in between
   bool logarithmic = false;    ///< the axis is logarithmic; values <= 0 stand at its lower end
+  std::vector<Level> levels = {};
 };
 
 struct PanelSize {

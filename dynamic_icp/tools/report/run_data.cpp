@@ -126,6 +126,53 @@ Json truth_data(const std::optional<figures::RunTruth>& truth, const std::vector
   return {{"poses", poses}};
 }
 
+/// Metres to each kept frame: along the ground truth where there is one, else along the run itself, whose scale may
+/// be wrong.
+Json distances(const RunFiles& run, const std::optional<figures::RunTruth>& truth,
+               const std::vector<std::size_t>& kept) {
+  std::vector<double> along;
+  double distance = 0.0;
+  std::optional<Eigen::Vector3d> last;
+  for (std::size_t k = 0; k < run.frames.size(); ++k) {
+    const std::optional<Eigen::Isometry3d> pose = truth ? truth->poses[k] : run.trajectory[k].T_world_sensor;
+    if (pose) {
+      distance += last ? (pose->translation() - *last).norm() : 0.0;
+      last = pose->translation();
+    }
+    along.push_back(distance);
+  }
+  Json list = Json::array();
+  for (const std::size_t k : kept) {
+    list.push_back(rounded(along[k], kMetre));
+  }
+  return list;
+}
+
+Json stretches_data(const std::optional<figures::RunTruth>& truth) {
+  if (!truth || truth->stretches.empty()) {
+    return nullptr;
+  }
+  Json lengths = Json::array();
+  Json counts = Json::array();
+  Json translations = Json::array();
+  Json rotations = Json::array();
+  for (const figures::StretchError& error : truth->stretches) {
+    lengths.push_back(error.length_m);
+    counts.push_back(error.count);
+    translations.push_back(significant(100.0 * error.translation_m / error.length_m, kPlotDigits));
+    rotations.push_back(significant(100.0 * error.rotation_deg / error.length_m, kPlotDigits));
+  }
+  return {{"length", lengths}, {"count", counts}, {"translation", translations}, {"rotation", rotations}};
+}
+
+Json levels_data(const std::vector<figures::Level>& levels) {
+  Json list = Json::array();
+  for (const figures::Level& level : levels) {
+    list.push_back({level.value, level.name});
+  }
+  return list;
+}
+
 Json plots_data(const RunFiles& run, const std::optional<figures::RunTruth>& truth,
                 const std::vector<std::size_t>& kept) {
   Json plots = Json::array();
@@ -144,6 +191,7 @@ Json plots_data(const RunFiles& run, const std::optional<figures::RunTruth>& tru
                      {"log", plot.panel.logarithmic},
                      {"from_zero", plot.panel.from_zero},
                      {"whole_numbers", plot.panel.whole_numbers},
+                     {"levels", levels_data(plot.panel.levels)},
                      {"series", series}});
   }
   return plots;
@@ -177,6 +225,8 @@ Facts origin(const RunFiles& run) {
 Json run_data(const RunFiles& run, const std::optional<figures::RunTruth>& truth, const std::string& name,
               std::size_t max_frames) {
   const std::vector<std::size_t> kept = spread_frames(run.frames.size(), max_frames);
+  Json frames = frames_data(run, kept);
+  frames["distance"] = distances(run, truth, kept);
   return {{"name", name},
           {"facts", pairs(facts_of(run))},
           {"command", runs::text_of(run.run, "command")},
@@ -184,9 +234,10 @@ Json run_data(const RunFiles& run, const std::optional<figures::RunTruth>& truth
           {"summary", summary(run)},
           {"origin", pairs(origin(run))},
           {"configuration", pairs(texts_of(run.configuration))},
-          {"frames", frames_data(run, kept)},
+          {"frames", std::move(frames)},
           {"truth", truth_data(truth, kept)},
           {"plots", plots_data(run, truth, kept)},
+          {"stretches", stretches_data(truth)},
           {"pictures", pictures(run)},
           {"scans", nullptr},
           {"map", nullptr},

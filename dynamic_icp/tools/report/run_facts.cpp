@@ -57,7 +57,7 @@ std::string folder_name(const std::filesystem::path& folder) {
 
 std::vector<std::string> distinguishing_names(const std::vector<RunFiles>& runs) {
   std::vector<std::string> names(runs.size());
-  for (const char* key : {"method", "preset", "ablation"}) {
+  for (const char* key : {"method", "preset", "ablation", "input.format"}) {
     const bool differs = std::any_of(runs.begin(), runs.end(),
                                      [&](const RunFiles& run) { return fact(run, key) != fact(runs.front(), key); });
     for (std::size_t k = 0; differs && k < runs.size(); ++k) {

@@ -19,7 +19,8 @@ std::string name_of(const runs::RunFiles& run);
 /// The last part of a path, also of one that ends in a slash.
 std::string folder_name(const std::filesystem::path& folder);
 
-/// What distinguishes the runs: method, preset and ablation as far as they differ; else their folders.
+/// What distinguishes the runs: method, preset, ablation and layout of the recording as far as they differ; else their
+/// folders.
 std::vector<std::string> distinguishing_names(const std::vector<runs::RunFiles>& runs);
 
 /// Method, preset, ablation and version, as far as the run states them.

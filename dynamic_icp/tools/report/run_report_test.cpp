@@ -82,7 +82,7 @@ TEST(RunReport, HoldsWhatTheContractNames) {
   std::set<std::string> ids;
   for (const json& plot : run["plots"]) {
     ids.insert(plot["id"].get<std::string>());
-    for (const char* key : {"title", "unit", "log", "from_zero", "whole_numbers"}) {
+    for (const char* key : {"title", "unit", "log", "from_zero", "whole_numbers", "levels"}) {
       EXPECT_TRUE(plot.contains(key)) << key;
     }
     for (const json& series : plot["series"]) {
@@ -90,8 +90,14 @@ TEST(RunReport, HoldsWhatTheContractNames) {
       EXPECT_TRUE(series["broad"].is_boolean() && series["name"].is_string());
     }
   }
-  EXPECT_EQ(ids, (std::set<std::string>{"ego_speed", "translation_error", "rotation_error", "iterations", "inlier_rmse",
-                                        "fitness", "degeneracy", "dynamic_share", "objects", "milliseconds"}));
+  EXPECT_EQ(
+      ids, (std::set<std::string>{"ego_speed", "translation_error", "rotation_error", "position_error", "iterations",
+                                  "inlier_rmse", "fitness", "degeneracy", "dynamic_share", "objects", "milliseconds"}));
+  for (std::size_t k = 0; k < drive.frames; ++k) {
+    EXPECT_NEAR(run["frames"]["distance"][k].get<double>(), WallDrive::kEgo_mps * WallDrive::seconds(k), 1e-4);
+  }
+  EXPECT_EQ(run["stretches"]["length"], json::parse("[1,2,5]"));
+  EXPECT_EQ(run["stretches"]["translation"], json::parse("[0,0,0]")) << "a perfect run";
 
   const json& scans = run["scans"];
   ASSERT_EQ(scans["frames"].size(), drive.frames);

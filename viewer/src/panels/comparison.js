@@ -1,5 +1,6 @@
 // Runs side by side: which are shown, and their numbers with the best marked.
 import { element } from '../dom.js';
+import { withUnit, counted } from '../format.js';
 import { toggled } from '../layers.js';
 import { groupAt, runsShown } from '../session.js';
 import { groundOf } from '../theme.js';
@@ -52,6 +53,14 @@ function secondOf(numbers, best, better) {
 
 const cell = (text, best, second = false) => element('td', { class: best ? 'best' : second ? 'second' : null }, best ? element('span', { class: 'star', title: 'best', text: '★' }) : null, text);
 
+/** How far two runs over one recording are apart that read it from different containers. */
+function apartText(report, { runs, scans, translation_mm: translation, rotation_deg: rotation }) {
+  const names = runs.map((index) => report.runs[index].name).join(' and ');
+  return translation === 0 && rotation === 0
+    ? `${names}: one recording from two containers, the same trajectory in all ${counted(scans, 'scan')}`
+    : `${names}: one recording from two containers, at most ${withUnit(translation, 'mm')} and ${withUnit(rotation, '°')} apart in ${counted(scans, 'scan')}`;
+}
+
 export function createComparisonSheet(report, store) {
   const sheet = element('div', { class: 'text-sheet' });
   store.watch(['group'], (state) => {
@@ -79,7 +88,8 @@ export function createComparisonSheet(report, store) {
     sheet.replaceChildren(
       element('h2', { text: group.name }),
       element('div', { class: 'scroll' }, sortableTable(['run', ...measures.map(({ key, meaning }) => (meaning || key).split(';')[0])], table, { class: 'numbers' })),
-      element('p', { class: 'muted', text: '★ best, underlined second of the runs that have this number' }));
+      element('p', { class: 'muted', text: '★ best, underlined second of the runs that have this number' }),
+      ...(group.differences ?? []).map((difference) => element('p', { class: 'apart', text: apartText(report, difference) })));
   });
   return sheet;
 }

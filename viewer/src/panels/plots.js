@@ -4,6 +4,7 @@ import { toggled } from '../layers.js';
 import { shortNumber } from '../format.js';
 import { closest } from '../runs.js';
 import { createChart } from '../plots/chart.js';
+import { distancePlotsOf } from '../plots/distances.js';
 import { distributionsOf } from '../plots/distributions.js';
 import { plotsOfRun, plotsOfRuns } from '../plots/time_plots.js';
 import { runAt, runsShown } from '../session.js';
@@ -75,11 +76,15 @@ export function zoomAbout(report, store, factor) {
   store.set({ zoom: usefulSpan(xs, [now - half, now + half]) });
 }
 
-export function createDistributionSheet(report, store) {
+/** Charts of whole runs: nothing in them goes with the current frame. */
+function createWholeSheet(report, store, plotsOf) {
   const { sheet } = chartSheet(store, ['group', 'hidden', 'run', 'theme', 'systemTheme', 'folded'],
-    () => distributionsOf(report.kind === 'run'
-      ? [{ run: runAt(report, store.state), colour: '--series-0' }]
+    () => plotsOf(report.kind === 'run'
+      ? [{ index: store.state.run, run: runAt(report, store.state), colour: '--series-0', dash: false }]
       : runsShown(report, store.state, groundOf(store.state))),
     {}, 'There are no errors to show: no ground truth.');
   return sheet;
 }
+
+export const createDistributionSheet = (report, store) => createWholeSheet(report, store, distributionsOf);
+export const createDistanceSheet = (report, store) => createWholeSheet(report, store, distancePlotsOf);

@@ -30,6 +30,7 @@ const FONT = '11px system-ui, "DejaVu Sans", sans-serif';
  * @property {{log?: boolean, fromZero?: boolean, whole?: boolean}} y
  * @property {{low: number, high: number, log?: boolean, whole?: boolean}} x
  * @property {{from: number, to: number, status: string}[]} [marks] stretches of x
+ * @property {{value: number, name: string}[]} [levels] values of y that lines are compared with
  */
 
 const resolved = (colour) => (colour.startsWith('--') ? cssColour(colour) : colour);
@@ -124,6 +125,26 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
     }
   }
 
+  function drawLevels(pen, width) {
+    for (const { value, name } of plot.levels ?? []) {
+      const place = Math.round(y.place(value)) + 0.5;
+      pen.strokeStyle = pen.fillStyle = resolved('--ink');
+      pen.lineWidth = 1;
+      pen.setLineDash([2, 3]);
+      pen.beginPath();
+      pen.moveTo(EDGE.left, place);
+      pen.lineTo(width - EDGE.right, place);
+      pen.stroke();
+      pen.setLineDash([]);
+      pen.textAlign = 'right';
+      pen.textBaseline = 'bottom';
+      pen.lineWidth = 3; // letters stay readable over lines
+      pen.strokeStyle = resolved('--background');
+      pen.strokeText(name, width - EDGE.right - 3, place - 2);
+      pen.fillText(name, width - EDGE.right - 3, place - 2);
+    }
+  }
+
   /** Bands of one standard deviation: a piece for each stretch of values without a gap. */
   function drawBand(pen, { colour, xs, ys, sigma }) {
     pen.fillStyle = resolved(colour);
@@ -181,7 +202,7 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
     pen.scale(ratio, ratio);
     x = createScale({ ...plot.x, ...(span ? { low: span[0], high: span[1] } : {}), from: EDGE.left, to: width - EDGE.right });
     y = createScale({
-      ...valueRange(plot.series.flatMap(valuesShown), plot.y), ...plot.yRange, log: plot.y.log, whole: plot.y.whole,
+      ...valueRange([...plot.series.flatMap(valuesShown), (plot.levels ?? []).map(({ value }) => value)], plot.y), ...plot.yRange, log: plot.y.log, whole: plot.y.whole,
       from: height - EDGE.bottom, to: EDGE.top,
     });
     drawMarks(pen, height);
@@ -192,6 +213,7 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
     pen.clip();
     for (const series of [...plot.series].sort((a, b) => Number(b.broad ?? false) - Number(a.broad ?? false))) drawSeries(pen, series);
     pen.restore();
+    drawLevels(pen, width);
     for (const { series, swatch } of values) swatch.style.setProperty('--swatch', resolved(series.colour));
     placeCursors();
   }

@@ -1,5 +1,5 @@
 // How errors and times are distributed: the share of frames that stay below a value.
-import { leadingSeries } from './time_plots.js';
+import { leadingSeries, runLook } from './time_plots.js';
 
 const DISTRIBUTED = ['translation_error', 'rotation_error', 'milliseconds', 'iterations'];
 const MOST_STEPS = 400;
@@ -30,8 +30,8 @@ export function distributionsOf(shown) {
     const having = shown.filter(({ run }) => run.plots.some((plot) => plot.id === id));
     if (having.length === 0) return [];
     const plot = having[0].run.plots.find((entry) => entry.id === id);
-    const series = having.map(({ index, run, colour, dash }) => ({
-      name: run.name, run: index, colour, dash, ...cumulative(leadingSeries(run.plots.find((entry) => entry.id === id)).values),
+    const series = having.map((shownRun) => ({
+      ...runLook(shownRun), ...cumulative(leadingSeries(shownRun.run.plots.find((entry) => entry.id === id)).values),
     })).filter(({ xs }) => xs.length > 0);
     if (series.length === 0) return [];
     const positive = series.flatMap(({ xs }) => xs).filter((value) => value > 0).sort((a, b) => a - b);

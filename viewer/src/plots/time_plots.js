@@ -8,6 +8,12 @@ const seriesColour = (k) => `--series-${k % 8}`;
 export const leadingSeries = (plot) =>
   plot.series.find(({ name }) => name === 'total' || name === 'estimate') ?? plot.series.find(({ broad }) => !broad) ?? plot.series[0];
 
+/** What a line says of whose it is, where several runs are compared. */
+export const runLook = ({ index, run, colour, dash }) => ({ name: run.name, run: index, colour, dash });
+
+/** Values that lines are compared with, by name. */
+const levelsOf = (plot) => (plot.levels ?? []).map(([value, name]) => ({ value, name }));
+
 const looks = (plot) => ({ log: plot.log, fromZero: plot.from_zero, whole: plot.whole_numbers });
 
 const LEVELS_APART = 8;
@@ -26,7 +32,7 @@ export function plotsOfRun(run) {
   return run.plots.map((plot) => {
     let colour = 0;
     return {
-      id: plot.id, title: plot.title, unit: plot.unit, xName: 'time (s)', y: looks(plot),
+      id: plot.id, title: plot.title, unit: plot.unit, xName: 'time (s)', y: looks(plot), levels: levelsOf(plot),
       x: { low: xs[0] ?? 0, high: xs.at(-1) ?? 1 }, marks,
       series: plot.series.map(({ name, values, broad }) =>
         ({ name, xs, ys: values, broad, colour: broad ? '--muted' : seriesColour(colour++) })),
@@ -49,8 +55,8 @@ export function plotsOfRuns(shown) {
     return {
       id, title: first.series.length > 1 ? `${first.title}, ${lead}` : first.title, unit: first.unit, xName: 'scan',
       y: { ...looks(first), log, fromZero: first.from_zero && !log },
-      x: { low, high: Math.max(high, low + 1), whole: true },
-      series: having.map(({ index, run, colour, dash }, k) => ({ name: run.name, run: index, colour, dash, xs: run.frames.index, ys: values[k] })),
+      x: { low, high: Math.max(high, low + 1), whole: true }, levels: levelsOf(first),
+      series: having.map((entry, k) => ({ ...runLook(entry), xs: entry.run.frames.index, ys: values[k] })),
     };
   });
 }
