@@ -31,6 +31,19 @@ std::size_t nearest_line(const FieldShape& shape, double elevation_rad) {
   return nearest == lines.end() ? 0 : static_cast<std::size_t>(nearest - lines.begin());
 }
 
+void check_sensor(const SensorCalibration& calibration, std::size_t sensor) {
+  if (sensor >= calibration.shape.views.size()) {
+    throw UsageError(fmt::format("sensor {} of a calibration of {}", sensor, calibration.shape.views.size()));
+  }
+}
+
+/// The root of the information of theta with its prior.
+Eigen::LLT<Eigen::MatrixXd> information_root(const LearnedField& learned) {
+  Eigen::MatrixXd information = learned.information;
+  learned.field.add_prior_information(information);
+  return Eigen::LLT<Eigen::MatrixXd>(information);
+}
+
 /// How the error in a direction depends on the unknowns of the field, with the mean of the faces.
 Eigen::VectorXd mean_columns(const DopplerErrorField& field, DopplerCell cell) {
   const std::size_t faces = field.shape().faces;
@@ -49,13 +62,9 @@ Eigen::VectorXd mean_columns(const DopplerErrorField& field, DopplerCell cell) {
 
 ErrorByDirection error_by_direction(const SensorCalibration& calibration, std::size_t sensor, std::size_t azimuths,
                                     std::size_t elevations) {
-  if (sensor >= calibration.shape.views.size()) {
-    throw UsageError(fmt::format("sensor {} of a calibration of {}", sensor, calibration.shape.views.size()));
-  }
+  check_sensor(calibration, sensor);
   const LearnedField learned = learned_field(calibration);
-  Eigen::MatrixXd information = learned.information;
-  learned.field.add_prior_information(information);
-  const Eigen::LLT<Eigen::MatrixXd> root(information);
+  const Eigen::LLT<Eigen::MatrixXd> root = information_root(learned);
   const FieldShape::View& view = calibration.shape.views[sensor];
   ErrorByDirection result{middles(view.azimuth_first, view.azimuth_span, azimuths),
                           middles(view.elevation_first, view.elevation_span, elevations),
@@ -77,6 +86,29 @@ ErrorByDirection error_by_direction(const SensorCalibration& calibration, std::s
       result.error_mps(row, column) = by_unknowns.dot(learned.theta);
       result.sigma_mps(row, column) = root.matrixL().solve(by_unknowns).norm();
     }
+  }
+  return result;
+}
+
+ErrorByRange error_by_range(const SensorCalibration& calibration, std::size_t sensor,
+                            std::span<const double> ranges_m) {
+  check_sensor(calibration, sensor);
+  const LearnedField learned = learned_field(calibration);
+  const Eigen::LLT<Eigen::MatrixXd> root = information_root(learned);
+  DopplerCell cell;
+  cell.sensor = static_cast<decltype(cell.sensor)>(sensor);
+  cell.intensity = calibration.shape.intensity_mean;
+  const auto columns_at = [&](double range_m) {
+    cell.range_m = range_m;
+    return mean_columns(learned.field, cell);
+  };
+  cell.u = Eigen::Vector3d::UnitX();  // whichever: it cancels
+  const Eigen::VectorXd medium = columns_at(kMediumRange_m);
+  ErrorByRange result;
+  for (const double range_m : ranges_m) {
+    const Eigen::VectorXd by_unknowns = columns_at(range_m) - medium;
+    result.error_mps.push_back(by_unknowns.dot(learned.theta));
+    result.sigma_mps.push_back(root.matrixL().solve(by_unknowns).norm());
   }
   return result;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -24,5 +25,14 @@ struct ErrorByDirection {
 /// UsageError when there is no such sensor or the parts of the calibration do not fit each other.
 ErrorByDirection error_by_direction(const SensorCalibration& calibration, std::size_t sensor, std::size_t azimuths,
                                     std::size_t elevations);
+
+/// What range adds to the error, compared with that at medium range; the same in all directions.
+struct ErrorByRange {
+  std::vector<double> error_mps;  ///< at each of the ranges
+  std::vector<double> sigma_mps;  ///< its standard deviation, 0 at medium range
+};
+
+/// Of sensor number `sensor` at these ranges (m), as above.
+ErrorByRange error_by_range(const SensorCalibration& calibration, std::size_t sensor, std::span<const double> ranges_m);
 
 }  // namespace dynamic_icp::window

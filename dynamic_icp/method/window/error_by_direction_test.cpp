@@ -72,12 +72,49 @@ TEST(ErrorByDirection, IsThatOfTheFieldWithTheNearestLine) {
   }
 }
 
+TEST(ErrorByRange, IsThatOfTheFieldWithoutWhatIsTheSameAtAllRanges) {
+  const FieldShape shape = front_view();
+  DopplerErrorField field(shape);
+  std::mt19937 random(2);
+  const auto n = static_cast<Index>(field.size());
+  const Eigen::VectorXd theta = 0.1 * dense::random_matrix(random, n, 1);
+  const Eigen::MatrixXd information = 400.0 * dense::random_information(random, n);
+  constexpr std::array<double, 3> ranges_m = {5.0, 30.0, 120.0};
+  const ErrorByRange errors = error_by_range(calibration_of(shape, theta, information), 0, ranges_m);
+
+  for (DopplerErrorField::Group& group : field.groups()) {
+    group.tau = 0.1;
+  }
+  Eigen::MatrixXd all = information;
+  field.add_prior_information(all);
+  const Eigen::MatrixXd covariance = dense::inverse(all);
+  DopplerCell cell;
+  cell.u = {0.0, 0.6, 0.8};  // another direction than that of the code: all are alike
+  cell.line = 2;
+  for (std::size_t k = 0; k < ranges_m.size(); ++k) {
+    const auto difference = [&](const Eigen::VectorXd& at) {
+      cell.range_m = ranges_m[k];
+      const double there = field.at(cell, at);
+      cell.range_m = 30.0;
+      return there - field.at(cell, at);
+    };
+    Eigen::VectorXd by_unknowns(n);
+    for (Index i = 0; i < n; ++i) {
+      by_unknowns[i] = difference(Eigen::VectorXd::Unit(n, i));
+    }
+    EXPECT_NEAR(errors.error_mps[k], difference(theta), 1e-12);
+    EXPECT_NEAR(errors.sigma_mps[k], std::sqrt(by_unknowns.dot(covariance * by_unknowns)), 1e-9);
+  }
+  EXPECT_EQ(errors.sigma_mps[1], 0.0) << "at 30 m it is compared with itself";
+}
+
 TEST(ErrorByDirection, NeedsAFieldThatFits) {
   const FieldShape shape = front_view();
   const DopplerErrorField field(shape);
   const auto n = static_cast<Index>(field.size());
   SensorCalibration calibration = calibration_of(shape, Eigen::VectorXd::Zero(n), Eigen::MatrixXd::Identity(n, n));
   EXPECT_THROW(error_by_direction(calibration, 1, 5, 3), UsageError);
+  EXPECT_THROW(error_by_range(calibration, 1, {}), UsageError);
   calibration.parts.pop_back();
   EXPECT_THROW(error_by_direction(calibration, 0, 5, 3), UsageError);
 }

@@ -29,8 +29,9 @@ void check_count(const fs::path& file, const char* what, std::size_t count, std:
   }
 }
 
-constexpr const char* kPictures[] = {"convergence", "doppler_error", "dynamics", "errors",    "scan",
-                                     "speed",       "steps",         "timing",   "trajectory"};
+constexpr const char* kPictures[] = {"consistency", "convergence", "doppler_error", "doppler_error_parts",
+                                     "dynamics",    "errors",      "scan",          "speed",
+                                     "steps",       "timing",      "trajectory"};
 
 /// The files that were asked for beside the results and lie in the folder of the run; none when its run.json cannot be
 /// read.

@@ -33,7 +33,7 @@ struct RunTruth {
   std::vector<double> rotation_error;     ///< degrees, the same
   std::vector<double> nees_rotation;      ///< of that motion, 3 is right; NaN where unknown or no covariance is stated
   std::vector<double> nees_translation;   ///< the same
-  std::vector<StretchError> stretches;    ///< 1, 2, 5, 10, ... m, as far as the ground truth goes
+  std::vector<StretchError> stretches = {};  ///< 1, 2, 5, 10, ... m, as far as the ground truth goes
 };
 
 /// What figures show beyond the files of the run, read again from the recording and its ground truth.

@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
+#include "dynamic_icp/tools/figures/field_parts_plot.hpp"
 #include "dynamic_icp/tools/figures/field_plot.hpp"
 #include "dynamic_icp/tools/figures/run_series.hpp"
 #include "dynamic_icp/tools/figures/scan_plot.hpp"
@@ -163,6 +164,7 @@ std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& co
   }
   if (const auto calibration = runs::read_calibration_of(run.folder)) {
     figures.push_back({"doppler_error", field_plot(*calibration, theme)});
+    figures.push_back({"doppler_error_parts", field_parts_plot(*calibration, theme)});
   }
   return figures;
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
+#include "dynamic_icp/tools/figures/field_parts_plot.hpp"
 #include "dynamic_icp/tools/figures/field_plot.hpp"
 #include "dynamic_icp/tools/figures/run_series.hpp"
 #include "dynamic_icp/tools/report/run_facts.hpp"
@@ -200,16 +201,19 @@ Json plots_data(const RunFiles& run, const std::optional<figures::RunTruth>& tru
 Json pictures(const RunFiles& run) {
   Json list = Json::array();
   if (const auto calibration = runs::read_calibration_of(run.folder)) {
-    const auto drawn = [&](drawing::Ground ground) {
-      return figures::field_plot(*calibration, drawing::theme(ground)).element();
+    const auto add = [&](const char* title, const char* caption, const auto& draw) {
+      list.push_back({{"title", title},
+                      {"caption", caption},
+                      {"svg", draw(*calibration, drawing::theme(drawing::Ground::kLight)).element()},
+                      {"svg_dark", draw(*calibration, drawing::theme(drawing::Ground::kDark)).element()}});
     };
-    list.push_back(
-        {{"title", "What was learned of the sensor"},
-         {"caption",
-          "The error of the Doppler by direction at 30 m and medium intensity, mean of the faces. What looks like a "
-          "velocity of the sensor is known by the planes only."},
-         {"svg", drawn(drawing::Ground::kLight)},
-         {"svg_dark", drawn(drawing::Ground::kDark)}});
+    add("What was learned of the sensor: the error of its Doppler by direction",
+        "At 30 m and medium intensity, mean of the faces. What looks like a velocity of the sensor is known by the "
+        "planes only.",
+        figures::field_plot);
+    add("By line, face and range",
+        "Bars and band: one standard deviation. What all lines and faces have in common is among the directions.",
+        figures::field_parts_plot);
   }
   return list;
 }

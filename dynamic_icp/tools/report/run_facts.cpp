@@ -57,12 +57,25 @@ std::string folder_name(const std::filesystem::path& folder) {
 
 std::vector<std::string> distinguishing_names(const std::vector<RunFiles>& runs) {
   std::vector<std::string> names(runs.size());
-  for (const char* key : {"method", "preset", "ablation", "input.format"}) {
+  const auto add = [&](std::size_t k, const std::string& value) {
+    names[k] += value.empty() || names[k].empty() ? value : ", " + value;
+  };
+  for (const char* key : {"method", "preset", "ablation"}) {
     const bool differs = std::any_of(runs.begin(), runs.end(),
                                      [&](const RunFiles& run) { return fact(run, key) != fact(runs.front(), key); });
     for (std::size_t k = 0; differs && k < runs.size(); ++k) {
-      const std::string value = fact(runs[k], key);
-      names[k] += value.empty() ? "" : (names[k].empty() ? "" : ", ") + value;
+      add(k, fact(runs[k], key));
+    }
+  }
+  // The layout of the recording only where one method has read two.
+  const std::vector<std::string> methods = names;
+  for (std::size_t k = 0; k < runs.size(); ++k) {
+    const std::string layout = fact(runs[k], "input.format");
+    for (std::size_t other = 0; other < runs.size(); ++other) {
+      if (methods[other] == methods[k] && fact(runs[other], "input.format") != layout) {
+        add(k, layout);
+        break;
+      }
     }
   }
   std::set<std::pair<std::string, std::string>> different;
