@@ -8,7 +8,7 @@
 #include "dynamic_icp/method/base/version.hpp"
 
 #include "apps/commands.hpp"
-#include "apps/svg_to_png.hpp"
+#include "apps/svg_rendering.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -29,7 +29,7 @@ std::string build_info() {
   text += fmt::format("compiler  {}\n", kCompiler);
   text += fmt::format("SIMD      {}\n", simd::level() == simd::Level::kAvx2 ? "AVX2" : "baseline");
   text += fmt::format("features  reports {} interactive views, {}", has_viewer() ? "with" : "without",
-                      has_png() ? "PNG pictures" : "no PNG pictures");
+                      renders_svg() ? "PNG and PDF pictures" : "no PNG or PDF pictures");
   return text;
 }
 

@@ -23,7 +23,7 @@
 
 #include "apps/commands.hpp"
 #include "apps/options.hpp"
-#include "apps/svg_to_png.hpp"
+#include "apps/svg_rendering.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -133,10 +133,6 @@ int plot(const PlotOptions& options) {
   if (!(options.scale >= kMinScale && options.scale <= kMaxScale)) {
     throw UsageError(fmt::format("--scale is {}, expected {} to {}", options.scale, kMinScale, kMaxScale));
   }
-  const bool with_png = options.format != "svg";
-  if (with_png) {
-    require_png();
-  }
   const Pictures pictures =
       options.folders.size() == 1 ? pictures_of_run(options, theme) : pictures_of_runs(options, theme);
   const fs::path folder =
@@ -146,12 +142,21 @@ int plot(const PlotOptions& options) {
     formats::write_whole_file(folder / name, content);
     fmt::print("{}\n", (folder / name).string());
   };
+  const auto is_asked_for = [&](const std::string& format) {
+    return options.format == format || options.format == "all" || (options.format == "both" && format != "pdf");
+  };
+  // First those that need nothing: they are there whatever becomes of the others.
   for (const figures::Figure& figure : pictures.figures) {
-    if (options.format != "png") {
+    if (is_asked_for("svg")) {
       write(figure.name + ".svg", figure.svg.document());
     }
-    if (with_png) {
+  }
+  for (const figures::Figure& figure : pictures.figures) {
+    if (is_asked_for("png")) {
       write(figure.name + ".png", png_of_svg(figure.svg.document(), options.scale));
+    }
+    if (is_asked_for("pdf")) {
+      write(figure.name + ".pdf", pdf_of_svg(figure.svg.document()));
     }
   }
   for (const std::string& note : pictures.notes) {
@@ -182,8 +187,9 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
              "Also draw so many moving objects of a simulated recording, those whose boxes overlap least with the true "
              "ones, each of another body: worst_object_1.svg, ... (default 0)");
   add_option(*command, "--theme", options->theme, "NAME", "Background of the pictures: light or dark (default light)");
-  add_option(*command, "--format", options->format, "NAME", "Files to write: svg, png or both (default svg)")
-      ->check(CLI::IsMember({"svg", "png", "both"}).description(""));
+  add_option(*command, "--format", options->format, "NAME",
+             "Files to write: svg, png, pdf, both (svg and png) or all (default svg)")
+      ->check(CLI::IsMember({"svg", "png", "pdf", "both", "all"}).description(""));
   add_option(*command, "--scale", options->scale, "F",
              fmt::format("Pixels of a PNG file for each px of the SVG one, {} to {} (default {})", kMinScale, kMaxScale,
                          options->scale));

@@ -81,6 +81,13 @@ TEST_F(Presentation, PlotsAreMadeFromARun) {
   if (png.status == 0) {
     EXPECT_EQ(read_file(folder_ / "png" / "trajectory.png").substr(1, 3), "PNG");
     EXPECT_FALSE(fs::exists(folder_ / "png" / "trajectory.svg"));
+    const auto pdf = [&](const char* name) {
+      run_program("plot " + out + " --format pdf --output " + (folder_ / name).string());
+      return read_file(folder_ / name / "trajectory.pdf");
+    };
+    const std::string first = pdf("pdf");
+    EXPECT_EQ(first.substr(0, 5), "%PDF-");
+    EXPECT_TRUE(first == pdf("pdf-again")) << "the same picture, the same bytes";
   } else {
     EXPECT_EQ(png.status, 1);
     EXPECT_NE(png.text.find("built without librsvg"), std::string::npos) << png.text;

@@ -512,11 +512,11 @@ test('a comparison: the table first, sorted by any column; runs over each other,
   await onPage(write('comparison', samples.comparison()), async (page) => {
     assert.equal((await page.$$('.chip')).length, 3);
     const best = await page.$$eval('.numbers .best', (cells) => cells.map((cell) => cell.textContent));
-    assert.deepEqual(best, ['★6.67 mm', '★0.00200°', '★102 1/s']);
-    assert.deepEqual(await page.$$eval('.numbers .second', (cells) => cells.map((cell) => cell.textContent)), ['40.0 mm', '0.0120°', '102 1/s']);
+    assert.deepEqual(best, ['★6.67 mm', '★0.00200°'], 'scans per second read the same for all: nobody wins');
+    assert.deepEqual(await page.$$eval('.numbers .second', (cells) => cells.map((cell) => cell.textContent)), ['40.0 mm', '0.0120°']);
     const table = await page.locator('.results').boundingBox();
     assert.ok(table.y < 100 && table.width > 1200, 'on top, as wide as the page');
-    const names = () => page.$$eval('.numbers tbody th', (cells) => cells.map((cell) => cell.textContent));
+    const names = () => page.$$eval('.results > .text-sheet .numbers tbody th', (cells) => cells.map((cell) => cell.textContent));
     const sort = page.locator('.numbers th button:has-text("translation error")');
     await sort.click();
     assert.deepEqual(await names(), ['dynamic-icp', 'kiss-icp', 'gicp']);
@@ -555,6 +555,41 @@ test('a comparison: the table first, sorted by any column; runs over each other,
   });
 });
 
+test('a comparison ranks its runs, tells how far containers are apart, and leads to the worst scans', async () => {
+  await onPage(write('findings', samples.comparison()), async (page) => {
+    const names = (id) => page.$$eval(`[data-ranking="${id}"] .bar-name`, (cells) => cells.map((cell) => cell.textContent));
+    assert.deepEqual(await names('rte_rmse_m'), ['dynamic-icp', 'kiss-icp', 'gicp']);
+    assert.match(await page.textContent('.apart'), /dynamic-icp and kiss-icp.*0\.125 mm.*24 scans/);
+    const links = await page.$$eval('.worst a', (all) => all.map((one) => one.getAttribute('href')));
+    assert.ok(links.length > 0 && links.every((href) => /^run%20of%20%231\/report\.html#frame=\d+$/.test(href)), String(links));
+    const button = page.locator('.worst tbody button').first();
+    const scan = Number(await button.textContent());
+    await button.click();
+    await shown(page, scan - 100);
+    assert.equal(await page.inputValue('[aria-label="Run in front"]'), '2', 'the worst scan is of gicp');
+    await page.click('[aria-label="Show kiss-icp"]');
+    assert.deepEqual(await names('rte_rmse_m'), ['dynamic-icp', 'gicp'], 'what is not shown is not ranked');
+    await page.click('.tabs >> text=Distance');
+    assert.match(await page.getAttribute('[data-plot="drift"] canvas', 'aria-label'), /dynamic-icp from .*gicp from/s);
+  });
+});
+
+test('a benchmark ranks over all of its drives', async () => {
+  await onPage(write('drives', samples.benchmark()), async (page) => {
+    assert.match(await page.textContent('.findings'), /Median over 2 drives/);
+    assert.match(await page.getAttribute('[data-ranking="rte_rmse_m"] li', 'title'), /street .*tunnel/);
+  });
+});
+
+for (const width of [1600, 1000, 420]) {
+  test(`a comparison, ${width} wide: nothing sticks out`, async () => {
+    await onPage(write('wide', samples.comparison()), async (page) => {
+      assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), width);
+      for (const bar of await page.$$('.bar')) assert.ok((await bar.boundingBox()).width > 80);
+    }, { context: { viewport: { width, height: 900 } } });
+  });
+}
+
 test('a method has the colour its page says, and ablations are shown when they are asked for', async () => {
   const content = samples.comparison();
   content.parts[0].run.colour = 6;
@@ -576,7 +611,7 @@ test('a benchmark shows its tables and each of its sequences', async () => {
     const street = await picture(page);
     await page.selectOption('[aria-label="Sequence"]', '1');
     assert.ok(!street.equals(await picture(page)));
-    assert.match(await page.textContent('.results section + section, .results .text-sheet:last-child'), /tunnel.*24/s);
+    assert.match(await page.locator('.results > .text-sheet').last().textContent(), /tunnel.*24/s);
     assert.equal((await page.$$('.chip')).length, 2);
     await page.click('.warning-count');
     assert.match(await page.textContent('#sheet-summary'), /^[^]*degenerate/);

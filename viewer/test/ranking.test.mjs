@@ -39,6 +39,9 @@ test('over one drive the spread is that of its scans, over several that of the d
   assert.deepEqual(icp.drives, [{ drive: 'a', value: 50 }, { drive: 'b', value: 20 }, { drive: 'c', value: 30 }]);
   assert.equal(icp.value, 30);
   assert.deepEqual(icp.spread, [20, 50]);
+  const alone = [...runs, runOf('alone', 2, 0.04, perScan)];
+  const [mixed] = rankingsOf({ ...several, runs: alone, groups: [{ name: 'a', runs: [0, 1, 5] }, ...several.groups.slice(1)] }, shownOf(alone, [0, 1, 5]));
+  assert.equal(mixed.rows.find(({ name }) => name === 'alone').spread, null, 'scans of one drive are no spread over drives');
   assert.equal(ranking.rows.find(({ name }) => name === 'other').value, 35, 'the median of two is between them');
 });
 

@@ -56,8 +56,9 @@ std::vector<std::string> run_files(const fs::path& folder) {
   for (const std::string picture : kPictures) {
     files.push_back("plots/" + picture + ".svg");
     files.push_back("plots/" + picture + ".png");
+    files.push_back("plots/" + picture + ".pdf");
   }
-  files.insert(files.end(), {"plots/worst_object_#.svg", "plots/worst_object_#.png"});
+  files.insert(files.end(), {"plots/worst_object_#.svg", "plots/worst_object_#.png", "plots/worst_object_#.pdf"});
   for (std::string& file : files_asked_for(folder / "run.json")) {
     files.push_back(std::move(file));
   }

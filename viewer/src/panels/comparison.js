@@ -45,6 +45,12 @@ export function bestOf(numbers, better) {
   return numbers.map((value) => value === best);
 }
 
+/** What reads the same is as good: digits that are not shown decide nothing, and where all read the same nobody wins. */
+function alike(marked, texts) {
+  const all = texts.map((text) => texts.some((other, k) => marked[k] && other === text));
+  return all.every(Boolean) ? all.map(() => false) : all;
+}
+
 /** Which of the runs come after the best, where there are more than two. */
 function secondOf(numbers, best, better) {
   const rest = numbers.map((value, k) => (best[k] ? null : value));
@@ -73,8 +79,9 @@ export function createComparisonSheet(report, store) {
     const cells = new Map(measures.map(({ key, better }) => {
       const entries = runs.map((run) => run.summary.find((entry) => entry.key === key));
       const numbers = entries.map((entry) => entry?.number ?? null);
-      const best = bestOf(numbers, better);
-      const second = secondOf(numbers, best, better);
+      const texts = entries.map((entry) => entry?.value);
+      const best = alike(bestOf(numbers, better), texts);
+      const second = alike(secondOf(numbers, best, better), texts);
       return [key, { entries, best, second }];
     }));
     const table = runs.map((run, k) => {

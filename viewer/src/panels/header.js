@@ -16,7 +16,7 @@ export function createHeader(report, store, { showHelp, link }) {
     document.getElementById('sheet-summary')?.scrollIntoView({ block: 'nearest' });
   }, { class: 'warning-count' });
   const theme = iconButton('theme', 'Light or dark (T)', () => store.set({ theme: otherTheme(store.state) }));
-  const share = button('Copy link', 'Copy a link to exactly this view', () => copyText(link(), share));
+  const share = button('Copy link', 'Copy link to exactly this view', () => copyText(link(), share));
   const help = button('?', 'Keys and hints (?)', showHelp);
 
   store.watch(['group', 'run'], (state) => {
@@ -27,6 +27,7 @@ export function createHeader(report, store, { showHelp, link }) {
     runList.set(state.run);
     const count = run.warnings.length + report.notes.length;
     warnings.textContent = `⚠ ${count}`;
+    warnings.setAttribute('aria-label', `⚠ ${count}: show the warnings`); // what is read begins with what is seen
     warnings.hidden = count === 0;
   });
 

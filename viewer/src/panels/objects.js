@@ -116,7 +116,7 @@ function createTrackTable(report, store, select) {
   let all = [];
   const value = (row, by) => (by === 'length' ? row.extent[0] : row[by]) ?? -Infinity;
   const heads = COLUMNS.map(({ id, name, help }) => element('th', { scope: 'col' },
-    button(name, `${help}: sort by it`, () => {
+    button(name, `${name}: ${help}; sort by it`, () => {
       order = { by: id, down: order.by === id ? !order.down : id !== 'id' && id !== 'from' };
       arrange();
     })));

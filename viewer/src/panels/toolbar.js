@@ -32,7 +32,7 @@ function layerMenu(report, store) {
 export function createToolbar(report, store, view) {
   const colour = chooser('Colour of the points', colourings.map(({ id, name }) => ({ value: id, text: name })),
     (value) => store.set({ colour: value, limit: null }));
-  const cameras = CAMERAS.map(({ id, name, help }) => button(name, help, () => store.set({ camera: id }), { data: { camera: id } }));
+  const cameras = CAMERAS.map(({ id, name, help }) => button(name, `${name}: ${help}`, () => store.set({ camera: id }), { data: { camera: id } }));
   const size = element('input', {
     type: 'range', min: SIZE.least, max: SIZE.most, step: SIZE.step, 'aria-label': 'Point size in pixels', title: 'Point size (+ and −)',
     on: { input: () => store.set({ size: Number(size.value) }) },

@@ -29,7 +29,7 @@ function spreadOverScans(run, measure) {
   return values.length ? [quantile(values, 0.05, null), quantile(values, 0.95, null)] : null;
 }
 
-/** One run's row: of all runs that have its colour, which are those of one method over the drives of the page. */
+/** One run's row, with its spread over drives: of all runs that have its colour, which are those of one method over the drives of the page. */
 function rowOf(report, { index, run, colour, dash }, measure) {
   const drives = groupsOf(report).flatMap(({ name, runs }) => runs
     .filter((other) => other === index || (run.colour !== undefined && report.runs[other].colour === run.colour))
@@ -39,7 +39,7 @@ function rowOf(report, { index, run, colour, dash }, measure) {
   return {
     index, name: run.name, colour, dash, drives,
     value: medianOf(values),
-    spread: values.length > 1 ? [Math.min(...values), Math.max(...values)] : spreadOverScans(run, measure),
+    spread: values.length > 1 ? [Math.min(...values), Math.max(...values)] : null,
   };
 }
 
@@ -59,7 +59,9 @@ export function rankingsOf(report, shown) {
       .sort((a, b) => (a.value ?? Infinity) - (b.value ?? Infinity) || a.index - b.index);
     const known = rows.map(({ value }) => value).filter((value) => value !== null);
     if (known.length === 0) return [];
+    const drives = Math.max(...rows.map((row) => row.drives.length));
+    if (drives === 1) for (const row of rows) row.spread = row.value === null ? null : spreadOverScans(report.runs[row.index], measure);
     const log = known[0] > 0 && known.at(-1) > LEVELS_APART * known[0];
-    return [{ id: measure.key, title: measure.title, unit: measure.unit, log, drives: Math.max(...rows.map(({ drives }) => drives.length)), rows }];
+    return [{ id: measure.key, title: measure.title, unit: measure.unit, log, drives, rows }];
   });
 }
