@@ -96,20 +96,22 @@ bool linked(const MovingCell& a, const MovingCell& b, double range, const Groupi
 }
 
 /// The cube itself and 13 of its 26 neighbours, so that each pair of cubes comes up once: differences of keys.
-std::vector<std::uint64_t> half_neighbourhood() {
-  std::vector<std::uint64_t> offsets;
+constexpr std::array<std::uint64_t, 14> kHalfNeighbourhood = [] {
+  std::array<std::uint64_t, 14> offsets{};
+  std::size_t count = 0;
   for (std::int64_t x = -1; x <= 1; ++x) {
     for (std::int64_t y = -1; y <= 1; ++y) {
       for (std::int64_t z = -1; z <= 1; ++z) {
-        const std::int64_t offset = (x << 2 * spatial::kCellBits) + (y << spatial::kCellBits) + z;
+        const std::int64_t offset =
+            x * (std::int64_t{1} << 2 * spatial::kCellBits) + y * (std::int64_t{1} << spatial::kCellBits) + z;
         if (offset >= 0) {
-          offsets.push_back(static_cast<std::uint64_t>(offset));
+          offsets[count++] = static_cast<std::uint64_t>(offset);
         }
       }
     }
   }
   return offsets;
-}
+}();
 
 /// Calls visit(i, k) once for each pair of the chosen cells that are at most `reach_m` apart, and for some more.
 template <typename Visit>
@@ -128,9 +130,8 @@ void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::ui
     keys[cubes.cell[k]] = cubes.keys[k];
     members[cubes.place(k)] = chosen[k];
   }
-  const std::vector<std::uint64_t> offsets = half_neighbourhood();
   for (std::size_t cube = 0; cube < cubes.cells(); ++cube) {
-    for (const std::uint64_t offset : offsets) {
+    for (const std::uint64_t offset : kHalfNeighbourhood) {
       const std::uint32_t other = cubes.numbers.find(keys[cube] + offset);
       if (other == spatial::KeyNumbers::kNone) {
         continue;
@@ -151,6 +152,7 @@ constexpr int kMaxTightenings = 2;  // ... so often; much shorter ones than a ce
 std::vector<CellGroup> groups_among(const MovingCells& moving, std::span<const std::uint32_t> cells,
                                     const GroupingConfig& config) {
   std::vector<MovingCell> chosen;
+  chosen.reserve(cells.size());
   for (const std::uint32_t cell : cells) {
     chosen.push_back(moving.cells[cell]);
   }

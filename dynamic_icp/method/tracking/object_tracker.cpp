@@ -123,6 +123,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   initiate_tracks(input, owner_, workers);
   delete_tracks(input);
   std::vector<TrackedObject> objects;
+  objects.reserve(entries_.size());
   for (const Entry& entry : entries_) {
     objects.push_back(report(entry, sensor));
   }
@@ -163,6 +164,7 @@ TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> r
 template <typename Choice>
 std::vector<Expectation> ObjectTracker::expectations(double stamp_s, const SensorMotion& sensor, const Choice& choice) {
   std::vector<Expectation> expected;
+  expected.reserve(entries_.size());
   for (Entry& entry : entries_) {
     if (choice(entry)) {
       entry.predict(stamp_s, config_.track);
@@ -406,6 +408,7 @@ bool ObjectTracker::is_over(const Entry& entry, double stamp_s) const {
 /// Ends tracks of which nothing is to be expected any more, and makes one of those that share a place.
 void ObjectTracker::delete_tracks(const TrackingInput& input) {
   std::vector<Entry> living;
+  living.reserve(entries_.size());
   for (Entry& entry : entries_) {
     if (is_over(entry, input.stamp_s)) {
       continue;
