@@ -12,6 +12,7 @@ namespace dynamic_icp::apps {
 namespace {
 
 constexpr std::size_t kBarWidth = 30;
+constexpr std::size_t kBetweenLines = 100;  // where the end is not known
 constexpr std::chrono::milliseconds kRedrawPeriod{100};
 
 }  // namespace
@@ -20,7 +21,7 @@ Progress::Progress(std::string what, std::size_t total, bool quiet)
     : what_(std::move(what)), total_(total), quiet_(quiet), terminal_(::isatty(STDERR_FILENO) == 1) {}
 
 Progress::~Progress() {
-  if (!quiet_ && terminal_ && done_ > 0) {
+  if (!quiet_ && terminal_ && done_ > 0 && total_ > 0) {
     draw_bar();
     tell("\n");
   }
@@ -28,10 +29,14 @@ Progress::~Progress() {
 
 void Progress::advance() {
   ++done_;
-  if (quiet_ || total_ == 0) {
+  if (quiet_) {
     return;
   }
-  if (terminal_) {
+  if (total_ == 0) {
+    if (done_ % kBetweenLines == 0) {
+      tell("{}: {}\n", what_, done_);
+    }
+  } else if (terminal_) {
     const auto now = std::chrono::steady_clock::now();
     if (now - drawn_ >= kRedrawPeriod) {
       drawn_ = now;

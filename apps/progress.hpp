@@ -9,7 +9,7 @@
 namespace dynamic_icp::apps {
 
 /// Progress on stderr: a bar that redraws itself on a terminal, a plain line every tenth of the way otherwise,
-/// nothing when quiet.
+/// nothing when quiet. A total of 0 is not known: then a line now and then.
 class Progress {
  public:
   Progress(std::string what, std::size_t total, bool quiet);

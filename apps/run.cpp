@@ -149,13 +149,16 @@ int run(const RunOptions& options) {
   if (!options.quiet) {
     callbacks.listening = tell_where_to_watch;
   }
+  if (settings.follow && !options.quiet) {
+    tell("following {}; Ctrl-C ends it, with the results so far\n", options.recording.path.string());
+  }
   callbacks.progress = [&](std::size_t done, std::size_t total) {
     if (done == 0) {
       progress.emplace("odometry", total, options.quiet);
     } else {
       progress->advance();
     }
-    if (done == total) {
+    if (done == total && total > 0) {
       progress.reset();
     }
   };
@@ -221,6 +224,8 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
       "Write FILE.mcap for Foxglove and Lichtblick: scans with Doppler and labels, poses, paths, objects, status "
       "and deviations over time; foxglove_layout.json beside it arranges them");
   add_live_options(*command, options->live);
+  command->add_flag("--follow", options->settings.follow,
+                    "Take the scans of INPUT as they come: of a folder that grows, until Ctrl-C or --max-frames");
   add_option(*command, "--save-kitti", options->settings.kitti_file, "FILE",
              "Write the poses as KITTI has them, FILE.txt: 12 numbers a scan, T_world_sensor row by row");
   add_option(*command, "--calibration", options->settings.calibration, "FILE",

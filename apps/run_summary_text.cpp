@@ -48,6 +48,12 @@ std::string accuracy_text(const runs::RunSummary& summary) {
                      cell(accuracy.ate_rmse_m, 3), cell(accuracy.path_length_m, 1), accuracy.matched, summary.frames);
 }
 
+std::string latency_text(const runs::Latency& latency) {
+  return latency.scans == 0 ? ""
+                            : fmt::format("latency      {:.0f} ms median, {:.0f} ms at most in 99 % of {} scans\n",
+                                          latency.median_ms, latency.p99_ms, latency.scans);
+}
+
 }  // namespace
 
 std::string status_text(const runs::RunSummary& summary) {
@@ -81,7 +87,7 @@ std::string summary_text(const runs::RunResult& result) {
                       cell(summary.ms_median, 1), cell(summary.ms_p95, 1));
   text += fmt::format("moving       {} of the points ({} clustered)\n", percent(summary.dynamic_ratio_mean),
                       percent(summary.clustered_ratio_mean));
-  return text + accuracy_text(summary);
+  return text + latency_text(result.latency) + accuracy_text(summary);
 }
 
 }  // namespace dynamic_icp::apps

@@ -11,17 +11,46 @@ ReadAhead::ReadAhead(const Dataset& dataset, std::size_t begin, std::size_t end)
   start_reading();
 }
 
+ReadAhead::ReadAhead(FollowedDataset& dataset, std::size_t begin, std::size_t end)
+    : dataset_(dataset), followed_(&dataset), next_(begin), end_(end) {
+  start_reading();
+}
+
+bool ReadAhead::done() const {
+  if (next_ == end_ || followed_ == nullptr) {
+    return next_ == end_;
+  }
+  reading_.wait();
+  return is_at_end_;
+}
+
+bool ReadAhead::wait(std::chrono::milliseconds longest) const {
+  return next_ == end_ || reading_.wait_for(longest) == std::future_status::ready;
+}
+
 RawScan ReadAhead::next() {
-  RawScan scan = reading_.get();
+  Read read = reading_.get();
+  arrival_ = read.arrival;
   ++next_;
   start_reading();
-  return scan;
+  return std::move(read.scan);
 }
 
 void ReadAhead::start_reading() {
   if (next_ < end_) {
-    reading_ = std::async(std::launch::async, [this, index = next_] { return dataset_.scan(index); });
+    reading_ = std::async(std::launch::async, [this, index = next_] { return read(index); });
   }
+}
+
+ReadAhead::Read ReadAhead::read(std::size_t index) {
+  if (followed_ == nullptr) {
+    return {dataset_.scan(index), std::nullopt};
+  }
+  if (!followed_->wait_for(index, [this] { return is_stopped_.load(); })) {
+    is_at_end_ = true;
+    return {};
+  }
+  return {dataset_.scan(index), followed_->arrival(index)};
 }
 
 }  // namespace dynamic_icp::datasets

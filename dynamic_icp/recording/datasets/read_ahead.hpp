@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
+#include <chrono>
 #include <cstddef>
 #include <future>
+#include <optional>
 
 #include "dynamic_icp/recording/datasets/dataset.hpp"
+#include "dynamic_icp/recording/datasets/followed_dataset.hpp"
 
 namespace dynamic_icp::datasets {
 
@@ -15,18 +19,48 @@ class ReadAhead {
  public:
   ReadAhead(const Dataset& dataset, std::size_t begin, std::size_t end);
 
-  [[nodiscard]] bool done() const { return next_ == end_; }
+  /// Of a recording that grows, which is waited for.
+  ReadAhead(FollowedDataset& dataset, std::size_t begin, std::size_t end);
+
+  /// Gives up waiting for a recording that grows.
+  ~ReadAhead() { stop(); }
+  ReadAhead(const ReadAhead&) = delete;
+  ReadAhead& operator=(const ReadAhead&) = delete;
+
+  /// Whether no scan is left. Of a recording that grows that is known once the next one is there, or the end is:
+  /// waits for it.
+  [[nodiscard]] bool done() const;
+
+  /// Waits for the next scan, or for it being known that there is none, but not longer than that. False: nothing is
+  /// known yet.
+  [[nodiscard]] bool wait(std::chrono::milliseconds longest) const;
 
   /// The next scan. Waits for it where the computation is faster than the disk; throws what `Dataset::scan` throws.
   RawScan next();
 
+  /// When the scan that was handed out last was there (FollowedDataset::arrival).
+  [[nodiscard]] std::optional<Arrival> arrival() const { return arrival_; }
+
+  /// No more scans of a recording that grows are waited for.
+  void stop() { is_stopped_ = true; }
+
  private:
+  struct Read {
+    RawScan scan;
+    std::optional<Arrival> arrival;
+  };
+
   void start_reading();
+  [[nodiscard]] Read read(std::size_t index);
 
   const Dataset& dataset_;
+  FollowedDataset* followed_ = nullptr;
   std::size_t next_;
   std::size_t end_;
-  std::future<RawScan> reading_;
+  std::atomic<bool> is_stopped_ = false;
+  std::atomic<bool> is_at_end_ = false;  ///< of a recording that grew
+  std::optional<Arrival> arrival_;
+  std::future<Read> reading_;  // the first to go: it uses the others
 };
 
 }  // namespace dynamic_icp::datasets

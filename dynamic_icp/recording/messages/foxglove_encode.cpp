@@ -300,6 +300,7 @@ std::string encode_state(const OdometryState& state) {
   writer.add_double(19, state.inlier_rmse_m);
   writer.add_double(20, state.time_ms);
   writer.add_double(21, state.position_error_m);
+  writer.add_double(22, state.latency_ms);
   return writer.take();
 }
 

@@ -78,6 +78,7 @@ struct OdometryState {
   double inlier_rmse_m = 0.0;
   double time_ms = 0.0;
   double position_error_m = 0.0;  ///< against the ground truth with equal first poses; NaN: none
+  double latency_ms = 0.0;        ///< from when the scan was there to its result; NaN: not known
 };
 
 /// dynamic_icp.OdometryState, with the speed beside the velocity.

@@ -231,7 +231,8 @@ std::vector<SchemaMessage> make_schema_messages() {
         {"iterations", 18, kInt32},
         {"inlier_rmse_m", 19, kDouble},
         {"time_ms", 20, kDouble},
-        {"position_error_m", 21, kDouble}}},
+        {"position_error_m", 21, kDouble},
+        {"latency_ms", 22, kDouble}}},
   };
 }
 

@@ -46,13 +46,13 @@ LiveView::~LiveView() { end("the run has ended"); }
 
 std::string LiveView::authority() const { return live::authority(address_, server_.port()); }
 
-void LiveView::add(RawScan scan, odometry::Frame frame) {
+void LiveView::add(RawScan scan, odometry::Frame frame, double latency_ms) {
   const std::lock_guard lock(mutex_);
   if (waiting_.size() >= kMaxScansWaiting) {
     waiting_.pop_front();
     ++left_out_;
   }
-  waiting_.push_back({std::move(scan), std::move(frame)});
+  waiting_.push_back({std::move(scan), std::move(frame), latency_ms});
   changed_.notify_one();
 }
 
@@ -81,7 +81,7 @@ void LiveView::make_messages() {
     waiting_.pop_front();
     lock.unlock();
     try {
-      messages_.add(next.scan, next.frame);
+      messages_.add(next.scan, next.frame, next.latency_ms);
       server_.tell_time(next.frame.stamp);
     } catch (const DataError&) {
       // What no message can hold, such as a time before 1970, is not shown.

@@ -39,7 +39,7 @@ class LiveView {
   /// "127.0.0.1:8765"
   [[nodiscard]] std::string authority() const;
 
-  void add(RawScan scan, odometry::Frame frame);
+  void add(RawScan scan, odometry::Frame frame, double latency_ms);
 
   /// Sends what is left, tells all clients that nothing more comes, and disconnects them; that takes a second or two at
   /// most. How many scans were left out.
@@ -49,6 +49,7 @@ class LiveView {
   struct Waiting {
     RawScan scan;
     odometry::Frame frame;
+    double latency_ms;
   };
   void make_messages();
 

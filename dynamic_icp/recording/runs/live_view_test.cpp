@@ -34,7 +34,7 @@ TEST(LiveView, WaitsForNobodyAndCountsWhatItLeavesOut) {
   for (int k = 0; k < 500; ++k) {
     odometry::Frame frame;
     frame.stamp = Stamp{k};
-    view.add({}, std::move(frame));
+    view.add({}, std::move(frame), 0.0);
   }
   EXPECT_LT(view.end("done"), 500U);
 }
@@ -44,7 +44,7 @@ TEST(LiveView, TimesThatNoMessageHoldsAreNotShown) {
   LiveView view(on_free_port(), "test", truth, {});
   odometry::Frame frame;
   frame.stamp = Stamp{-5};
-  view.add({}, std::move(frame));
+  view.add({}, std::move(frame), 0.0);
   EXPECT_EQ(view.end("done"), 0U);
 }
 

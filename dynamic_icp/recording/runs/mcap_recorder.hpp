@@ -25,7 +25,9 @@ class McapRecorder {
   McapRecorder(const std::filesystem::path& file, const formats::Trajectory& truth, RunMessagesSettings settings);
 
   /// Throws DataError when the file cannot be written, or the stamp is before 1970.
-  void add(const RawScan& raw, const odometry::Frame& frame) { messages_.add(raw, frame); }
+  void add(const RawScan& raw, const odometry::Frame& frame, double latency_ms) {
+    messages_.add(raw, frame, latency_ms);
+  }
 
   /// Writes what is left and gives the file its name.
   void commit();

@@ -34,7 +34,7 @@ class McapRecorderTest : public ::testing::Test {
     const fs::path path = folder_ / "size.mcap";
     McapRecorder recorder(path, truth, {});
     for (int k = 0; k < scans; ++k) {
-      recorder.add({}, frame_at(k));
+      recorder.add({}, frame_at(k), 0.0);
     }
     recorder.commit();
     return fs::file_size(path);
@@ -51,12 +51,12 @@ TEST_F(McapRecorderTest, AppearsWholeOrNotAtAll) {
   const formats::Trajectory truth;
   {
     McapRecorder recorder(folder_ / "a.mcap", truth, {});
-    recorder.add({}, frame_at(0));
+    recorder.add({}, frame_at(0), 0.0);
     EXPECT_FALSE(fs::exists(folder_ / "a.mcap"));
   }
   EXPECT_EQ(files(), 0) << "what was not committed leaves nothing";
   McapRecorder recorder(folder_ / "a.mcap", truth, {});
-  recorder.add({}, frame_at(0));
+  recorder.add({}, frame_at(0), 0.0);
   recorder.commit();
   EXPECT_EQ(files(), 1);
   EXPECT_EQ(formats::kind_of_file(folder_ / "a.mcap"), formats::FileKind::kMcap);
@@ -83,7 +83,7 @@ TEST_F(McapRecorderTest, RefusesTimesBefore1970) {
   McapRecorder recorder(folder_ / "a.mcap", truth, {});
   odometry::Frame frame = frame_at(0);
   frame.stamp.ns = -5;
-  EXPECT_THROW(recorder.add({}, frame), DataError);
+  EXPECT_THROW(recorder.add({}, frame, 0.0), DataError);
 }
 
 TEST_F(McapRecorderTest, AFolderThatIsNotThereIsNamed) {

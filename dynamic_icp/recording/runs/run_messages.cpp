@@ -162,14 +162,14 @@ std::span<const RunTopicRow> run_topics() { return kRunTopics; }
 RunMessages::RunMessages(MessageSink sink, const formats::Trajectory& truth, RunMessagesSettings settings)
     : sink_(std::move(sink)), truth_(truth), settings_(std::move(settings)), workers_(settings_.threads) {}
 
-void RunMessages::add(const RawScan& raw, const odometry::Frame& frame) {
+void RunMessages::add(const RawScan& raw, const odometry::Frame& frame, double latency_ms) {
   const messages::StampedTransform transform{{frame.stamp, kRecordedWorld}, kRecordedSensor, frame.T_world_sensor};
   sink_.write(RunTopic::kTransforms, frame.stamp, messages::encode_transforms({&transform, 1}));
   write_points(raw, frame);
   write_path(frame);
   write_truth(frame);
   write_objects(frame);
-  write_state(frame);
+  write_state(frame, latency_ms);
   ++scans_;
 }
 
@@ -241,7 +241,7 @@ void RunMessages::write_objects(const odometry::Frame& frame) {
               messages::encode_scene({frame.stamp, kRecordedSensor}, scene_of(frame), lifetime_s));
 }
 
-void RunMessages::write_state(const odometry::Frame& frame) {
+void RunMessages::write_state(const odometry::Frame& frame, double latency_ms) {
   messages::OdometryState state;
   state.stamp = frame.stamp;
   state.status = odometry::verdict(frame.status);
@@ -276,6 +276,7 @@ void RunMessages::write_state(const odometry::Frame& frame) {
   state.iterations = frame.alignment.iterations;
   state.inlier_rmse_m = frame.alignment.inlier_rmse;
   state.time_ms = frame.times.total_ms;
+  state.latency_ms = latency_ms;
   sink_.write(RunTopic::kState, frame.stamp, messages::encode_state(state));
 }
 

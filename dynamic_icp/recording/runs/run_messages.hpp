@@ -62,15 +62,15 @@ class RunMessages {
   /// `truth` may be empty and must outlive the object.
   RunMessages(MessageSink sink, const formats::Trajectory& truth, RunMessagesSettings settings);
 
-  /// Throws DataError when the stamp is before 1970.
-  void add(const RawScan& raw, const odometry::Frame& frame);
+  /// `latency_ms`: see OdometryState. Throws DataError when the stamp is before 1970.
+  void add(const RawScan& raw, const odometry::Frame& frame, double latency_ms);
 
  private:
   void write_points(const RawScan& raw, const odometry::Frame& frame);
   void write_path(const odometry::Frame& frame);
   void write_truth(const odometry::Frame& frame);
   void write_objects(const odometry::Frame& frame);
-  void write_state(const odometry::Frame& frame);
+  void write_state(const odometry::Frame& frame, double latency_ms);
 
   MessageSink sink_;
   const formats::Trajectory& truth_;

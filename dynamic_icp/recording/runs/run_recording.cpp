@@ -2,14 +2,19 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/runs/run_recording.hpp"
 
+#include <algorithm>
+#include <chrono>
+#include <limits>
 #include <memory>
 #include <utility>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
+#include "dynamic_icp/recording/datasets/followed_dataset.hpp"
 #include "dynamic_icp/recording/datasets/read_ahead.hpp"
 #include "dynamic_icp/recording/datasets/scan_range.hpp"
 #include "dynamic_icp/recording/formats/kitti_write.hpp"
@@ -29,6 +34,9 @@ namespace dynamic_icp::runs {
 namespace {
 
 namespace fs = std::filesystem;
+
+constexpr std::size_t kScansToCheck = 10;            // of a recording that grows, before the first is processed
+constexpr std::chrono::milliseconds kAskAgain{100};  // whether to stop, while scans are waited for
 
 /// The map to be made, if one is asked for. What cannot be is refused before anything is computed.
 std::optional<MapWriter> make_map(const RunSettings& settings) {
@@ -98,6 +106,30 @@ void refuse_without_points(const Usability& seen, const fs::path& input) {
                   seen.dropped.zero_range, seen.dropped.out_of_range, seen.dropped.flagged, seen.points_used));
 }
 
+/// How long results took from when their scans were there.
+class Latencies {
+ public:
+  /// In ms, of the result that is there now; NaN where it is not known when the scan came.
+  double add(const std::optional<datasets::Arrival>& arrival) {
+    if (!arrival) {
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+    const std::chrono::duration<double, std::milli> latency = std::chrono::system_clock::now() - *arrival;
+    latencies_ms_.push_back(latency.count());
+    return latency.count();
+  }
+
+  [[nodiscard]] Latency summary() const {
+    if (latencies_ms_.empty()) {
+      return {};
+    }
+    return {latencies_ms_.size(), quantile(latencies_ms_, 0.5), quantile(latencies_ms_, 0.99)};
+  }
+
+ private:
+  std::vector<double> latencies_ms_;
+};
+
 /// What those who watch a run are told that it is.
 std::string live_name(const fs::path& recording) {
   return fmt::format("dynamic-icp {}: {}", version(), fs::absolute(recording).lexically_normal().filename().string());
@@ -112,7 +144,7 @@ class Run {
         callbacks_(callbacks),
         map_(make_map(settings)),
         calibration_(calibration_of(settings)),
-        dataset_(datasets::open_input(recording.path, recording.settings)),
+        dataset_(open()),
         scans_(datasets::select_scans(*dataset_, settings.start, settings.max_frames)),
         truth_(truth_for_run(*dataset_, scans_, settings.ground_truth)),
         check_(check_recording(*dataset_, recording.settings, {scans_.begin, scans_.end, settings.threads},
@@ -122,6 +154,9 @@ class Run {
     result_.period_s = check_.period_s;
     result_.doppler = check_.doppler;
     result_.scans_selected = scans_.size();
+    if (followed_ != nullptr) {  // what is checked is there; what comes is not known
+      scans_.end = settings.max_frames ? scans_.begin + *settings.max_frames : std::numeric_limits<std::size_t>::max();
+    }
     result_.sweep.search = check_.sweep;
     if (check_.sweep && check_.sweep->found_sweep()) {
       diagnosis::declare(*check_.sweep, *sweep_config(settings_.config));
@@ -147,6 +182,21 @@ class Run {
   RunResult take_result() { return std::move(result_); }
 
  private:
+  std::unique_ptr<datasets::Dataset> open() {
+    if (!settings_.follow) {
+      return datasets::open_input(recording_.path, recording_.settings);
+    }
+    const std::size_t scans = settings_.start + std::min(kScansToCheck, settings_.max_frames.value_or(kScansToCheck));
+    const auto stop = [this] { return callbacks_.stop && callbacks_.stop(); };
+    std::unique_ptr<datasets::FollowedDataset> followed =
+        datasets::follow_input(recording_.path, recording_.settings, scans, stop);
+    if (!followed) {
+      throw DataError(fmt::format("{}: stopped before its first {} scans had come", recording_.path.string(), scans));
+    }
+    followed_ = followed.get();
+    return followed;
+  }
+
   void warn(const std::string& text) {
     result_.warnings.push_back(text);
     if (callbacks_.warning) {
@@ -247,14 +297,19 @@ class Run {
   }
 
   bool process_scans(odometry::Odometry& odometry, RunWriter& writer) {
-    datasets::ReadAhead reader(*dataset_, scans_.begin, scans_.end);
+    std::optional<datasets::ReadAhead> reader;
+    if (followed_ != nullptr) {
+      reader.emplace(*followed_, scans_.begin, scans_.end);
+    } else {
+      reader.emplace(*dataset_, scans_.begin, scans_.end);
+    }
     Usability usability;
     report_progress(0);
-    for (std::size_t i = scans_.begin; i < scans_.end; ++i) {
+    for (std::size_t i = scans_.begin; has_next(*reader); ++i) {
       if (callbacks_.cancelled && callbacks_.cancelled()) {
         return false;
       }
-      RawScan scan = reader.next();
+      RawScan scan = reader->next();
       if (!scan.warning.empty()) {
         warn(scan.warning);
       }
@@ -263,23 +318,36 @@ class Run {
       usability.add(frame);
       result_.sweep.add(frame, scan);
       add_to_map(frame);
-      record(scan, frame);
+      const double latency_ms = latencies_.add(reader->arrival());
+      record(scan, frame, latency_ms);
       if (live_) {
-        live_->add(std::move(scan), std::move(frame));
+        live_->add(std::move(scan), std::move(frame), latency_ms);
       }
       report_progress(i + 1 - scans_.begin);
-      if (i + 1 < scans_.end && callbacks_.stop && callbacks_.stop()) {
-        stopped_ = true;
-        break;
-      }
+      stopped_ = i + 1 < scans_.end && callbacks_.stop && callbacks_.stop();
+    }
+    if (followed_ != nullptr) {
+      result_.scans_selected = usability.frames;
+      result_.latency = latencies_.summary();
     }
     refuse_without_points(usability, recording_.path);
     return true;
   }
 
+  /// Whether another scan is there; of a recording that grows once it is, unless the run is to stop before.
+  bool has_next(datasets::ReadAhead& reader) {
+    while (followed_ != nullptr && !stopped_ && !reader.wait(kAskAgain)) {
+      if (callbacks_.stop && callbacks_.stop()) {
+        reader.stop();
+        stopped_ = true;
+      }
+    }
+    return !stopped_ && !reader.done();
+  }
+
   void report_progress(std::size_t done) const {
     if (callbacks_.progress) {
-      callbacks_.progress(done, scans_.size());
+      callbacks_.progress(done, followed_ == nullptr ? scans_.size() : 0);
     }
   }
 
@@ -334,12 +402,12 @@ class Run {
   }
 
   /// A file for a viewer that cannot be is no reason to lose the run.
-  void record(const RawScan& scan, const odometry::Frame& frame) {
+  void record(const RawScan& scan, const odometry::Frame& frame, double latency_ms) {
     if (!recorder_) {
       return;
     }
     try {
-      recorder_->add(scan, frame);
+      recorder_->add(scan, frame, latency_ms);
     } catch (const std::exception& error) {
       fail(fmt::format("no MCAP file: {}", error.what()));
       recorder_.reset();
@@ -400,12 +468,14 @@ class Run {
   const RunCallbacks& callbacks_;
   std::optional<MapWriter> map_;
   std::optional<window::SensorCalibration> calibration_;
+  datasets::FollowedDataset* followed_ = nullptr;  ///< the same as dataset_, where it grows
   std::unique_ptr<datasets::Dataset> dataset_;
   datasets::ScanRange scans_;
   RunTruth truth_;
   RecordingCheck check_;
   std::optional<McapRecorder> recorder_;
   std::optional<LiveView> live_;
+  Latencies latencies_;
   bool stopped_ = false;
   RunResult result_;
 };

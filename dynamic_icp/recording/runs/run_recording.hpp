@@ -43,13 +43,14 @@ struct RunSettings {
   std::optional<std::filesystem::path> kitti_file;   ///< poses as KITTI has them, .txt
   std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of another run with this sensor
   std::vector<std::filesystem::path> inputs;         ///< further files that were read and must not be replaced
-  std::string command;                               ///< how the run was asked for, for run.json
+  bool follow = false;  ///< the recording grows: scans are taken as they come (datasets/followed_dataset.hpp)
+  std::string command;  ///< how the run was asked for, for run.json
 };
 
 /// What the caller of a run may want to hear and do while it continues. All are called by the calling thread; each may
 /// be empty.
 struct RunCallbacks {
-  /// Before the first scan and after each one.
+  /// Before the first scan and after each one. `total` is 0 where nobody knows: of a recording that grows.
   std::function<void(std::size_t done, std::size_t total)> progress;
   /// What the user should know, as soon as it is known.
   std::function<void(const std::string& text)> warning;
@@ -59,19 +60,28 @@ struct RunCallbacks {
   FixInWords fix_in_words;
   /// Asked before each scan whether the run is to be given up.
   std::function<bool()> cancelled;
-  /// Asked after each scan but the last whether the run is to end there, with the results so far.
+  /// Asked after each scan but the last whether the run is to end there, with the results so far; of a recording that
+  /// grows also while it is waited for, and before the first scan, where the run ends without results.
   std::function<bool()> stop;
   /// Adds files to a run whose own files are written, before its folder appears. What it throws is one of the run's
   /// failures.
   std::function<void(const std::filesystem::path& folder)> add_files;
 };
 
+/// How long results took from when their scans were there, of a recording that grew.
+struct Latency {
+  std::size_t scans = 0;  ///< that came while they were waited for
+  double median_ms = 0.0;
+  double p99_ms = 0.0;
+};
+
 /// What came of a run beside its files.
 struct RunResult {
   RunSummary summary;
   std::size_t scans_selected = 0;  ///< more than the summary has where the run was stopped
-  double period_s = 0.0;           ///< from scan to scan, median; 0 of one scan
-  std::string doppler;             ///< kind and sign, in words
+  Latency latency;
+  double period_s = 0.0;  ///< from scan to scan, median; 0 of one scan
+  std::string doppler;    ///< kind and sign, in words
   SweepRecord sweep;
   std::vector<std::string> warnings;
   std::optional<std::size_t> map_points;  ///< empty without a map

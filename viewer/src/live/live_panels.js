@@ -7,6 +7,8 @@ import { createChart } from '../plots/chart.js';
 import { otherTheme } from '../theme.js';
 import { KEPT_SECONDS, troubles } from './history.js';
 
+const SHORTEST_SECONDS = 10; // of the plots, at the beginning
+
 const PHASES = {
   connecting: ['connecting', 'other', 'Connecting to the run …'],
   live: ['live', 'ok', 'Connected. Nothing has come yet: the run reads its first scans.'],
@@ -113,10 +115,10 @@ export function createLivePlots(store, history) {
     element: element('section', { class: 'side', 'aria-label': 'Plots' }, element('div', { class: 'sheet charts' }, ...charts.map(({ chart }) => chart.element))),
     draw() {
       const last = history.seconds.at(-1) ?? 0;
-      const high = Math.max(KEPT_SECONDS, last);
+      const high = Math.max(SHORTEST_SECONDS, last);
       const marks = troubles(history);
       for (const { plot, series, chart, of, sigma, scale } of charts) {
-        Object.assign(plot, { x: { low: high - KEPT_SECONDS, high }, marks });
+        Object.assign(plot, { x: { low: Math.max(0, high - KEPT_SECONDS), high }, marks });
         Object.assign(series, { xs: history.seconds, ys: scaled(history[of], scale), sigma: sigma && scaled(history[sigma], scale) });
         chart.element.hidden = series.ys.every((value) => value === null);
         chart.draw();

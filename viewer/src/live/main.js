@@ -16,6 +16,7 @@ import { decodeCloud, decodeObjects, decodePath, decodeState, decodeTransforms }
 const PLOTS_APART = 250; // ms
 const POSES_KEPT = 64; // of scans whose points may still come
 const WARNING_SHOWN = 5000; // ms
+const RATE_OVER = 20; // scans
 const SMALL_TOPICS = ['/tf', '/path', '/objects', '/odometry/state', '/ground_truth/path'];
 
 const USUAL = { compensated: 5, doppler: 5, kind: 1, residual: 0.2, height: 10 };
@@ -36,6 +37,7 @@ function start() {
   const poses = new Map(); // by stamp
   let session = null;
   let first = null; // stamp, ns
+  let arrivals = []; // s, of the last scans, by the clock of the browser
   let pending = {}; // what came and is not yet drawn
   let warningTimer = 0;
   let plotTimer = 0;
@@ -50,7 +52,7 @@ function start() {
   function forget() {
     poses.clear();
     clear(history);
-    [first, pending] = [null, {}];
+    [first, pending, arrivals] = [null, {}, []];
     legendRun.truth = null;
     store.set({ state: null, rate: null, limits: { ...USUAL } });
     view?.clear();
@@ -98,9 +100,9 @@ function start() {
     const value = decodeState(message);
     first ??= stamp;
     append(history, Number(stamp - first) / 1e9, value);
-    const { seconds } = history;
-    const recent = seconds.slice(-20);
-    const rate = recent.length > 1 ? (recent.length - 1) / (recent.at(-1) - recent[0]) : null;
+    arrivals.push(performance.now() / 1000);
+    if (arrivals.length > RATE_OVER) arrivals.shift();
+    const rate = arrivals.length > 1 ? (arrivals.length - 1) / (arrivals.at(-1) - arrivals[0]) : null;
     pending.state = { stamp, value };
     if (!store.state.paused) store.set({ state: value, rate });
     plotTimer ||= setTimeout(() => {
