@@ -11,7 +11,6 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
-#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/recording/datasets/followed_dataset.hpp"
@@ -21,6 +20,7 @@
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
+#include "dynamic_icp/recording/runs/latency.hpp"
 #include "dynamic_icp/recording/runs/live_view.hpp"
 #include "dynamic_icp/recording/runs/map_writer.hpp"
 #include "dynamic_icp/recording/runs/mcap_recorder.hpp"
@@ -29,6 +29,7 @@
 #include "dynamic_icp/recording/runs/run_json.hpp"
 #include "dynamic_icp/recording/runs/run_truth.hpp"
 #include "dynamic_icp/recording/runs/run_writer.hpp"
+#include "dynamic_icp/recording/runs/usable_points.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -75,60 +76,6 @@ Needs needs_of(const RunSettings& settings) {
   return {.doppler = odometry::needs_doppler(settings.method),
           .sweep = sweep != nullptr && sweep->deskew && sweep->search && sweep->declared_duration_s == 0.0};
 }
-
-/// What became of the points of a run, to tell why nothing came of it.
-struct Usability {
-  std::size_t frames = 0;
-  std::size_t unusable = 0;  ///< frames with too few points to work with
-  std::size_t points = 0;
-  std::size_t points_used = 0;
-  Scan::Dropped dropped;
-
-  void add(const odometry::Frame& frame) {
-    ++frames;
-    unusable += frame.status == odometry::FrameStatus::kTooFewPoints ? 1 : 0;
-    points += frame.points;
-    points_used += frame.points_used;
-    dropped += frame.dropped;
-  }
-};
-
-/// A trajectory of poses that nobody saw is no result. Throws DataError when not one scan could be used.
-void refuse_without_points(const Usability& seen, const fs::path& input) {
-  if (seen.unusable < seen.frames) {
-    return;
-  }
-  throw DataError(
-      fmt::format("{}: none of the {} scans has enough points to work with: of {} points {} have numbers that are not "
-                  "finite, {} have numbers that no sensor measures, {} are at the origin, {} out of range, {} flagged "
-                  "as unusable by the sensor, {} remain after thinning. The diagnosis of the recording says more",
-                  input.string(), seen.frames, seen.points, seen.dropped.non_finite, seen.dropped.implausible,
-                  seen.dropped.zero_range, seen.dropped.out_of_range, seen.dropped.flagged, seen.points_used));
-}
-
-/// How long results took from when their scans were there.
-class Latencies {
- public:
-  /// In ms, of the result that is there now; NaN where it is not known when the scan came.
-  double add(const std::optional<datasets::Arrival>& arrival) {
-    if (!arrival) {
-      return std::numeric_limits<double>::quiet_NaN();
-    }
-    const std::chrono::duration<double, std::milli> latency = std::chrono::system_clock::now() - *arrival;
-    latencies_ms_.push_back(latency.count());
-    return latency.count();
-  }
-
-  [[nodiscard]] Latency summary() const {
-    if (latencies_ms_.empty()) {
-      return {};
-    }
-    return {latencies_ms_.size(), quantile(latencies_ms_, 0.5), quantile(latencies_ms_, 0.99)};
-  }
-
- private:
-  std::vector<double> latencies_ms_;
-};
 
 /// What those who watch a run are told that it is.
 std::string live_name(const fs::path& recording) {
@@ -303,7 +250,7 @@ class Run {
     } else {
       reader.emplace(*dataset_, scans_.begin, scans_.end);
     }
-    Usability usability;
+    UsablePoints usable;
     report_progress(0);
     for (std::size_t i = scans_.begin; has_next(*reader); ++i) {
       if (callbacks_.cancelled && callbacks_.cancelled()) {
@@ -315,7 +262,7 @@ class Run {
       }
       odometry::Frame frame = odometry.process(scan);
       writer.add(i, frame);
-      usability.add(frame);
+      usable.add(frame);
       result_.sweep.add(frame, scan);
       add_to_map(frame);
       const double latency_ms = latencies_.add(reader->arrival());
@@ -327,10 +274,10 @@ class Run {
       stopped_ = i + 1 < scans_.end && callbacks_.stop && callbacks_.stop();
     }
     if (followed_ != nullptr) {
-      result_.scans_selected = usability.frames;
+      result_.scans_selected = usable.scans();
       result_.latency = latencies_.summary();
     }
-    refuse_without_points(usability, recording_.path);
+    usable.refuse_none(recording_.path);
     return true;
   }
 

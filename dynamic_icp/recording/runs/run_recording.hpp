@@ -11,6 +11,7 @@
 
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
+#include "dynamic_icp/recording/runs/latency.hpp"
 #include "dynamic_icp/recording/runs/live_view_settings.hpp"
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 #include "dynamic_icp/recording/runs/run_summary.hpp"
@@ -66,13 +67,6 @@ struct RunCallbacks {
   /// Adds files to a run whose own files are written, before its folder appears. What it throws is one of the run's
   /// failures.
   std::function<void(const std::filesystem::path& folder)> add_files;
-};
-
-/// How long results took from when their scans were there, of a recording that grew.
-struct Latency {
-  std::size_t scans = 0;  ///< that came while they were waited for
-  double median_ms = 0.0;
-  double p99_ms = 0.0;
 };
 
 /// What came of a run beside its files.
