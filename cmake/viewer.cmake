@@ -13,6 +13,12 @@ function(dynamic_icp_viewer_source OUT_VAR)
     return()
   endif()
 
+  if(EXISTS ${folder}/viewer_bundle.cpp)  # archives of the sources bring it along (scripts/packages.sh)
+    message(STATUS "Viewer of reports: ${folder}/viewer_bundle.cpp")
+    set(${OUT_VAR} ${folder}/viewer_bundle.cpp PARENT_SCOPE)
+    return()
+  endif()
+
   find_program(DYNAMIC_ICP_NODE NAMES node nodejs)
   set(missing)
   if(NOT DYNAMIC_ICP_NODE)

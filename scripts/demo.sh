@@ -4,16 +4,7 @@
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
-scripts/install_dependencies.sh clang
-scripts/install_viewer.sh
-if command -v clang++ >/dev/null; then  # builds in two thirds of the time; a build folder keeps its first compiler
-  export CXX=${CXX:-clang++}
-fi
-
-echo "== Building build/dynamic-icp"
-cmake --preset release -DDYNAMIC_ICP_BUILD_TESTS=OFF >build-log.txt 2>&1 || { cat build-log.txt; exit 1; }
-cmake --build build --target dynamic-icp >build-log.txt 2>&1 || { cat build-log.txt; exit 1; }
-rm -f build-log.txt
+scripts/build.sh
 
 drive=build/demo/street
 run=build/demo/run

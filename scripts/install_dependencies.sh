@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # Installs the packages the build needs, if any is missing. For Debian 12, Ubuntu 22.04 and newer; as root or with sudo.
-# usage: scripts/install_dependencies.sh [clang] [tests] [pictures] [benchmarks [peers]] [fuzzing] [format] [lint]
+# usage: scripts/install_dependencies.sh [clang] [tests] [pictures] [benchmarks [peers]] [fuzzing] [format] [lint] [packages]
 #   clang        builds in two thirds of the time of g++, if the distribution has it
 #   pictures     for PNG files from dynamic-icp plot (60 MB)
 #   benchmarks   for scripts/benchmark_speed.sh; peers: also the libraries it compares with (1.2 GB)
@@ -32,8 +32,11 @@ for purpose in "$@"; do
       packages+=(clang-format) ;;
     lint)
       packages+=(clang-tidy python3-numpy python3-scipy) ;;
+    packages)
+      packages+=(dpkg-dev file pybind11-dev python3-dev python3-numpy)
+      optional+=(lintian) ;;
     *)
-      echo "unknown purpose '$purpose'; known are: clang, tests, pictures, benchmarks, peers, fuzzing, format, lint" >&2
+      echo "unknown purpose '$purpose'; known are: clang, tests, pictures, benchmarks, peers, fuzzing, format, lint, packages" >&2
       exit 2 ;;
   esac
 done

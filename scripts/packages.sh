@@ -1,0 +1,30 @@
+#!/usr/bin/env bash
+# Makes the Debian packages and the archive of the sources in build/packages. Installs what is missing. The same commit and
+# compiler give the same bytes.
+# usage: scripts/packages.sh
+set -euo pipefail
+cd "$(dirname "$0")/.."
+
+scripts/install_dependencies.sh pictures packages
+scripts/build.sh -DDYNAMIC_ICP_BUILD_PYTHON=ON all
+if [[ -e .git ]]; then
+  export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}
+fi
+
+folder=build/packages
+rm -rf "$folder"
+(cd build && cpack >/dev/null)
+rm -rf "$folder/_CPack_Packages"
+
+if [[ -e .git ]]; then
+  # What is committed, and the viewer of reports, which is bundled with packages from the network.
+  name=dynamic-icp-$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' build/CMakeCache.txt)
+  bundle=(build/dynamic_icp/tools/report/viewer_bundle.cpp)
+  [[ -e ${bundle[0]} ]] && bundle=("--prefix=$name/viewer/" "--add-file=${bundle[0]}") || bundle=()
+  git archive "${bundle[@]}" --prefix="$name/" HEAD | gzip -9n >"$folder/$name.tar.gz"
+fi
+if command -v lintian >/dev/null; then
+  # The tag asks for a wish in Debian's own list of bugs.
+  lintian --allow-root --fail-on error,warning --suppress-tags initial-upload-closes-no-bugs "$folder"/*.deb
+fi
+ls -l "$folder"
