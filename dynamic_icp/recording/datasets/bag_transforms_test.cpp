@@ -14,9 +14,9 @@ namespace {
 
 using bags::FakeBag;
 
-constexpr std::int64_t kBegin_ns = 1'700'000'000'000'000'000;
+constexpr std::int64_t kDriveBegin_ns = 1'700'000'000'000'000'000;
 
-std::int64_t at_ms(std::int64_t ms) { return kBegin_ns + 1'000'000 * ms; }
+std::int64_t at_ms(std::int64_t ms) { return kDriveBegin_ns + 1'000'000 * ms; }
 
 Eigen::Isometry3d moved(double x, double yaw = 0.0) {
   return Eigen::Translation3d(x, 0, 0) * Eigen::AngleAxisd(yaw, Eigen::Vector3d::UnitZ());
