@@ -135,12 +135,7 @@ std::string fixing_options(const diagnosis::Finding& finding, const datasets::In
   if (finding.needs_doppler_column) {
     return "--field doppler=COLUMN";
   }
-  // Columns that are stated of a record stay those of a record.
-  datasets::InputSettings fixed = {.open = {}, .correction = finding.fix};
-  if (finding.fix.columns) {
-    fixed.open.columns = settings.open.columns;
-  }
-  return as_options(datasets::texts(fixed));
+  return as_options(datasets::texts_of_fix(finding.fix, settings));
 }
 
 }  // namespace dynamic_icp::apps

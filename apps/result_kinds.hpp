@@ -5,13 +5,10 @@
 #include "dynamic_icp/recording/formats/result_kind.hpp"
 
 // What the results of the commands consist of, for --force: it removes these files and no others. Those of `run` are in
-// recording/runs/run_folder.hpp.
+// recording/runs/run_folder.hpp, those of `simulate` in tools/simulation/sequence_folder.hpp.
 namespace dynamic_icp::apps {
 
 /// Of `convert`, in all layouts.
 formats::ResultKind conversion_result();
-
-/// Of `simulate`, in all layouts, with the folders of its sensors.
-formats::ResultKind sequence_result();
 
 }  // namespace dynamic_icp::apps

@@ -13,13 +13,11 @@
 #include "dynamic_icp/method/base/config_field.hpp"
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/parallel.hpp"
-#include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
-#include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/tools/scenes/scene.hpp"
 #include "dynamic_icp/tools/scenes/scene_file.hpp"
-#include "dynamic_icp/tools/simulation/overview.hpp"
 #include "dynamic_icp/tools/simulation/rig.hpp"
+#include "dynamic_icp/tools/simulation/sequence_folder.hpp"
 #include "dynamic_icp/tools/simulation/sequence_writer.hpp"
 #include "dynamic_icp/tools/simulation/simulation.hpp"
 
@@ -27,7 +25,6 @@
 #include "apps/messages.hpp"
 #include "apps/options.hpp"
 #include "apps/progress.hpp"
-#include "apps/result_kinds.hpp"
 #include "apps/settings.hpp"
 
 namespace dynamic_icp::apps {
@@ -103,37 +100,18 @@ std::string settings_help() {
   return text;
 }
 
-/// Splits "key=value" for the sensors; false when it is meant for the drive.
-bool apply_to_sensors(std::vector<simulation::SensorConfig>& sensors, const std::string& setting) {
-  if (setting.starts_with("lidar.") || setting.starts_with("mount.")) {
-    for (simulation::SensorConfig& sensor : sensors) {
-      apply_settings(fields(sensor), {setting});
-    }
-    return true;
-  }
-  for (simulation::SensorConfig& sensor : sensors) {
-    if (setting.starts_with(sensor.name + ".")) {
-      apply_settings(fields(sensor), {setting.substr(sensor.name.size() + 1)});
-      return true;
-    }
-  }
-  return false;
-}
-
 SimulationConfig make_config(const SceneKind& kind, const SimulateOptions& options) {
   SimulationConfig config = simulation::default_config(kind);
   config.rig = simulation::find_rig(options.sensor);
-  const ConfigFields fields = simulation::fields(config);
   for (const std::string& setting : options.settings) {
-    if (!apply_to_sensors(config.rig.sensors, setting)) {
-      apply_settings(fields, {setting});
-    }
+    const auto& [key, value] = split_setting(setting);
+    simulation::set(config, key, value);
   }
   if (!options.frames.empty()) {
-    set_field(fields, "frames", options.frames);
+    simulation::set(config, "frames", options.frames);
   }
   if (!options.seed.empty()) {
-    set_field(fields, "seed", options.seed);
+    simulation::set(config, "seed", options.seed);
   }
   config.rig = options.noise_free ? simulation::without_noise(std::move(config.rig)) : config.rig;
   for (simulation::SensorConfig& sensor : config.rig.sensors) {
@@ -187,31 +165,11 @@ void print_summary(const Simulation& simulation, const SequenceCounts& counts, d
   fmt::print("written to     {} (layout {}, picture overview.svg)\n", options.output, options.layout);
 }
 
-/// A picture of the scan in the middle of the drive.
-void write_overview(const Simulation& simulation, const std::filesystem::path& path, const Workers& workers) {
-  const simulation::SimulatedFrame frame = simulation.frame(simulation.size() / 2, workers);
-  formats::write_whole_file(path, simulation::draw_overview(simulation, frame, drawing::Ground::kLight, workers));
-}
-
 /// All files of the sequence, with its picture.
 SequenceCounts write_sequence(const Simulation& simulation, const simulation::SequenceOptions& written,
                               const std::filesystem::path& folder, const SimulateOptions& options) {
-  const Workers workers(options.threads);
-  simulation::SequenceWriter writer(folder, simulation, written);
-  {
-    Progress progress(fmt::format("simulating {}", simulation.kind().name), simulation.size(), options.quiet);
-    for (std::size_t i = 0; i < simulation.size(); ++i) {
-      for (std::size_t sensor = 0; sensor < simulation.config().rig.sensors.size(); ++sensor) {
-        if (!simulation.scan_time(i, sensor).missing) {
-          writer.add(simulation.frame(i, workers, sensor), sensor);
-        }
-      }
-      progress.advance();
-    }
-  }
-  writer.finish(version());
-  write_overview(simulation, folder / "overview.svg", workers);
-  return writer.counts();
+  Progress progress(fmt::format("simulating {}", simulation.kind().name), simulation.size(), options.quiet);
+  return simulation::write_sequence(simulation, written, folder, Workers(options.threads), [&] { progress.advance(); });
 }
 
 int simulate(const SimulateOptions& options) {
@@ -236,7 +194,7 @@ int simulate(const SimulateOptions& options) {
     throw UsageError("simulate: --output DIR is missing");
   }
   const auto started = std::chrono::steady_clock::now();
-  formats::OutputFolder output(options.output, sequence_result(), options.force, inputs(options));
+  formats::OutputFolder output(options.output, simulation::sequence_result(), options.force, inputs(options));
   const Simulation simulation(kind, config);
   const SequenceCounts counts =
       output.fill([&] { return write_sequence(simulation, written, output.path(), options); });

@@ -53,10 +53,10 @@ class Column {
  public:
   Column() = default;
 
-  /// `size` numbers, the first at `first`, `stride_bytes` apart.
+  /// `size` numbers, the first at `first`, `stride_bytes` apart; negative where they lie backwards in memory.
   template <class Number>
   requires(std::same_as<Number, float> || std::same_as<Number, double>)
-      Column(const Number* first, std::size_t size, std::size_t stride_bytes = sizeof(Number))
+      Column(const Number* first, std::size_t size, std::ptrdiff_t stride_bytes = sizeof(Number))
       : first_(reinterpret_cast<const std::byte*>(first)),
         size_(size),
         stride_bytes_(stride_bytes),
@@ -69,7 +69,7 @@ class Column {
   [[nodiscard]] bool empty() const { return size_ == 0; }
 
   double operator[](std::size_t i) const {
-    const std::byte* const at = first_ + i * stride_bytes_;
+    const std::byte* const at = first_ + static_cast<std::ptrdiff_t>(i) * stride_bytes_;
     if (is_float_) {
       float number = 0.0F;
       std::memcpy(&number, at, sizeof number);
@@ -83,7 +83,7 @@ class Column {
  private:
   const std::byte* first_ = nullptr;
   std::size_t size_ = 0;
-  std::size_t stride_bytes_ = 0;
+  std::ptrdiff_t stride_bytes_ = 0;
   bool is_float_ = false;
 };
 

@@ -40,6 +40,13 @@ TEST(ScanView, ReadsTheMessageOfADriverInItsPlace) {
   EXPECT_EQ(scan.stamp(), Stamp{9});
 }
 
+TEST(ScanView, ColumnsMayLieBackwards) {
+  const std::array<double, 4> numbers = {1.0, 2.0, 3.0, 4.0};
+  const Column backwards(&numbers[3], 2, -2 * static_cast<std::ptrdiff_t>(sizeof(double)));
+  EXPECT_EQ(backwards[0], 4.0);
+  EXPECT_EQ(backwards[1], 2.0);
+}
+
 RawScan two_points() {
   RawScan raw;
   raw.points = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}};

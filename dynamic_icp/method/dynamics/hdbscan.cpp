@@ -8,6 +8,7 @@
 #include <numeric>
 #include <string>
 #include <tuple>
+#include <utility>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/dynamics/condensed_tree.hpp"
@@ -94,6 +95,16 @@ HdbscanResult label(const CondensedTree& tree, const std::vector<bool>& selected
   return result;
 }
 
+/// The tree of sorted points with its points in the order of the rows that they came from.
+CondensedTree in_order_of_rows(CondensedTree tree, std::span<const std::uint32_t> rows) {
+  const CondensedTree sorted = tree;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    tree.point_cluster[rows[i]] = sorted.point_cluster[i];
+    tree.point_lambda[rows[i]] = sorted.point_lambda[i];
+  }
+  return tree;
+}
+
 }  // namespace
 
 ConfigFields fields(HdbscanConfig& config) {
@@ -105,10 +116,14 @@ ConfigFields fields(HdbscanConfig& config) {
        "whether all points together may be one cluster"}};
 }
 
-HdbscanResult hdbscan(std::span<const Eigen::Vector3d> points, const HdbscanConfig& config, const Workers& workers) {
+HdbscanResult hdbscan(std::span<const Eigen::Vector3d> points, const HdbscanConfig& config, const Workers& workers,
+                      CondensedTree* tree_out) {
   check(points, config);
   const auto fewest = static_cast<std::size_t>(std::max(config.min_cluster_size, config.min_samples + 1));
   if (points.size() < fewest) {
+    if (tree_out != nullptr) {
+      *tree_out = {};
+    }
     HdbscanResult noise;
     noise.labels.assign(points.size(), kNoise);
     noise.probabilities.assign(points.size(), 0.0);
@@ -118,15 +133,20 @@ HdbscanResult hdbscan(std::span<const Eigen::Vector3d> points, const HdbscanConf
   std::vector<Eigen::Vector3d> sorted(points.size());
   std::transform(rows.begin(), rows.end(), sorted.begin(), [&](std::uint32_t row) { return points[row]; });
   const auto edges = mutual_reachability_tree(sorted, config.min_samples, workers);
-  const CondensedTree tree = condense(edges, static_cast<std::uint32_t>(config.min_cluster_size));
-  return label(tree, select_by_excess_of_mass(tree, config.allow_single_cluster), rows);
+  CondensedTree tree = condense(edges, static_cast<std::uint32_t>(config.min_cluster_size));
+  HdbscanResult result = label(tree, select_by_excess_of_mass(tree, config.allow_single_cluster), rows);
+  if (tree_out != nullptr) {
+    *tree_out = in_order_of_rows(std::move(tree), rows);
+  }
+  return result;
 }
 
-HdbscanResult hdbscan(std::span<const Eigen::Vector2d> points, const HdbscanConfig& config, const Workers& workers) {
+HdbscanResult hdbscan(std::span<const Eigen::Vector2d> points, const HdbscanConfig& config, const Workers& workers,
+                      CondensedTree* tree) {
   std::vector<Eigen::Vector3d> in_space(points.size());
   std::transform(points.begin(), points.end(), in_space.begin(),
                  [](const Eigen::Vector2d& p) { return Eigen::Vector3d(p.x(), p.y(), 0.0); });
-  return hdbscan(in_space, config, workers);
+  return hdbscan(in_space, config, workers, tree);
 }
 
 }  // namespace dynamic_icp::dynamics

@@ -13,6 +13,8 @@
 
 namespace dynamic_icp::dynamics {
 
+struct CondensedTree;
+
 /// HDBSCAN*: m_cs and m_s of the paper.
 struct HdbscanConfig {
   int min_cluster_size = 30;
@@ -50,9 +52,14 @@ struct HdbscanResult {
 ///
 /// Throws UsageError when the configuration is out of range and DataError naming a point whose coordinates are not
 /// finite or beyond 1e150.
-HdbscanResult hdbscan(std::span<const Eigen::Vector3d> points, const HdbscanConfig& config, const Workers& workers);
+///
+/// `tree`, if given, takes the condensed tree, its points in the order of `points`; no clusters where all is noise for
+/// lack of points.
+HdbscanResult hdbscan(std::span<const Eigen::Vector3d> points, const HdbscanConfig& config, const Workers& workers,
+                      CondensedTree* tree = nullptr);
 
 /// The same in the plane.
-HdbscanResult hdbscan(std::span<const Eigen::Vector2d> points, const HdbscanConfig& config, const Workers& workers);
+HdbscanResult hdbscan(std::span<const Eigen::Vector2d> points, const HdbscanConfig& config, const Workers& workers,
+                      CondensedTree* tree = nullptr);
 
 }  // namespace dynamic_icp::dynamics

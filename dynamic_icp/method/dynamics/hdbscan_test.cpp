@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/dynamics/condensed_tree.hpp"
 
 #include "testing/random_points.hpp"
 
@@ -70,6 +71,31 @@ TEST(Hdbscan, PermutedPointsHavePermutedLabels) {
       EXPECT_EQ(result.stabilities, expected.stabilities);
     }
   }
+}
+
+// A selected cluster and the points that it keeps to the end have the largest probability there is.
+TEST(Hdbscan, TheTreeIsInTheOrderOfThePoints) {
+  std::mt19937 random(5);
+  Points points = blobs(random, 400);
+  std::shuffle(points.begin(), points.end(), random);
+  CondensedTree tree;
+  const HdbscanConfig config{.min_cluster_size = 10, .min_samples = 4};
+  const HdbscanResult result = hdbscan(points, config, Workers(2), &tree);
+  ASSERT_EQ(tree.point_cluster.size(), points.size());
+  const std::vector<bool> selected = select_by_excess_of_mass(tree, false);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    std::uint32_t cluster = tree.point_cluster[i];
+    const std::uint32_t last = cluster;
+    while (cluster != 0 && !selected[cluster]) {
+      cluster = tree.clusters[cluster].parent;
+    }
+    EXPECT_EQ(result.labels[i] == -1, cluster == 0) << i;
+    if (cluster != 0 && cluster == last) {
+      EXPECT_EQ(result.probabilities[i], tree.point_lambda[i] / tree.clusters[cluster].death) << i;
+    }
+  }
+  hdbscan(Points{{0, 0, 0}}, config, Workers(1), &tree);
+  EXPECT_TRUE(tree.clusters.empty() && tree.point_cluster.empty());
 }
 
 TEST(Hdbscan, AnyNumberOfThreadsGivesTheSameBits) {

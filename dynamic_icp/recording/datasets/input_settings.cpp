@@ -206,6 +206,14 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
   return all;
 }
 
+std::vector<std::pair<std::string, std::string>> texts_of_fix(const Correction& fix, const InputSettings& settings) {
+  InputSettings fixed = {.open = {}, .correction = fix};
+  if (fix.columns) {
+    fixed.open.columns = settings.open.columns;
+  }
+  return texts(fixed);
+}
+
 std::unique_ptr<Dataset> open_input(const std::filesystem::path& input, const InputSettings& settings) {
   check(settings.correction);
   OpenOptions open = settings.open;

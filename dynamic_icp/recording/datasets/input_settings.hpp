@@ -35,6 +35,10 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
 /// Those that were stated, so that `set` makes the same settings of them; but not the format.
 std::vector<std::pair<std::string, std::string>> texts(const InputSettings& settings);
 
+/// Those that state what corrects an input, `fix`, beside the `settings` that are stated already: columns that are
+/// stated of a record stay those of a record.
+std::vector<std::pair<std::string, std::string>> texts_of_fix(const Correction& fix, const InputSettings& settings);
+
 /// `open_dataset`, then `corrected`; throws as they do.
 std::unique_ptr<Dataset> open_input(const std::filesystem::path& input, const InputSettings& settings);
 

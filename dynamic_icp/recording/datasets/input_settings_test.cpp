@@ -101,5 +101,16 @@ TEST(InputSettings, ColumnsThatChangePlacesKeepTheirRecord) {
   EXPECT_EQ(texts(settings), (Texts{{"columns", "y,doppler,z,_,x,intensity"}}));
 }
 
+TEST(InputSettings, AFixIsSaidOfTheRecordThatWasStated) {
+  InputSettings settings;
+  set(settings, "columns", "x,y,z,_,vr,intensity");
+  set(settings, "period", "0.2");
+  Correction fix{.columns = std::array<int, 4>{3, 0, 2, 1}};
+  EXPECT_EQ(texts_of_fix(fix, settings), (Texts{{"columns", "y,doppler,z,_,x,intensity"}}));
+  EXPECT_EQ(texts_of_fix(fix, {}), (Texts{{"columns", "y,doppler,z,x"}}));
+  fix = {.doppler_sign = DopplerSign::kTowards};
+  EXPECT_EQ(texts_of_fix(fix, settings), (Texts{{"doppler-sign", "towards"}}));
+}
+
 }  // namespace
 }  // namespace dynamic_icp::datasets

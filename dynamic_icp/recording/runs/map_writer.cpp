@@ -138,15 +138,19 @@ void MapWriter::take_out(const tracking::TrackedObject& object, const Eigen::Iso
   }
 }
 
-void MapWriter::write(const fs::path& path) const {
-  check_map_file(path);
+std::vector<Eigen::Vector3d> MapWriter::points() const {
   std::vector<Eigen::Vector3d> points;
   for (std::uint32_t i = 0; i < voxels_.size(); ++i) {
     if (is_ghost_[i] == 0) {
       points.push_back(voxels_.point(i));
     }
   }
-  const std::vector<formats::NamedArray> table = formats::point_table(points);
+  return points;
+}
+
+void MapWriter::write(const fs::path& path) const {
+  check_map_file(path);
+  const std::vector<formats::NamedArray> table = formats::point_table(points());
   formats::write_whole_file(path, path.extension() == ".ply" ? formats::ply_bytes(table) : formats::pcd_bytes(table));
 }
 

@@ -43,6 +43,9 @@ class MapWriter {
 
   [[nodiscard]] std::size_t size() const { return voxels_.size() - ghosts_; }
 
+  /// The points, m, world axes, by their age.
+  [[nodiscard]] std::vector<Eigen::Vector3d> points() const;
+
   /// Writes one point cloud of float32 x, y, z (m), by the age of the points, as the ending of the file says: whole or
   /// not at all. Throws as `check_map_file` does, and DataError naming file and reason when the machine fails.
   void write(const std::filesystem::path& path) const;

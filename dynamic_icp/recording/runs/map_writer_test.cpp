@@ -76,6 +76,7 @@ TEST_F(MapWriterTest, PointsLieInTheWorld) {
   MapWriter map(0.1);
   map.add(frame_with({{2.0, 3.0, 4.0}}, T_world_sensor));
   EXPECT_EQ(points_of(map), (std::vector<Vector3d>{{7.0, 2.0, 4.5}}));
+  EXPECT_EQ(map.points(), points_of(map));
 }
 
 TEST_F(MapWriterTest, EachVoxelKeepsItsFirstPoint) {

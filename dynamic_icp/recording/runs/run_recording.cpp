@@ -267,6 +267,9 @@ class Run {
       add_to_map(frame);
       const double latency_ms = latencies_.add(reader->arrival());
       record(scan, frame, latency_ms);
+      if (callbacks_.frame) {
+        callbacks_.frame(i, frame);
+      }
       if (live_) {
         live_->add(std::move(scan), std::move(frame), latency_ms);
       }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "dynamic_icp/method/odometry/config.hpp"
+#include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
 #include "dynamic_icp/recording/runs/latency.hpp"
 #include "dynamic_icp/recording/runs/live_view_settings.hpp"
@@ -57,6 +58,8 @@ struct RunCallbacks {
   std::function<void(const std::string& text)> warning;
   /// Where the run can be watched from now on: "127.0.0.1:8765".
   std::function<void(const std::string& authority)> listening;
+  /// After each scan with what was found of it, `index` in the recording; files of the run have it already.
+  std::function<void(std::size_t index, const odometry::Frame& frame)> frame;
   /// See check_recording: how messages word the corrections of what the diagnosis finds.
   FixInWords fix_in_words;
   /// Asked before each scan whether the run is to be given up.

@@ -46,6 +46,11 @@ TEST_F(RunRecording, WritesARunThatCanBeRead) {
     EXPECT_EQ(total, 6U);
     done.push_back(scans);
   };
+  std::vector<odometry::Frame> frames;
+  callbacks.frame = [&](std::size_t index, const odometry::Frame& frame) {
+    EXPECT_EQ(index, frames.size());
+    frames.push_back(frame);
+  };
   const std::optional<RunResult> result = run_recording(recording(), settings_, callbacks);
   ASSERT_TRUE(result);
   EXPECT_EQ(done, (std::vector<std::size_t>{0, 1, 2, 3, 4, 5, 6}));
@@ -58,6 +63,8 @@ TEST_F(RunRecording, WritesARunThatCanBeRead) {
 
   const RunFiles files = read_run(settings_.output);
   EXPECT_EQ(files.frames.size(), 6U);
+  ASSERT_EQ(frames.size(), 6U);
+  EXPECT_EQ(frames[5].labels, read_labels(files, 5, 3000));
   EXPECT_TRUE(read_labels(files, 5, 3000));
   EXPECT_EQ(text_of(files.run, "command"), "by the library");
   EXPECT_EQ(text_of(files.run, "map.file_in_run"), "map.ply");

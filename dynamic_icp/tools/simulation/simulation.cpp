@@ -60,6 +60,21 @@ ConfigFields fields(SimulationConfig& config) {
   return list;
 }
 
+void set(SimulationConfig& config, std::string_view key, std::string_view text) {
+  const bool of_all_sensors = key.starts_with("lidar.") || key.starts_with("mount.");
+  bool is_set = false;
+  for (SensorConfig& sensor : config.rig.sensors) {
+    const bool of_this = key.starts_with(sensor.name + ".");
+    if (of_this || of_all_sensors) {
+      set_field(fields(sensor), of_all_sensors ? key : key.substr(sensor.name.size() + 1), text);
+      is_set = true;
+    }
+  }
+  if (!is_set) {
+    set_field(fields(config), key, text);
+  }
+}
+
 SimulationConfig default_config(const scenes::SceneKind& kind) {
   SimulationConfig config;
   config.scene = scenes::default_knobs(kind);

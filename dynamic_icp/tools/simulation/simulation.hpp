@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <Eigen/Core>
@@ -27,6 +28,10 @@ struct SimulationConfig {
 
 /// The settings that are not of a sensor.
 ConfigFields fields(SimulationConfig& config);
+
+/// Sets one of them, or one of all sensors ("lidar.rows", "mount.z_m"), or of the sensor that the key begins with
+/// ("left.lidar.rows"). Throws UsageError as set_field does.
+void set(SimulationConfig& config, std::string_view key, std::string_view text);
 
 /// The defaults for this kind of scene, with the default rig.
 SimulationConfig default_config(const scenes::SceneKind& kind);

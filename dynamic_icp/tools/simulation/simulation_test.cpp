@@ -39,6 +39,24 @@ TEST(Simulation, BadKnobsAreUsageErrors) {
   EXPECT_THROW(build([](SimulationConfig& c) { c.rig.sensors.push_back(c.rig.sensors.front()); }), UsageError);
 }
 
+TEST(Simulation, SettingsAreOfTheDriveOfAllSensorsOrOfOne) {
+  SimulationConfig config = small_street();
+  config.rig.sensors.push_back(config.rig.sensors.front());
+  config.rig.sensors[0].name = "left";
+  config.rig.sensors[1].name = "right";
+  set(config, "frames", "7");
+  set(config, "lidar.rows", "9");
+  set(config, "right.lidar.rows", "11");
+  set(config, "mount.z_m", "1.5");
+  EXPECT_EQ(config.frames, 7);
+  EXPECT_EQ(config.rig.sensors[0].lidar.rows, 9);
+  EXPECT_EQ(config.rig.sensors[1].lidar.rows, 11);
+  EXPECT_EQ(config.rig.sensors[0].mount.z_m, 1.5);
+  EXPECT_EQ(config.rig.sensors[1].mount.z_m, 1.5);
+  EXPECT_THROW(set(config, "middle.lidar.rows", "11"), UsageError);
+  EXPECT_THROW(set(config, "lidar.no_such_key", "11"), UsageError);
+}
+
 TEST(Simulation, EverySceneBearsTheLimitsOfItsKnobs) {
   const Workers workers(2);
   for (const scenes::SceneKind& kind : scenes::scene_kinds()) {
