@@ -147,7 +147,6 @@ void draw_panel(drawing::Svg& svg, const drawing::Theme& theme, const drawing::P
   const drawing::Axes axes(
       area, {.label = "time (s)", .range = instant ? drawing::padded(time_range, 0.0) : time_range}, vertical);
   axes.draw(svg, theme);
-  draw_levels(svg, theme, area, axes, time_range, panel);
   const std::vector<drawing::LegendEntry> legend = legend_of(panel, theme);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
     const drawing::Paint paint = panel.series[k].broad
@@ -155,6 +154,7 @@ void draw_panel(drawing::Svg& svg, const drawing::Theme& theme, const drawing::P
                                      : drawing::Paint{.stroke = legend[k].colour, .width = 1.8};
     svg.polyline(pixels_of(axes, times, panel.series[k], vertical), paint);
   }
+  draw_levels(svg, theme, area, axes, time_range, panel);  // over the lines, which would hide their names
   if (std::none_of(panel.series.begin(), panel.series.end(),
                    [](const Series& series) { return drawing::range_of(series.values).has_value(); })) {
     svg.text({area.left + 0.5 * area.width, area.top + 0.5 * area.height}, "no values",

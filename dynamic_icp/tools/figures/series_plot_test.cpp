@@ -83,6 +83,14 @@ TEST(SeriesPlot, SeveralLinesGetALegendOneDoesNot) {
   EXPECT_NE(document.find(">&lt;b&gt;<"), std::string::npos);
 }
 
+TEST(SeriesPlot, NoLineRunsOverTheNameOfALevel) {
+  Panel with_level = panel({1.0, 3.0, 1.0});
+  with_level.levels = {{2.0, "expected"}};
+  const std::string document = drawn({0.0, 1.0, 2.0}, {with_level});
+  ASSERT_NE(document.find(">expected<"), std::string::npos);
+  EXPECT_EQ(document.find("<polyline", document.find(">expected<")), std::string::npos) << "what comes later covers it";
+}
+
 TEST(SeriesPlot, DecadesAreSpannedByAFewTowers) {
   EXPECT_FALSE(spans_decades({}));
   EXPECT_FALSE(spans_decades({1.0, 2.0, 3.0, 4.0}));

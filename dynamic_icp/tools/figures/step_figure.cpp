@@ -28,7 +28,7 @@ using runs::RunFiles;
 constexpr double kFigureWidth = 1120.0;  // px
 constexpr double kMargin = 20.0;
 constexpr double kPanelHead = 48.0;  // above each panel: title and legend
-constexpr double kLowerHeight = 330.0;
+constexpr double kLowerHeight = 250.0;
 constexpr std::size_t kMaxPanelDots = 5000;  // of a panel
 
 constexpr std::size_t kMovingColour = 1;  // in the order of the theme: also "raw" and "target"
@@ -56,6 +56,11 @@ GroundView panel(const drawing::PixelBox& box, Region region) {
   return {box, region};
 }
 
+void include(Region& region, const Eigen::Vector3d& point, double margin_m) {
+  region.x = {std::min(region.x.minimum, point.x() - margin_m), std::max(region.x.maximum, point.x() + margin_m)};
+  region.y = {std::min(region.y.minimum, point.y() - margin_m), std::max(region.y.maximum, point.y() + margin_m)};
+}
+
 /// The sensor and the objects near enough to be seen well, of the whole scan some of the surroundings.
 Region scene_region(const std::vector<ObjectRow>& objects) {
   constexpr double kFarthest_m = 45.0;
@@ -64,8 +69,7 @@ Region scene_region(const std::vector<ObjectRow>& objects) {
     for (const Eigen::Vector3d& c :
          {object.centroid, Eigen::Vector3d(object.centroid + kArrowSeconds * object.velocity)}) {
       if (c.allFinite() && c.norm() < kFarthest_m) {
-        region.x = {std::min(region.x.minimum, c.x() - 3.0), std::max(region.x.maximum, c.x() + 3.0)};
-        region.y = {std::min(region.y.minimum, c.y() - 3.0), std::max(region.y.maximum, c.y() + 3.0)};
+        include(region, c, 3.0);
       }
     }
   }
@@ -227,24 +231,46 @@ struct Lower {
   std::vector<Eigen::Vector3d> predicted;  ///< the points of the source, still in its frame
 };
 
-void draw_prediction(Sheet& sheet, const GroundView& view, const Lower& lower, const ScanPair& pair,
-                     const drawing::Theme& theme) {
-  const auto is_focus = [&](std::size_t i) { return pair.source_scan.labels[i] == kFirstObject + lower.focus; };
-  std::vector<Eigen::Vector3d> predicted_object;
+/// The points of the largest object, as measured and where its velocity takes them, in the frame of the target.
+struct Prediction {
+  std::vector<Eigen::Vector3d> raw;
+  std::vector<Eigen::Vector3d> predicted;
+};
+
+Prediction prediction_of(const ScanPair& pair, const Lower& lower) {
+  Prediction object;
   for (std::size_t i = 0; i < lower.predicted.size(); ++i) {
-    if (is_focus(i)) {
-      predicted_object.push_back(lower.predicted[i]);
+    if (pair.source_scan.labels[i] == kFirstObject + lower.focus) {
+      object.raw.emplace_back(lower.T_target_source * pair.source_scan.points[i]);
+      object.predicted.emplace_back(lower.T_target_source * lower.predicted[i]);
     }
   }
+  return object;
+}
+
+/// No more than the object: its surroundings are in the other panels.
+Region close_up(const Prediction& object, const Eigen::Vector3d& middle) {
+  constexpr double kMargin_m = 0.3;
+  Region region{{middle.x(), middle.x()}, {middle.y(), middle.y()}};
+  include(region, middle, kMargin_m);
+  for (const std::vector<Eigen::Vector3d>* points : {&object.raw, &object.predicted}) {
+    for (const Eigen::Vector3d& point : *points) {
+      include(region, point, kMargin_m);
+    }
+  }
+  return region;
+}
+
+void draw_prediction(Sheet& sheet, const GroundView& view, const Prediction& object, const ScanPair& pair,
+                     const drawing::Theme& theme) {
   sheet.begin(
       view, "4  Prediction of the largest object",
       {{"raw", theme.series[kMovingColour]}, {"predicted", theme.series[kGoodColour]}, {"next scan", theme.muted}});
   sheet.points(
       points_where(pair.target_scan, [&](std::size_t i) { return pair.target_scan.labels[i] >= kFirstObject; }),
       theme.muted, 4.4);
-  sheet.points(moved(points_where(pair.source_scan, is_focus), lower.T_target_source), theme.series[kMovingColour],
-               3.0);
-  sheet.points(moved(predicted_object, lower.T_target_source), theme.series[kGoodColour], 3.0);
+  sheet.points(object.raw, theme.series[kMovingColour], 3.0);
+  sheet.points(object.predicted, theme.series[kGoodColour], 3.0);
   sheet.end();
 }
 
@@ -303,14 +329,14 @@ drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawin
   }
   const double lower_width = (kFigureWidth - 3.0 * kMargin) / 2.0;
   const double lower_top = 2.0 * kPanelHead + upper_height;
-  const auto view = [&](int column, double half_m) {
-    return panel({kMargin + column * (lower_width + kMargin), lower_top, lower_width, kLowerHeight},
-                 {{middle.x() - half_m, middle.x() + half_m}, {middle.y() - 0.5 * half_m, middle.y() + 0.5 * half_m}});
+  const auto lower_view = [&](int column, const Region& region) {
+    return panel({kMargin + column * (lower_width + kMargin), lower_top, lower_width, kLowerHeight}, region);
   };
-  constexpr double kCloseUp_m = 3.5;
+  const Prediction object = prediction_of(pair, lower);
+  draw_prediction(sheet, lower_view(0, close_up(object, middle)), object, pair, theme);
   constexpr double kAround_m = 14.0;
-  draw_prediction(sheet, view(0, kCloseUp_m), lower, pair, theme);
-  draw_alignment(sheet, view(1, kAround_m), lower, pair, theme);
+  const Region around{{middle.x() - kAround_m, middle.x() + kAround_m}, {middle.y(), middle.y()}};
+  draw_alignment(sheet, lower_view(1, around), lower, pair, theme);
   return sheet.svg();
 }
 
