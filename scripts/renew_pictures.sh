@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
 # Draws the pictures of README and documents again: docs/scenes/, street.svg, steps.svg, trajectories.svg and, where
-# chromium and the viewer's packages are there, report.png. Needs the program at build/dynamic-icp; takes minutes.
+# chromium and the viewer's packages are there, report.png. Needs the program at build/dynamic-icp, and an idle machine: the
+# page shows the time per scan. Takes minutes.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 
