@@ -16,9 +16,9 @@ for purpose in "$@"; do
       optional+=(clang) ;;
     tests)
       packages+=(libgtest-dev)
-      # Independent implementations to compare with, random tests, and a browser for the viewer of reports; not in every
+      # Independent implementations to compare with, random tests, and browsers for the viewer of reports; not in every
       # release.
-      optional+=(python3-open3d python3-rosbag librapidcheck-dev chromium) ;;
+      optional+=(python3-open3d python3-rosbag librapidcheck-dev chromium firefox-esr) ;;
     pictures)
       packages+=(librsvg2-dev pkg-config) ;;
     benchmarks)

@@ -1,22 +1,36 @@
-// A headless Chromium for the tests, or the reason why there is none.
+// Headless browsers for the tests, or the reason why there are none.
 import { existsSync } from 'node:fs';
 
-const PLACES = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+const CHROMIUM = ['/usr/bin/chromium', '/usr/bin/chromium-browser', '/usr/bin/google-chrome'];
+const FIREFOX = ['/usr/bin/firefox-esr', '/usr/bin/firefox'];
 
-/** @returns {Promise<{launch: (extra?: string[]) => Promise<import('playwright-core').Browser>} | {missing: string}>} */
-export async function findBrowser() {
-  const executablePath = [process.env.CHROMIUM, ...PLACES].find((place) => place && existsSync(place));
-  if (!executablePath) return { missing: 'chromium is not installed (scripts/install_dependencies.sh tests)' };
-  let chromium;
+/** @returns {Promise<{executablePath: string, playwright: typeof import('playwright-core')} | {missing: string}>} */
+async function find(name, places) {
+  const executablePath = places.find((place) => place && existsSync(place));
+  if (!executablePath) return { missing: `${name} is not installed (scripts/install_dependencies.sh tests)` };
   try {
-    ({ chromium } = await import('playwright-core'));
+    return { executablePath, playwright: await import('playwright-core') };
   } catch {
     return { missing: 'playwright-core is not installed (scripts/install_viewer.sh tests)' };
   }
+}
+
+/** @returns {Promise<{launch: (extra?: string[]) => Promise<import('playwright-core').Browser>} | {missing: string}>} */
+export async function findBrowser() {
+  const { missing, executablePath, playwright } = await find('chromium', [process.env.CHROMIUM, ...CHROMIUM]);
+  if (missing) return { missing };
   const software = ['--use-gl=angle', '--use-angle=swiftshader', '--enable-unsafe-swiftshader'];
   return {
-    launch: (extra = software) => chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-dev-shm-usage', ...extra] }),
+    launch: (extra = software) => playwright.chromium.launch({ executablePath, args: ['--no-sandbox', '--disable-dev-shm-usage', ...extra] }),
   };
+}
+
+/** An unchanged Firefox, by WebDriver BiDi. */
+export async function findFirefox() {
+  const { missing, executablePath, playwright } = await find('firefox-esr', [process.env.FIREFOX, ...FIREFOX]);
+  if (missing) return { missing };
+  const firefoxUserPrefs = { 'webgl.force-enabled': true, 'gfx.x11-egl.force-enabled': true };
+  return { launch: () => playwright.firefox.launch({ channel: 'moz-firefox', executablePath, firefoxUserPrefs }) };
 }
 
 /** Ends a test file that cannot run: with the status CTest takes for skipped, with success under `node --test`. */

@@ -9,8 +9,8 @@ const MARGIN = 36;
 
 export function createFlatMap(report, store) {
   const canvas = element('canvas', { class: 'scene', role: 'img', 'aria-label': 'Trajectory from above' });
-  const holder = element('div', { class: 'scene-holder' }, canvas,
-    element('p', { class: 'scene-note', text: 'This browser offers no WebGL 2: scans cannot be shown in 3D. The trajectory is drawn from above; everything else works.' }));
+  const holder = element('div', { class: 'scene-holder flat' }, canvas,
+    element('p', { class: 'scene-note', text: 'This browser offers no WebGL 2: scans cannot be shown in 3D. The trajectory is drawn from above, the ground truth as a broad line; everything else works.' }));
 
   function draw() {
     const { clientWidth: width, clientHeight: height } = holder;

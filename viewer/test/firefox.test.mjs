@@ -1,0 +1,55 @@
+// The pages in Debian's Firefox as it is. Skipped with 77 where it is missing. Without a screen it offers no WebGL: the page
+// then has to do with the plan.
+import assert from 'node:assert/strict';
+import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import test, { after, before } from 'node:test';
+import { pathToFileURL } from 'node:url';
+import { bundle } from '../build.mjs';
+import { findFirefox, openPage, skipIfMissing } from './browser.mjs';
+import { pageOf, samples } from './sample_page.mjs';
+
+const found = await findFirefox();
+skipIfMissing(found);
+
+const folder = mkdtempSync(join(tmpdir(), 'viewer-firefox-'));
+let browser;
+let viewer;
+before(async () => {
+  viewer = await bundle();
+  browser = await found.launch();
+});
+after(async () => {
+  await browser?.close();
+  rmSync(folder, { recursive: true, force: true });
+});
+
+for (const kind of Object.keys(samples)) {
+  test(`${kind}: shows every sheet, steps and plays, and the legend lies over no note`, async () => {
+    const file = join(folder, `${kind}.html`);
+    writeFileSync(file, pageOf(samples[kind](), viewer));
+    const { page, troubles } = await openPage(browser, `${pathToFileURL(file).href}#frame=3`);
+    await page.waitForSelector('.scene-holder[data-frame="3"]');
+    await page.keyboard.press('ArrowRight');
+    await page.waitForSelector('.scene-holder[data-frame="4"]');
+    for (const tab of await page.$$('.tabs button')) {
+      await tab.click();
+      assert.equal(await tab.getAttribute('aria-selected'), 'true');
+      assert.ok((await page.locator('.sheet:visible').innerText()).length > 20, await tab.textContent());
+    }
+    await page.click('.play');
+    await page.waitForFunction(() => Number(document.querySelector('.scene-holder').dataset.frame) > 6);
+    const note = page.locator('.scene-note');
+    if (await note.count() > 0) {
+      assert.equal(await page.isVisible('.legend'), false);
+      assert.ok(await note.isVisible());
+    } else {
+      assert.ok(Number(await page.getAttribute('.scene-holder', 'data-draws')) > 3);
+    }
+    const wider = await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth);
+    assert.equal(wider, 0);
+    assert.deepEqual(troubles, []);
+    await page.context().close();
+  });
+}
