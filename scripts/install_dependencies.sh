@@ -1,8 +1,10 @@
 #!/usr/bin/env bash
 # Installs the packages the build needs, if any is missing. For Debian 12, Ubuntu 22.04 and newer; as root or with sudo.
 # usage: scripts/install_dependencies.sh [clang] [tests] [pictures] [benchmarks [peers]] [fuzzing] [format] [lint] [packages]
+#                                         [python]
 #   clang        builds in two thirds of the time of g++, if the distribution has it
 #   pictures     for PNG files from dynamic-icp plot (60 MB)
+#   python       for the Python package and its tests
 #   benchmarks   for scripts/benchmark_speed.sh; peers: also the libraries it compares with (1.2 GB)
 set -euo pipefail
 
@@ -35,8 +37,12 @@ for purpose in "$@"; do
     packages)
       packages+=(dpkg-dev file pybind11-dev python3-dev python3-numpy)
       optional+=(lintian) ;;
+    python)
+      packages+=(pybind11-dev python3-dev python3-numpy python3-pytest)
+      # For pip install and for those tests that compare or need more; without one they skip themselves.
+      optional+=(python3-scipy python3-matplotlib python3-pandas python3-hypothesis mypy python3-skbuild python3-pip) ;;
     *)
-      echo "unknown purpose '$purpose'; known are: clang, tests, pictures, benchmarks, peers, fuzzing, format, lint, packages" >&2
+      echo "unknown purpose '$purpose'; known are: clang, tests, pictures, benchmarks, peers, fuzzing, format, lint, packages, python" >&2
       exit 2 ;;
   esac
 done

@@ -17,12 +17,14 @@ fi
 
 scripts/install_dependencies.sh tests
 scripts/install_viewer.sh tests
+python=OFF  # only the whole suite has it
 
 configure() {  # preset
   echo "== Configuring and building ($1)"
   local benchmarks=OFF  # the kernels are tried where Google Benchmark is installed
   dpkg-query -W libbenchmark-dev >/dev/null 2>&1 && benchmarks=ON
-  cmake --preset "$1" -DDYNAMIC_ICP_BUILD_TESTS=ON -DDYNAMIC_ICP_BUILD_BENCHMARKS=$benchmarks | grep -iE 'warning|error' || true
+  cmake --preset "$1" -DDYNAMIC_ICP_BUILD_TESTS=ON -DDYNAMIC_ICP_BUILD_BENCHMARKS=$benchmarks \
+    -DDYNAMIC_ICP_BUILD_PYTHON=$python | grep -iE 'warning|error' || true
 }
 
 run_tests() {  # preset, then arguments for ctest
@@ -46,6 +48,11 @@ elif [[ "${1:-}" == method ]]; then
   run_tests method -R "^($(IFS='|'; echo "${modules[*]}")|library)\\." \
     -E '^odometry\.(KissIcp|ScanToScanIcp)\.|StatesHowWellTheMotionIsKnown|StartsAtAnySpeed|UndoesSweeps'
 else
+  if scripts/install_dependencies.sh python; then
+    python=ON
+  else
+    echo "== The Python package is not built and its tests are skipped"
+  fi
   configure release
   cmake --build --preset release
   run_tests release
