@@ -6,6 +6,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <system_error>
 #include <vector>
 
@@ -47,7 +48,7 @@ int with_output_written(int status) {
   return status;
 }
 
-int report(const std::string& message, int status) {
+int report(std::string_view message, int status) {
   apps::tell("dynamic-icp: {}\n", message);
   return status;
 }
@@ -101,13 +102,8 @@ int run(int argc, char** argv) {
   return with_output_written(selected());
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
-  apps::open_standard_streams();
-  apps::clean_up_on_signals();
-  dynamic_icp::keep_freed_memory();
-  apps::remember_command_line(argc, argv);
+/// The same, with what went wrong as a message and a status.
+int run_or_report(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const UsageError& error) {
@@ -117,11 +113,26 @@ int main(int argc, char** argv) {
   } catch (const dynamic_icp::datasets::UnclearInput& error) {
     return report(apps::with_options(error.what(), error.proposal()), kDataOrMachineFailed);
   } catch (const std::bad_alloc&) {
-    return report("the machine has no memory left", kDataOrMachineFailed);
+    throw;
   } catch (const std::system_error& error) {
     return report(std::ferror(stdout) != 0 ? kNotPrinted : what_failed(error), kDataOrMachineFailed);
   } catch (const std::exception& error) {
     // Long texts fail while they are printed, not at the end.
     return report(std::ferror(stdout) != 0 ? kNotPrinted : error.what(), kDataOrMachineFailed);
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  apps::open_standard_streams();
+  apps::clean_up_on_signals();
+  apps::clean_up_without_memory();
+  dynamic_icp::keep_freed_memory();
+  try {
+    apps::remember_command_line(argc, argv);
+    return run_or_report(argc, argv);
+  } catch (const std::bad_alloc&) {  // of the messages above, too
+    return report("the machine has no memory left", kDataOrMachineFailed);
   }
 }

@@ -5,13 +5,19 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <exception>
+#include <new>
+#include <string_view>
 
 #include <fcntl.h>
 #include <pthread.h>
 #include <unistd.h>
 
 #include "dynamic_icp/recording/formats/unfinished.hpp"
+
+#include "apps/exit_status.hpp"
 
 namespace dynamic_icp::apps {
 namespace {
@@ -61,6 +67,22 @@ extern "C" void clean_up_and_end(int signal) {
   ::pthread_sigmask(SIG_UNBLOCK, &own, nullptr);
 }
 
+/// Called where an exception has nowhere to go.
+[[noreturn]] void end_of_exceptions() {
+  try {
+    if (const std::exception_ptr error = std::current_exception()) {
+      std::rethrow_exception(error);
+    }
+  } catch (const std::bad_alloc&) {
+    constexpr std::string_view kMessage = "dynamic-icp: the machine has no memory left\n";
+    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+    formats::remove_unfinished();
+    ::_exit(kDataOrMachineFailed);
+  } catch (...) {  // a mistake in the program
+  }
+  std::abort();
+}
+
 }  // namespace
 
 void open_standard_streams() {
@@ -74,6 +96,7 @@ void open_standard_streams() {
 
 void clean_up_on_signals() {
   main_thread = ::pthread_self();
+  ::signal(SIGXFSZ, SIG_IGN);  // a file that grows beyond `ulimit -f` is an error of the write, which is told
   struct sigaction action = {};
   action.sa_handler = clean_up_and_end;
   action.sa_flags = SA_RESTART;
@@ -88,6 +111,8 @@ void clean_up_on_signals() {
     }
   }
 }
+
+void clean_up_without_memory() { std::set_terminate(end_of_exceptions); }
 
 StopOnSignal::StopOnSignal(const char* notice) {
   noted_signal = 0;

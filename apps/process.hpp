@@ -11,7 +11,12 @@ void open_standard_streams();
 
 /// Lets the signals that ask a program to end (interrupt, terminate, hang-up, broken pipe) remove unfinished files and
 /// folders before they end it. Those that are ignored stay so. To be called by the main thread, the one that writes.
+/// Files that outgrow their limit are no signal any more.
 void clean_up_on_signals();
+
+/// Where memory ends in what cannot fail (destructors of the JSON library need some), the program still says so, cleans
+/// up and ends with the status of a failed machine.
+void clean_up_without_memory();
 
 /// As long as this object lives, the first interrupt or terminate ends nothing: it is only noted, for work that can
 /// stop between two steps and keep what it has. A second one cleans up and ends the program. One object at a time.

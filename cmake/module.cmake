@@ -23,6 +23,13 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports false positives inside Eigen's and the standard library's inlined code.
   target_compile_options(dynamic_icp_build_flags INTERFACE -Wno-maybe-uninitialized -Wno-array-bounds -Wno-restrict)
 endif()
+# What makes an error of memory end the program rather than serve an attacker (scripts/check_hardening.sh looks at the
+# result). Sanitizers find more, and _FORTIFY_SOURCE needs optimisation.
+option(DYNAMIC_ICP_HARDENING "Checked calls of the C library, guarded stacks, tables that cannot be overwritten" OFF)
+if(DYNAMIC_ICP_HARDENING AND NOT DYNAMIC_ICP_SANITIZE AND CMAKE_BUILD_TYPE MATCHES "^(Release|RelWithDebInfo)$")
+  target_compile_options(dynamic_icp_build_flags INTERFACE -U_FORTIFY_SOURCE -D_FORTIFY_SOURCE=2 -fstack-protector-strong)
+  target_link_options(dynamic_icp_build_flags INTERFACE -Wl,-z,relro,-z,now,-z,noexecstack)
+endif()
 if(DYNAMIC_ICP_SANITIZE)
   target_compile_options(dynamic_icp_build_flags INTERFACE
     -fsanitize=${DYNAMIC_ICP_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=all)
