@@ -8,6 +8,7 @@
 //   FAULT_LASTS   set: all calls from that one on fail
 //   FAULT_UNDER   calls on files that are not below this folder do not count (all of malloc do)
 //   FAULT_REPORT  a file that gets a line with the number of calls of each process
+#undef _FORTIFY_SOURCE  // it would define some of these calls itself
 #include <algorithm>
 #include <atomic>
 #include <cerrno>
