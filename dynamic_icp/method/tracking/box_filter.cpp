@@ -15,8 +15,9 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kReference_m = 0.01;    // the reference is a point of the body by definition
-constexpr double kLoose_m = 0.5;         // standard deviation of the middle of what is seen of a body, if as much
+constexpr double kReference_m = 0.01;  // the reference is a point of the body by definition
+constexpr double kLoose_m =
+    1.5;  // standard deviation of the middle of what is seen of a body, if as much: others slide before it
 constexpr double kUnknownFace_m = 10.0;  // standard deviation
 constexpr double kKnownFace_m = 0.5;     // a face known better than this was seen
 constexpr double kFalseEnd_m = 0.1;      // what is seen so far beyond a face ...
@@ -37,7 +38,9 @@ constexpr double kFacing = 0.3;          // cosine of the line of sight to a fac
 constexpr double kUniform = 0.29;        // standard deviation of what is anywhere in a gap, as a share
 constexpr double kWorstLog = -10.0;
 constexpr double kGroundSigma_m = 0.05;
-constexpr double kNoBox = 0.05;  // bodies end by this share of their size nearer or farther than boxes do
+constexpr double kErrorAngle_rad = 0.1;  // within it points share errors of the Doppler, and across it these differ
+constexpr double kWorstLength = 1.75;    // of the typical length: none was found longer
+constexpr double kNoBox = 0.05;          // bodies end by this share of their size nearer or farther than boxes do
 
 BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double yaw_sigma_rad, const Matrix3d& level,
                  const TrackConfig& config) {
@@ -122,8 +125,13 @@ void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& c
   // Roll and pitch of the body look like a vertical velocity, the more the farther it is.
   const Vector3d up = detection.ground.up();
   const double sway = config.sway_rps * (body_.position() - detection.sensor).norm();
-  const Matrix3d floor =
-      config.doppler_floor_mps * config.doppler_floor_mps * Matrix3d::Identity() + sway * sway * up * up.transpose();
+  // An error that changes over the body looks like a velocity across the line of sight.
+  const Vector3d sight = (body_.position() - detection.sensor).normalized();
+  const double shared = config.doppler_floor_mps;
+  const double changing = config.doppler_floor_mps / kErrorAngle_rad;
+  const Matrix3d along_sight = sight * sight.transpose();
+  const Matrix3d floor = shared * shared * along_sight + changing * changing * (Matrix3d::Identity() - along_sight) +
+                         sway * sway * up * up.transpose();
   log_likelihood_ += body_.correct_doppler(measured, detection.sensor, floor);
 }
 
@@ -175,6 +183,7 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
   }
   size_log_likelihood_ = size_log_likelihood(config);  // before what is too wide is cut off
   limit_width(config);
+  limit_length();
   forget_stumps(detection);
   if (detection.ground.offset_m) {
     const Vector3d up = detection.ground.up();
@@ -238,6 +247,17 @@ void BoxFilter::limit_width(const TrackConfig& config) {
   }
 }
 
+/// Of a body without an end that was seen it is not known which of its points was seen when: where the parts add up to
+/// more than a body, the velocity was wrong, and only what is seen now counts.
+void BoxFilter::limit_length() {
+  if (!has_heading_ || is_known(Face::kFront) || is_known(Face::kRear) ||
+      span(0) <= kWorstLength * typical_length(likely_width(), span(2)).mean) {
+    return;
+  }
+  least_[index_of(Face::kFront)] = last_seen_[0]->high;
+  least_[index_of(Face::kRear)] = -last_seen_[0]->low;
+}
+
 /// What is a small part of the body that its other sides speak of did not end where it seemed to, away from the sensor.
 void BoxFilter::forget_stumps(const Detection& detection) {
   if (!has_heading_ || is_person_like(std::max(span(0), span(1)), body_.velocity().norm())) {
@@ -257,7 +277,7 @@ void BoxFilter::forget_stumps(const Detection& detection) {
   if (is_whole(1) && span(1) < kStump * typical_width_by_height(height).mean) {
     forget(1);
   }
-  const double width = is_whole(1) ? span(1) : typical_width_by_height(height).mean;
+  const double width = likely_width();
   if (is_whole(0) && width > kVehicleWidth_m && span(0) < kStump * typical_length(width, height).mean) {
     forget(0);
   }
@@ -287,7 +307,7 @@ double BoxFilter::size_log_likelihood(const TrackConfig& config) const {
   };
   const Belief width = typical_width_by_height(height);
   const double of_width = surprise(1, width);
-  const double of_length = surprise(0, typical_length(is_whole(1) ? span(1) : width.mean, height));
+  const double of_length = surprise(0, typical_length(likely_width(), height));
   const double too_wide = std::max(0.0, span(1) - config.largest_width_m) / kWidthSigma_m;
   return std::max(kWorstLog, -0.5 * (of_width * of_width + of_length * of_length + too_wide * too_wide));
 }
@@ -309,12 +329,15 @@ OrientedBox BoxFilter::seen_box() const {
 
 bool BoxFilter::is_whole(int axis) const { return is_known(high_face(axis)) && is_known(low_face(axis)); }
 
+double BoxFilter::likely_width() const { return is_whole(1) ? span(1) : typical_width_by_height(span(2)).mean; }
+
 double BoxFilter::span(int axis) const { return std::max(0.0, reach(high_face(axis)) + reach(low_face(axis))); }
 
 /// Along, to the left and up, with what is not seen filled in by what is likely.
 std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
   const double height = span(2);
-  const bool is_person = !has_heading_ || is_person_like(std::max(span(0), span(1)), body_.velocity().norm());
+  const bool is_small = is_person_like(std::max(span(0), span(1)), body_.velocity().norm());
+  const bool is_person = !has_heading_ || is_small;
   // The width first: it varies least.
   Belief width{span(1), 0.0};
   if (!is_person && !is_whole(1)) {
@@ -323,6 +346,12 @@ std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
   Belief length{span(0), 0.0};
   if (!is_person && !is_whole(0)) {
     length = at_least(typical_length(width.mean, height), span(0));
+  }
+  if (!has_heading_ && !is_small) {
+    // A part of a vehicle, whichever: as much of it again may be anywhere.
+    const double more = typical_width_by_height(height).mean;
+    width.variance = is_whole(1) ? 0.0 : more * more;
+    length.variance = is_whole(0) ? 0.0 : more * more;
   }
   std::array<Extent, 3> extents;
   for (const int axis : {0, 1, 2}) {

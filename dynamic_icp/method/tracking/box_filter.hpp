@@ -73,12 +73,14 @@ class BoxFilter {
                     const TrackConfig& config);
   void correct_middle(int axis, const AxisView& view);
   void limit_width(const TrackConfig& config);
+  void limit_length();
   void forget_stumps(const Detection& detection);
   [[nodiscard]] double size_log_likelihood(const TrackConfig& config) const;
   [[nodiscard]] bool is_known(Face face) const;
   [[nodiscard]] double reach(Face face) const;
   [[nodiscard]] bool is_whole(int axis) const;
   [[nodiscard]] double span(int axis) const;
+  [[nodiscard]] double likely_width() const;
   [[nodiscard]] std::array<Extent, 3> extents() const;
 
   BodyFilter body_;

@@ -313,6 +313,25 @@ TEST(BoxFilter, ABodyWithoutHeadingIsInItsBox) {
   }
 }
 
+TEST(BoxFilter, OfAPartWithoutHeadingTheCentreIsAsUncertainAsWhatIsHidden) {
+  // Half a metre of a lorry, seen through a slit: its sides show no direction, and its centre is metres away.
+  const TrackConfig config;
+  const MovingBox lorry = moving_body(0, -9, 0.0, 8, kLorry);
+  Detection detection;
+  for (int i = 0; i < 60; ++i) {
+    const Vector3d point(4.0 + 0.5 * (i % 10) / 10.0, -9 + 0.5 * kLorry.y(), -1.0 + 0.25 * (i / 10));
+    detection.points.push_back(point);
+    detection.directions.push_back(point.normalized());
+    detection.radial.push_back(point.normalized().dot(lorry.velocity));
+    detection.times.push_back(0.0);
+  }
+  BoxFilter filter(detection, std::nullopt, 0.0, config);
+  EXPECT_GT(filter.body().velocity().norm(), 2.5) << "no person";
+  const BoxEstimate estimate = filter.estimate();
+  const Eigen::Vector3d deviations = estimate.centre_covariance.diagonal().cwiseSqrt();
+  EXPECT_GT(deviations.head<2>().maxCoeff(), 0.5);
+}
+
 TEST(BoxFilter, APersonIsNotThoughtToBeLonger) {
   const TrackConfig config;
   for (const std::optional<double> yaw : {std::optional<double>{}, std::optional<double>{0.3}}) {

@@ -20,9 +20,12 @@ constexpr double kLookBeyond_m = 0.4;
 constexpr double kClearance_m = 1.0;
 constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
 constexpr double kMaxGap_m = 0.5;
+constexpr double kFullHeight = 0.4;  // below this share of their height bodies reach as far as anywhere: hoods, bumpers
 
-/// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next.
-bool is_true_end(const Vector3d& end, const Vector3d& outward, const Vector3d& W, const Detection& detection) {
+/// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there and `lower_m`
+/// below.
+bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, const Vector3d& W,
+                 const Detection& detection) {
   const Vector3d to_end = end - detection.sensor;
   const double range = to_end.norm();
   const Vector3d sight = to_end / range;
@@ -46,6 +49,12 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, const Vector3d& W
     }
     if (detection.view->hides(beyond, is_dim ? -kClearance_m : kClearance_m)) {
       return false;
+    }
+    if (lower_m > 0.0) {
+      const Vector3d below = beyond - lower_m * (detection.T_sensor_world.linear() * detection.ground.up());
+      if (detection.view->hides(below, kClearance_m)) {
+        return false;
+      }
     }
   }
   return true;
@@ -80,25 +89,32 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
                                     const Vector3d& W, const Detection& detection) {
   std::array<AxisView, 3> views;
   std::array<bool, 2> faces_sensor{};
+  views[2] = view_along(axes.col(2), reference, points);
+  // Over something nearer often the cabin of a car is seen, and neither its hood nor its boot.
+  const double ground =
+      detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
+  const double full = ground + kFullHeight * (views[2].seen.high - ground);
+  const auto is_end = [&](const EndView& end, const Vector3d& outward) {
+    return is_true_end(end.middle, outward, axes.col(2).dot(end.middle - reference) - full, W, detection);
+  };
   for (const int axis : {0, 1}) {
     AxisView& view = views[static_cast<std::size_t>(axis)] = view_along(axes.col(axis), reference, points);
     const double sensor = axes.col(axis).dot(detection.sensor - reference);
     const double grazing = kGrazing * (detection.sensor - reference).norm();
-    view.high.is_true = sensor > view.seen.high && is_true_end(view.high.middle, axes.col(axis), W, detection);
-    view.low.is_true = sensor < view.seen.low && is_true_end(view.low.middle, -axes.col(axis), W, detection);
+    view.high.is_true = sensor > view.seen.high && is_end(view.high, axes.col(axis));
+    view.low.is_true = sensor < view.seen.low && is_end(view.low, -axes.col(axis));
     faces_sensor[static_cast<std::size_t>(axis)] = (view.high.is_true && sensor > view.seen.high + grazing) ||
                                                    (view.low.is_true && sensor < view.seen.low - grazing);
   }
   for (const int axis : {0, 1}) {
     AxisView& view = views[static_cast<std::size_t>(axis)];
     if (faces_sensor[static_cast<std::size_t>(1 - axis)]) {
-      view.high.is_true = view.high.is_true || is_true_end(view.high.middle, axes.col(axis), W, detection);
-      view.low.is_true = view.low.is_true || is_true_end(view.low.middle, -axes.col(axis), W, detection);
+      view.high.is_true = view.high.is_true || is_end(view.high, axes.col(axis));
+      view.low.is_true = view.low.is_true || is_end(view.low, -axes.col(axis));
     }
   }
   // What is below bodies is hidden by them.
-  views[2] = view_along(axes.col(2), reference, points);
-  views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), W, detection);
+  views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), 0.0, W, detection);
   return views;
 }
 

@@ -60,5 +60,32 @@ TEST(BoxView, EndsThatHardlyMoveAlongTheLineOfSightMayGoOn) {
   EXPECT_TRUE(along.high.is_true);
 }
 
+TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
+  // The cabin of a car beside the sensor, seen over a wall that is nearer and hides hood and boot; without the wall,
+  // and nothing seen there, the cabin is all there is.
+  constexpr double kGround_m = -1.5;
+  const std::vector<Vector3d> cabin = face_points({-1.2, -8.0, -0.6}, {1.2, -8.0, 0.0});
+  for (const bool is_hidden : {false, true}) {
+    RawScan raw;
+    raw.points = cabin;
+    for (double x = -4.0; x <= 4.0; x += 0.02) {
+      raw.points.emplace_back(2.0 * x, -20.0, 0.0);  // behind all
+      for (double z = kGround_m; z < -0.45 && is_hidden; z += 0.02) {
+        raw.points.emplace_back(x, -5.0, z);
+      }
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.ground.offset_m = kGround_m;
+    detection.view = &image;
+    const auto [along, left, up] =
+        views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, cabin, {5.0, -5.0, 0.0}, detection);
+    EXPECT_NE(along.high.is_true, is_hidden);
+    EXPECT_NE(along.low.is_true, is_hidden);
+    EXPECT_TRUE(left.high.is_true) << "the side is seen";
+  }
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

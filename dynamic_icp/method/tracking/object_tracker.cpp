@@ -92,7 +92,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
                                                  std::span<const std::uint8_t> is_moving,
                                                  const Eigen::Isometry3d& T_world_sensor,
                                                  const std::optional<ego_motion::SupportPlane>& support,
-                                                 const Workers& workers) {
+                                                 const Workers& workers, const Eigen::Matrix3d& ego_covariance) {
   if (radial.size() != scan.size() || is_moving.size() != scan.size()) {
     throw std::invalid_argument("radial velocities and moving flags must have one value per point of the scan");
   }
@@ -125,7 +125,7 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   std::vector<TrackedObject> objects;
   objects.reserve(entries_.size());
   for (const Entry& entry : entries_) {
-    objects.push_back(report(entry, sensor));
+    objects.push_back(report(entry, sensor, ego_covariance));
   }
   return objects;
 }
@@ -431,7 +431,8 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
   entries_ = std::move(living);
 }
 
-TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sensor) const {
+TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sensor,
+                                    const Eigen::Matrix3d& ego_covariance) const {
   const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
   const Eigen::Matrix3d R = T_sensor_world.linear();
   const BodyFilter& body = entry.predicted.body();
@@ -441,7 +442,7 @@ TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sens
                   : entry.missed > 0 ? TrackStatus::kCoasting
                                      : TrackStatus::kConfirmed;
   object.velocity_sensor = R * entry.now.velocity;
-  object.covariance = R * entry.now.velocity_covariance * R.transpose();
+  object.covariance = R * entry.now.velocity_covariance * R.transpose() + ego_covariance;
   object.yaw_rate_rps = body.yaw_rate();
   object.yaw_rate_variance = body.covariance()(BodyFilter::kYawRate, BodyFilter::kYawRate);
   object.box = entry.now.box;
@@ -459,7 +460,8 @@ TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sens
   later.predict(later.time_s() + object.prediction.after_s, config_.track);
   const BoxEstimate then = later.estimate();
   object.prediction.centre = T_sensor_world * then.box.centre;
-  object.prediction.centre_covariance = R * then.centre_covariance * R.transpose();
+  const double after_s = object.prediction.after_s;
+  object.prediction.centre_covariance = R * then.centre_covariance * R.transpose() + after_s * after_s * ego_covariance;
   object.prediction.velocity_sensor = R * then.velocity;
   object.age_scans = entry.age;
   object.scans_seen = entry.seen;

@@ -54,11 +54,13 @@ class ObjectTracker {
   /// The points of the scan are where they were measured, in the sensor frame at its stamp (deskewed); lines of sight
   /// are as measured. `radial`: for each row the velocity of the point itself along its line of sight over ground
   /// (m/s). `is_moving`: for each row nonzero where that is too much for noise. `support`: the plane that carries the
-  /// scene, where it shows one. Throws std::invalid_argument when these differ in length or are not finite, and when
+  /// scene, where it shows one. `ego_covariance`: of the velocity of the sensor, (m/s)^2, sensor frame; all velocities
+  /// over ground share its error. Throws std::invalid_argument when these differ in length or are not finite, and when
   /// the stamp is not later than that of the previous scan.
   std::vector<TrackedObject> update(const Scan& scan, std::span<const double> radial,
                                     std::span<const std::uint8_t> is_moving, const Eigen::Isometry3d& T_world_sensor,
-                                    const std::optional<ego_motion::SupportPlane>& support, const Workers& workers);
+                                    const std::optional<ego_motion::SupportPlane>& support, const Workers& workers,
+                                    const Eigen::Matrix3d& ego_covariance = Eigen::Matrix3d::Zero());
 
  private:
   struct Entry;
@@ -80,7 +82,8 @@ class ObjectTracker {
   void note_motion(Entry& entry, double stamp_s) const;
   [[nodiscard]] bool is_over(const Entry& entry, double stamp_s) const;
   void delete_tracks(const TrackingInput& input);
-  [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor) const;
+  [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor,
+                                     const Eigen::Matrix3d& ego_covariance) const;
 
   TrackerConfig config_;
   std::vector<Entry> entries_;

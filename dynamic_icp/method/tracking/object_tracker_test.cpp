@@ -191,6 +191,27 @@ TEST(ObjectTracker, TellsWhatTheDopplerOfOneScanDoesNot) {
   }
 }
 
+TEST(ObjectTracker, TheErrorOfTheSensorsVelocityIsPartOfAllVelocities) {
+  // A velocity of the sensor known to 0.6 m/s leaves none over ground known better.
+  const Eigen::Matrix3d ego = Vector3d(0.01, 0.36, 0.04).asDiagonal();
+  ObjectTracker exact({});
+  ObjectTracker unsure({});
+  for (int k = 0; k < 8; ++k) {
+    const double t = k * kScanPeriod_s;
+    const View view = view_of({car(15 + 8 * t, 2, 0.0, 8)}, t, 0.0);
+    const auto pose = Eigen::Isometry3d::Identity();
+    const auto known = exact.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), Workers(1));
+    const auto stated = unsure.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), Workers(1), ego);
+    ASSERT_EQ(known.size(), stated.size());
+    for (std::size_t i = 0; i < known.size(); ++i) {
+      EXPECT_LT((stated[i].covariance - known[i].covariance - ego).norm(), 1e-12);
+      EXPECT_LT((stated[i].prediction.centre_covariance - known[i].prediction.centre_covariance - ego).norm(), 1e-12)
+          << "one second ahead";
+      EXPECT_FALSE(stated[i].tangential_observed);
+    }
+  }
+}
+
 TEST(ObjectTracker, NothingAndOnePointAreNoObjects) {
   ObjectTracker tracker{TrackerConfig{}};
   EXPECT_TRUE(tracker.update(Scan{}, {}, {}, Eigen::Isometry3d::Identity(), std::nullopt, Workers(1)).empty());
