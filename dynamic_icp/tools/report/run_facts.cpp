@@ -49,6 +49,12 @@ std::string fact(const RunFiles& run, const char* key) {
   return std::string_view(key) == "ablation" && value == "none" ? "in full" : value;
 }
 
+/// What stands among the warnings, and what did not happen.
+bool is_left_out(const runs::Settings& summary, std::string_view key) {
+  return key == "assumptions" || (key == "failure" && text_of(summary, key).empty()) ||
+         (key == "stopped" && text_of(summary, key) == "false");
+}
+
 }  // namespace
 
 std::string folder_name(const std::filesystem::path& folder) {
@@ -129,8 +135,8 @@ std::vector<std::string> warnings_of(const RunFiles& run) {
 std::vector<SummaryRow> summary_of(const RunFiles& run) {
   std::vector<SummaryRow> rows;
   for (const auto& [key, value] : run.summary) {
-    if (key == "assumptions") {
-      continue;  // stands among the warnings
+    if (is_left_out(run.summary, key)) {
+      continue;
     }
     const double* number = std::get_if<double>(&value);
     rows.push_back({.key = key,

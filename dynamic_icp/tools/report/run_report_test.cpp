@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/report/run_report.hpp"
 
+#include <algorithm>
 #include <set>
 
 #include <gtest/gtest.h>
@@ -120,6 +121,23 @@ TEST(RunReport, NeedsNothingFromOutside) {
     EXPECT_EQ(drawing::count_of(html, text), 0u) << text;
   }
   EXPECT_NE(html.find("default-src 'none'"), std::string::npos);
+}
+
+TEST(RunReport, TellsOfFailureAndStopOnlyWhereTheyHappened) {
+  const runs::TestFolder folder;
+  WallDrive().write(folder);
+  const std::string nothing = R"("failure":null,"stopped":false)";
+  replace(folder, "run/summary.json", R"("rte_rmse_m":0.0)", nothing);
+  const auto tells_of = [&](const std::string& key) {
+    const json report = read_page(html_of(folder)).report;
+    const json& rows = report["runs"][0]["summary"];
+    return std::any_of(rows.begin(), rows.end(), [&](const json& row) { return row["key"] == key; });
+  };
+  EXPECT_FALSE(tells_of("failure"));
+  EXPECT_FALSE(tells_of("stopped"));
+  replace(folder, "run/summary.json", nothing, R"("failure":"lost","stopped":true)");
+  EXPECT_TRUE(tells_of("failure"));
+  EXPECT_TRUE(tells_of("stopped"));
 }
 
 TEST(RunReport, ShowsHostileTextAsText) {
