@@ -8,6 +8,7 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/not_a_recording.hpp"
 
 namespace dynamic_icp::datasets {
@@ -24,6 +25,23 @@ char lower(char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + '
 bool is_own_folder(const fs::directory_entry& entry) {
   std::error_code ignored;
   return is_visible_folder(entry) && !entry.is_symlink(ignored);
+}
+
+/// Calls for each entry until it is told to stop by `false`. A folder that is not there, or not ours to read, has none;
+/// one that fails otherwise must not pass for another kind of input.
+template <class Use>
+void for_each_entry(const fs::path& folder, Use&& use) {
+  std::error_code fault;
+  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
+       entry.increment(fault)) {
+    if (!use(*entry)) {
+      return;
+    }
+  }
+  if (fault && fault != std::errc::no_such_file_or_directory && fault != std::errc::not_a_directory &&
+      fault != std::errc::permission_denied) {
+    throw DataError(fmt::format("{}: cannot read: {}", folder.string(), fault.message()));
+  }
 }
 
 void search(const fs::path& folder, const std::function<bool(const fs::path&)>& wanted, int levels,
@@ -43,13 +61,12 @@ void search(const fs::path& folder, const std::function<bool(const fs::path&)>& 
 
 std::vector<fs::path> entries_of(const fs::path& folder, const std::function<bool(const fs::directory_entry&)>& test) {
   std::vector<fs::path> entries;
-  std::error_code fault;
-  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
-       entry.increment(fault)) {
-    if (test(*entry)) {
-      entries.push_back(entry->path());
+  for_each_entry(folder, [&](const fs::directory_entry& entry) {
+    if (test(entry)) {
+      entries.push_back(entry.path());
     }
-  }
+    return true;
+  });
   std::sort(entries.begin(), entries.end());
   return entries;
 }
@@ -84,14 +101,12 @@ fs::path child(const fs::path& folder, std::string_view name) {
 }
 
 bool holds_files(const fs::path& folder, std::string_view extension) {
-  std::error_code fault;
-  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
-       entry.increment(fault)) {
-    if (entry->path().extension() == extension && entry->path().filename().string().front() != '.') {
-      return true;
-    }
-  }
-  return false;
+  bool found = false;
+  for_each_entry(folder, [&](const fs::directory_entry& entry) {
+    found = entry.path().extension() == extension && entry.path().filename().string().front() != '.';
+    return !found;
+  });
+  return found;
 }
 
 fs::path find_folder(const fs::path& input, const std::function<bool(const fs::path&)>& wanted) {

@@ -9,8 +9,9 @@
 
 namespace dynamic_icp::datasets {
 
-/// What lies in a folder and passes the test, in the order of names; nothing when the folder cannot be read. Folders of
-/// scans are large: the entry knows its type without asking the system again.
+/// What lies in a folder and passes the test, in the order of names; nothing when the folder is not there or not ours
+/// to read. Throws DataError when it cannot be read for another reason. Folders of scans are large: the entry knows its
+/// type without asking the system again.
 std::vector<std::filesystem::path> entries_of(const std::filesystem::path& folder,
                                               const std::function<bool(const std::filesystem::directory_entry&)>& test);
 
@@ -28,7 +29,8 @@ bool same_name(const std::filesystem::path& path, std::string_view name);
 /// several the one spelled so, else the first in the order of names.
 std::filesystem::path child(const std::filesystem::path& folder, std::string_view name);
 
-/// Whether it is a folder with at least one file of this extension (".bin") that is not hidden.
+/// Whether it is a folder with at least one file of this extension (".bin") that is not hidden. Throws as entries_of
+/// does.
 bool holds_files(const std::filesystem::path& folder, std::string_view extension);
 
 /// The only folder that is what is looked for, of `input` and those up to three levels below it; empty when there is

@@ -49,6 +49,13 @@ TEST_F(FolderSearch, FilesAreSeenByTheirExtension) {
   EXPECT_FALSE(holds_files(folder_ / "no", ".bin"));
 }
 
+TEST_F(FolderSearch, AFolderThatFailsIsNoEmptyOne) {
+  const fs::path failing = folder_ / std::string(1000, 'a');  // longer than names can be
+  EXPECT_THROW(holds_files(failing, ".bin"), DataError);
+  EXPECT_THROW(entries_of(failing, is_visible_folder), DataError);
+  EXPECT_TRUE(entries_of(make("1.bin"), is_visible_folder).empty()) << "a file has no entries";
+}
+
 TEST_F(FolderSearch, GoesThreeLevelsDown) {
   make("1/2/3/4/wanted/x");
   EXPECT_EQ(find_folder(folder_, is_wanted), fs::path());

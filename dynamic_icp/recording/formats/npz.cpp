@@ -89,38 +89,41 @@ class ArchiveBuilder {
     const zip_int64_t index = member == nullptr ? -1 : zip_file_add(archive_, name.c_str(), member, ZIP_FL_ENC_UTF_8);
     if (index < 0) {
       zip_source_free(member);
-      fail(name, zip_strerror(archive_));
+      fail(name);
     }
     const auto place = static_cast<zip_uint64_t>(index);
     if (zip_set_file_compression(archive_, place, ZIP_CM_STORE, 0) != 0 ||
         zip_file_set_dostime(archive_, place, 0, kDosDate, 0) != 0) {
-      fail(name, zip_strerror(archive_));
+      fail(name);
     }
   }
 
   std::string finish() {
     if (zip_close(archive_) != 0) {
-      fail("archive", zip_strerror(archive_));
+      throw std::bad_alloc();  // it lies in memory: nothing else can be wrong
     }
     archive_ = nullptr;
     zip_stat_t status;
     zip_stat_init(&status);
     if (zip_source_stat(source_, &status) != 0 || zip_source_open(source_) != 0) {
-      fail("archive", "cannot be read back");
+      throw std::bad_alloc();
     }
     std::string content(status.size, '\0');
     const bool whole =
         zip_source_read(source_, content.data(), content.size()) == static_cast<zip_int64_t>(status.size);
     zip_source_close(source_);
     if (!whole) {
-      fail("archive", "cannot be read back");
+      throw std::bad_alloc();
     }
     return content;
   }
 
  private:
-  [[noreturn]] static void fail(const std::string& name, const char* reason) {
-    throw std::invalid_argument(fmt::format("{}: {}", name, reason));
+  [[noreturn]] void fail(const std::string& name) const {
+    if (zip_error_code_zip(zip_get_error(archive_)) == ZIP_ER_MEMORY) {
+      throw std::bad_alloc();
+    }
+    throw std::invalid_argument(fmt::format("{}: {}", name, zip_strerror(archive_)));
   }
 
   zip_source_t* source_;

@@ -141,8 +141,13 @@ StagedFile::StagedFile(const std::filesystem::path& path) : path_(path) {
     return;
   }
   make_partial();
-  unfinished_.emplace(partial_);
-  file_.emplace(partial_, path);
+  try {
+    unfinished_.emplace(partial_);
+    file_.emplace(partial_, path);
+  } catch (...) {
+    remove_partial();  // without a destructor
+    throw;
+  }
 }
 
 void StagedFile::make_partial() {
@@ -164,6 +169,10 @@ void StagedFile::make_partial() {
 
 StagedFile::~StagedFile() {
   file_.reset();
+  remove_partial();
+}
+
+void StagedFile::remove_partial() const {
   if (!partial_.empty()) {
     std::error_code ignored;
     std::filesystem::remove(partial_, ignored);

@@ -56,6 +56,7 @@ class StagedFile {
 
  private:
   void make_partial();
+  void remove_partial() const;
 
   std::filesystem::path path_;
   std::filesystem::path partial_;  ///< empty: written into what there is, or committed

@@ -68,6 +68,20 @@ TEST_F(WholeFile, FailureNamesTheFileAndLeavesTheEarlierOne) {
   EXPECT_EQ(entries(), 2u);
 }
 
+TEST_F(WholeFile, NothingStaysOfAFileThatCannotBeOpenedAgain) {
+  fs::permissions(folder_, fs::perms::all);
+  const uid_t own = ::geteuid();
+  constexpr uid_t kNobody = 65534;  // root may write what nobody may
+  const bool dropped = own == 0 && ::seteuid(kNobody) == 0;
+  const mode_t mask = ::umask(0222);
+  expect_refusal([&] { write_whole_file(folder_ / "a", "x"); }, "cannot create");
+  ::umask(mask);
+  if (dropped) {
+    ASSERT_EQ(::seteuid(own), 0);
+  }
+  EXPECT_EQ(entries(), 0U);
+}
+
 TEST_F(WholeFile, WhatAKilledWriterLeftIsWrittenOver) {
   const pid_t child = ::fork();
   if (child == 0) {
