@@ -23,7 +23,6 @@ ENVIRONMENT = {
     **os.environ,
     "PYTHONPATH": str(pathlib.Path(dynamic_icp.__file__).parents[1]),
     "MYPYPATH": str(pathlib.Path(dynamic_icp.__file__).parents[1]),
-    "MPLBACKEND": "svg",
 }
 
 

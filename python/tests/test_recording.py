@@ -1,5 +1,6 @@
 # Copyright (c) 2026 The Dynamic-ICP developers
 # SPDX-License-Identifier: MIT
+import pathlib
 import pickle
 import shutil
 
@@ -78,9 +79,8 @@ def test_errors_are_those_of_the_program(folder, tmp_path):
         dynamic_icp.open(folder, doppler_sign="up")
     with pytest.raises(dynamic_icp.UsageError, match="period is '-1"):
         dynamic_icp.open(folder, period=-1)
-    file = tmp_path / "point_clouds" / "0.bin"
-    file.parent.mkdir()
-    file.write_bytes(bytes(17))
-    with pytest.raises(dynamic_icp.DataError) as error:
-        dynamic_icp.open(tmp_path)[0]
-    assert "0.bin" in str(error.value) or "point_clouds" in str(error.value)
+    recording = dynamic_icp.open(shutil.copytree(folder, tmp_path / "copy"))
+    file = pathlib.Path(recording.scan_file(0))
+    file.unlink()
+    with pytest.raises(dynamic_icp.DataError, match=file.name):
+        recording[0]
