@@ -1,6 +1,5 @@
 #!/usr/bin/env bash
-# Makes the Debian packages and the archive of the sources in build/packages. Installs what is missing. The same commit and
-# compiler give the same bytes.
+# Makes the Debian packages and the archive of the sources in build/packages. Installs what is missing.
 # usage: scripts/packages.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
