@@ -11,7 +11,7 @@ import sys
 
 HERE = os.path.dirname(os.path.abspath(__file__))
 # Header-only: compiled in, so no loader knows them.
-HEADER_PACKAGES = ["libeigen3-dev", "libcli11-dev", "nlohmann-json3-dev"]
+HEADER_PACKAGES = ["libeigen3-dev", "libcli11-dev", "nlohmann-json3-dev", "libboost-dev"]
 BUNDLERS = ["esbuild"]  # make the bundle, and are not in it
 
 

@@ -49,9 +49,9 @@ wait_for_cells() {  # folder number process
 
 # --- This machine, killed half-way -----------------------------------------------------------------------------------
 local_profile=$root/workflow/profiles/local
-setsid --wait bash -c "exec $(printf '%q ' "$snakemake") --snakefile '$root/workflow/Snakefile' --directory '$work' \
-  --profile '$local_profile' --cores 2 --config output='$work/local' inputs='$work/data' program='$program' \
-  arguments='$methods'" > "$work/killed.log" 2>&1 &
+export -f flow
+export snakemake root work program methods
+setsid --wait bash -c "flow '$work/local' --profile '$local_profile' --cores 2" > "$work/killed.log" 2>&1 &
 wait_for_cells "$work/local" 4 $!
 session=$(ps -o sid= -p "$(pgrep -f -o "$work/local")" | tr -d ' ')
 pkill -9 -s "$session" || true

@@ -1,15 +1,12 @@
 // Accessibility of the page by axe-core: names, roles, contrast, in both themes. Skipped with 77 where a browser or axe is
 // missing.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
+import { readFileSync } from 'node:fs';
 import { createRequire } from 'node:module';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import test, { after, before } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { bundle } from '../build.mjs';
+import test from 'node:test';
 import { findBrowser, openPage, skipIfMissing } from './browser.mjs';
-import { pageOf, samples } from './sample_page.mjs';
+import { pageFiles } from './page_files.mjs';
+import { samples } from './sample_page.mjs';
 
 const found = await findBrowser();
 skipIfMissing(found);
@@ -20,17 +17,7 @@ try {
   skipIfMissing({ missing: 'axe-core is not installed (scripts/install_viewer.sh tests)' });
 }
 
-const folder = mkdtempSync(join(tmpdir(), 'viewer-access-'));
-let browser;
-let viewer;
-before(async () => {
-  viewer = await bundle();
-  browser = await found.launch();
-});
-after(async () => {
-  await browser?.close();
-  rmSync(folder, { recursive: true, force: true });
-});
+const own = pageFiles('access', found.launch);
 
 /** What axe finds wrong by WCAG 2.1 A and AA, as texts. */
 async function violations(page) {
@@ -42,9 +29,7 @@ async function violations(page) {
 for (const kind of Object.keys(samples)) {
   for (const colorScheme of ['light', 'dark']) {
     test(`${kind}, ${colorScheme}: no violation of WCAG 2.1 AA on any sheet`, async () => {
-      const file = join(folder, `${kind}.html`);
-      writeFileSync(file, pageOf(samples[kind](), viewer));
-      const { page } = await openPage(browser, pathToFileURL(file).href, { colorScheme });
+      const { page } = await openPage(own.browser, own.write(kind, samples[kind]()), { colorScheme });
       await page.waitForSelector('.scene-holder[data-frame]');
       for (const tab of await page.$$('.tabs button')) {
         await tab.click();
@@ -56,9 +41,7 @@ for (const kind of Object.keys(samples)) {
 }
 
 test('a control without a name is found', async () => {
-  const file = join(folder, 'nameless.html');
-  writeFileSync(file, pageOf(samples.run(), viewer));
-  const { page } = await openPage(browser, pathToFileURL(file).href);
+  const { page } = await openPage(own.browser, own.write('nameless', samples.run()));
   await page.waitForSelector('.play');
   await page.$eval('.play', (button) => { button.removeAttribute('aria-label'); button.removeAttribute('title'); });
   assert.match((await violations(page)).join(' '), /button-name/);

@@ -1,35 +1,19 @@
 // The pages in Debian's Firefox as it is. Skipped with 77 where it is missing. Without a screen it offers no WebGL: the page
 // then has to do with the plan.
 import assert from 'node:assert/strict';
-import { mkdtempSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
-import { join } from 'node:path';
-import test, { after, before } from 'node:test';
-import { pathToFileURL } from 'node:url';
-import { bundle } from '../build.mjs';
+import test from 'node:test';
 import { findFirefox, openPage, skipIfMissing } from './browser.mjs';
-import { pageOf, samples } from './sample_page.mjs';
+import { pageFiles } from './page_files.mjs';
+import { samples } from './sample_page.mjs';
 
 const found = await findFirefox();
 skipIfMissing(found);
 
-const folder = mkdtempSync(join(tmpdir(), 'viewer-firefox-'));
-let browser;
-let viewer;
-before(async () => {
-  viewer = await bundle();
-  browser = await found.launch();
-});
-after(async () => {
-  await browser?.close();
-  rmSync(folder, { recursive: true, force: true });
-});
+const own = pageFiles('firefox', found.launch);
 
 for (const kind of Object.keys(samples)) {
   test(`${kind}: shows every sheet, steps and plays, and the legend lies over no note`, async () => {
-    const file = join(folder, `${kind}.html`);
-    writeFileSync(file, pageOf(samples[kind](), viewer));
-    const { page, troubles } = await openPage(browser, `${pathToFileURL(file).href}#frame=3`);
+    const { page, troubles } = await openPage(own.browser, `${own.write(kind, samples[kind]())}#frame=3`);
     await page.waitForSelector('.scene-holder[data-frame="3"]');
     await page.keyboard.press('ArrowRight');
     await page.waitForSelector('.scene-holder[data-frame="4"]');

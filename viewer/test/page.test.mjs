@@ -1,39 +1,22 @@
 // The page as a reader meets it, opened from a file by a headless Chromium. Skipped with 77 where there is none.
 import assert from 'node:assert/strict';
-import { mkdtempSync, readFileSync, rmSync, writeFileSync } from 'node:fs';
-import { tmpdir } from 'node:os';
+import { readFileSync, writeFileSync } from 'node:fs';
 import { join } from 'node:path';
-import test, { after, before } from 'node:test';
+import test from 'node:test';
 import { pathToFileURL } from 'node:url';
-import { bundle } from '../build.mjs';
 import { findBrowser, openPage, skipIfMissing } from './browser.mjs';
+import { pageFiles } from './page_files.mjs';
 import { pageOf, sampleRun, samples } from './sample_page.mjs';
 
 const found = await findBrowser();
 skipIfMissing(found);
 
-const folder = mkdtempSync(join(tmpdir(), 'viewer-'));
-let browser;
-let viewer;
-before(async () => {
-  viewer = await bundle();
-  browser = await found.launch();
-});
-after(async () => {
-  await browser?.close();
-  rmSync(folder, { recursive: true, force: true });
-});
-
-/** The address of a page with this content. */
-function write(name, content) {
-  const file = join(folder, `${name}.html`);
-  writeFileSync(file, pageOf(content, viewer));
-  return pathToFileURL(file).href;
-}
+const own = pageFiles('page', found.launch);
+const { write } = own;
 
 /** Opens a page, lets `act` use it, and fails when the page wrote an error or asked for anything. */
 async function onPage(address, act, options = {}) {
-  const { page, troubles } = await openPage(options.browser ?? browser, address, options.context);
+  const { page, troubles } = await openPage(options.browser ?? own.browser, address, options.context);
   try {
     await page.waitForSelector('.scene-holder[data-frame]');
     await act(page);
@@ -651,7 +634,7 @@ test('a run without frames and a benchmark without runs have their page', async 
   });
   const { tables } = samples.benchmark();
   const content = { kind: 'benchmark', title: 'tables', parts: [], groups: [{ name: 'street', runs: [] }], tables, notes: ['runs left out'] };
-  const { page, troubles } = await openPage(browser, write('tables', content));
+  const { page, troubles } = await openPage(own.browser, write('tables', content));
   assert.match(await page.textContent('#app'), /Accuracy.*★0\.007.*runs left out/s);
   assert.deepEqual(troubles, []);
   await page.context().close();
@@ -678,7 +661,7 @@ test('a damaged scan is told, and the others stay', async () => {
 });
 
 test('without DecompressionStream the page says so and the rest works', async () => {
-  const { page, troubles } = await openPage(browser, 'about:blank');
+  const { page, troubles } = await openPage(own.browser, 'about:blank');
   await page.addInitScript(() => { delete window.DecompressionStream; });
   await page.goto(run());
   await page.waitForFunction(() => /lacks DecompressionStream/.test(document.querySelector('.status-note')?.textContent));
@@ -689,8 +672,8 @@ test('without DecompressionStream the page says so and the rest works', async ()
 
 test('without WebGL the page says so and the rest works', async () => {
   const address = run();
-  await browser.close();
-  browser = await found.launch(['--disable-gpu', '--disable-3d-apis']);
+  await own.browser.close();
+  own.browser = await found.launch(['--disable-gpu', '--disable-3d-apis']);
   await onPage(`${address}#frame=3`, async (page) => {
     await shown(page, 3);
     assert.match(await page.textContent('.scene-note'), /no WebGL/);
@@ -699,8 +682,8 @@ test('without WebGL the page says so and the rest works', async () => {
     await page.locator('[data-plot="iterations"] .chart-area').click({ position: { x: 60, y: 30 } });
     assert.notEqual(await frameOf(page), 4);
   });
-  await browser.close();
-  browser = await found.launch();
+  await own.browser.close();
+  own.browser = await found.launch();
 });
 
 test('everything can be reached by the keyboard, has a name, and shows its focus', async () => {
@@ -749,9 +732,9 @@ test('settings can be searched, the command copied, a link shared', async () => 
 
 test('a page of a newer schema keeps what it shows without the viewer', async () => {
   const address = write('newer', samples.run());
-  const file = join(folder, 'newer.html');
-  writeFileSync(file, pageOf(samples.run(), viewer).replace('"schema":1', '"schema":2'));
-  const { page } = await openPage(browser, address);
+  const file = join(own.folder, 'newer.html');
+  writeFileSync(file, pageOf(samples.run(), own.viewer).replace('"schema":1', '"schema":2'));
+  const { page } = await openPage(own.browser, address);
   assert.match(await page.textContent('#app'), /did not start: .*schema 2.*Without JavaScript this page shows its numbers/s);
   await page.context().close();
 });

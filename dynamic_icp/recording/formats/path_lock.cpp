@@ -29,15 +29,16 @@ int open_to_lock(const std::filesystem::path& path) {
 
 }  // namespace
 
-PathLock::PathLock(const std::filesystem::path& path, Wait wait) : descriptor_(open_to_lock(path)) {
+PathLock::PathLock(const std::filesystem::path& path, Wait wait, Kind kind) : descriptor_(open_to_lock(path)) {
   if (descriptor_ < 0) {
     return;
   }
   const auto give_up = std::chrono::steady_clock::now() + kLongestWait;
-  int result = ::flock(descriptor_, LOCK_EX | LOCK_NB);
+  const int operation = (kind == Kind::kAlone ? LOCK_EX : LOCK_SH) | LOCK_NB;
+  int result = ::flock(descriptor_, operation);
   while (result != 0 && errno == EWOULDBLOCK && wait == Wait::kYes && std::chrono::steady_clock::now() < give_up) {
     std::this_thread::sleep_for(kBetweenLooks);
-    result = ::flock(descriptor_, LOCK_EX | LOCK_NB);
+    result = ::flock(descriptor_, operation);
   }
   if (result != 0) {
     taken_ = errno == EWOULDBLOCK;

@@ -10,9 +10,10 @@ namespace dynamic_icp::formats {
 class PathLock {
  public:
   enum class Wait { kNo, kYes };
+  enum class Kind { kAlone, kWithOthers };  ///< with others that lock it so, too
 
   /// Throws DataError when it was to wait and another one holds the lock for longer than moving folders takes.
-  explicit PathLock(const std::filesystem::path& path, Wait wait = Wait::kNo);
+  explicit PathLock(const std::filesystem::path& path, Wait wait = Wait::kNo, Kind kind = Kind::kAlone);
   ~PathLock() { release(); }
   PathLock(const PathLock&) = delete;
   PathLock& operator=(const PathLock&) = delete;

@@ -8,16 +8,10 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/text_lines.hpp"
 
 namespace dynamic_icp::live {
 namespace {
-
-std::string lower_case(std::string_view text) {
-  std::string lower(text);
-  std::transform(lower.begin(), lower.end(), lower.begin(),
-                 [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; });
-  return lower;
-}
 
 bool is_address(const std::string& text, int family) {
   unsigned char parsed[sizeof(in6_addr)];
@@ -40,7 +34,7 @@ HostAndPort split(std::string_view host) {
   if (bracket != std::string_view::npos && name.ends_with(']')) {
     name = name.substr(1, name.size() - 2);
   }
-  parts.name = lower_case(name);
+  parts.name = formats::lower_case(name);
   if (colon != std::string_view::npos) {
     parts.port = host.substr(colon + 1);
   }
@@ -60,10 +54,10 @@ bool is_own_host(std::string_view host, const Access& access) {
 }
 
 bool is_permitted_origin(std::string_view origin, std::string_view host, const Access& access) {
-  const std::string lower = lower_case(origin);
-  return origin.empty() || lower == "http://" + lower_case(host) ||
+  const std::string lower = formats::lower_case(origin);
+  return origin.empty() || lower == "http://" + formats::lower_case(host) ||
          std::any_of(access.origins.begin(), access.origins.end(),
-                     [&](const std::string& permitted) { return lower == lower_case(permitted); });
+                     [&](const std::string& permitted) { return lower == formats::lower_case(permitted); });
 }
 
 void check(const Access& access) {

@@ -4,17 +4,13 @@
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
-#include <cstring>
 #include <string>
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::benchmark {
 namespace {
@@ -44,28 +40,23 @@ fs::path usable_folder(const fs::path& given) {
   return path;
 }
 
-int open_locked(const fs::path& path, FolderLock::Kind kind) {
-  const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0666);
-  if (descriptor < 0) {
-    throw DataError(fmt::format("{}: cannot create: {}", path.string(), std::strerror(errno)));
-  }
-  const int operation = kind == FolderLock::Kind::kAlone ? LOCK_EX : LOCK_SH;
-  if (::flock(descriptor, operation | LOCK_NB) != 0) {
-    const int reason = errno;
-    ::close(descriptor);
-    throw DataError(reason == EWOULDBLOCK
-                        ? fmt::format("{}: another benchmark is running in this folder", path.parent_path().string())
-                        : fmt::format("{}: cannot lock: {}", path.string(), std::strerror(reason)));
-  }
-  return descriptor;
+fs::path made_file(const fs::path& path) {
+  formats::OutputFile file(path);
+  file.close();
+  return path;
 }
 
 }  // namespace
 
 FolderLock::FolderLock(const fs::path& folder, const char* name, Kind kind)
-    : descriptor_(open_locked(folder / name, kind)) {}
-
-FolderLock::~FolderLock() { ::close(descriptor_); }
+    : lock_(made_file(folder / name), formats::PathLock::Wait::kNo, kind) {
+  if (lock_.taken()) {
+    throw DataError(fmt::format("{}: another benchmark is running in this folder", folder.string()));
+  }
+  if (!lock_.held()) {
+    throw DataError(fmt::format("{}: cannot be locked", (folder / name).string()));
+  }
+}
 
 BenchmarkFolder::BenchmarkFolder(const fs::path& path, FolderLock::Kind kind)
     : path_(usable_folder(path)), lock_(path_, kLockName, kind) {

@@ -6,21 +6,20 @@
 #include <string>
 #include <string_view>
 
+#include "dynamic_icp/recording/formats/path_lock.hpp"
+
 namespace dynamic_icp::benchmark {
 
-/// A file that processes hold while they work in its folder. The lock ends with the process, however that ends.
+/// A file that processes hold while they work in its folder.
 class FolderLock {
  public:
-  enum class Kind { kAlone, kWithOthers };
+  using Kind = formats::PathLock::Kind;
 
   /// Makes the file `name` in a folder that exists. Throws DataError when another process works there.
   FolderLock(const std::filesystem::path& folder, const char* name, Kind kind);
-  ~FolderLock();
-  FolderLock(const FolderLock&) = delete;
-  FolderLock& operator=(const FolderLock&) = delete;
 
  private:
-  int descriptor_ = -1;
+  formats::PathLock lock_;
 };
 
 /// The folder of a benchmark, held as long as the object lives: by this process alone, or by processes that each run

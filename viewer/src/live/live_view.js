@@ -1,10 +1,10 @@
 // The scan that came last, where the sensor is, and the way so far: drawn when something new is there, and only then.
-import { Color, LinearSRGBColorSpace, Matrix4, Scene, WebGLRenderer } from 'three';
+import { Color, Scene } from 'three';
 import { colouring, quantile } from '../colour/colourings.js';
 import { rgb } from '../colour/maps.js';
 import { element } from '../dom.js';
 import { createCameraRig } from '../scene/camera_rig.js';
-import { openContext, poseMatrix } from '../scene/context.js';
+import { createRenderer, onNextFrame, poseMatrix } from '../scene/context.js';
 import { createLabels } from '../scene/labels.js';
 import { createObjects } from '../scene/objects.js';
 import { createOverlay } from '../scene/overlay.js';
@@ -14,7 +14,6 @@ import { createSegments } from '../scene/segments.js';
 import { createRings, createSensor } from '../scene/surroundings.js';
 import { cssColour, groundOf } from '../theme.js';
 
-const MOST_PIXELS_PER_POINT = 2;
 const POINTS_IN_SOFTWARE = 20000; // where the processor draws, which others need as well
 const LONGEST_ARROW = 40; // m
 const GROUND_SHARE = 0.05; // of the points are lower than the ground
@@ -37,11 +36,9 @@ function createWay(look, colourName) {
 /** @returns {object|null} null without WebGL */
 export function createLiveView(store) {
   const canvas = element('canvas', { class: 'scene', tabindex: 0, role: 'img', 'aria-label': 'Last scan and trajectory so far in 3D' });
-  const context = openContext(canvas);
+  const context = createRenderer(canvas);
   if (!context) return null;
-  const renderer = new WebGLRenderer({ canvas, context: context.gl });
-  renderer.outputColorSpace = LinearSRGBColorSpace; // colours go to the screen as they are
-  renderer.setPixelRatio(context.software ? 1 : Math.min(window.devicePixelRatio, MOST_PIXELS_PER_POINT));
+  const { renderer, software } = context;
 
   const labels = createLabels();
   const overlay = createOverlay();
@@ -63,16 +60,8 @@ export function createLiveView(store) {
   let heading = [0, 0]; // sum of the velocities so far, sensor frame
   let groundHeight = null;
   let ground = 'light';
-  let waiting = false;
 
-  function draw() {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => {
-      waiting = false;
-      drawNow();
-    });
-  }
+  const draw = onNextFrame(drawNow);
 
   function drawNow() {
     const { clientWidth: width, clientHeight: height } = holder;
@@ -163,7 +152,7 @@ export function createLiveView(store) {
       origin ??= next.pose.slice(0, 3);
       if (next.scan) {
         if (groundHeight === null && next.scan.count > 0) findGround(next.scan);
-        points.show(next.scan, next.scan.ids, context.software ? POINTS_IN_SOFTWARE : Infinity);
+        points.show(next.scan, next.scan.ids, software ? POINTS_IN_SOFTWARE : Infinity);
         points.object.matrix.copy(poseMatrix(next.scanPose, origin));
       }
       for (const object of atSensor) object.matrix.copy(poseMatrix(next.pose, origin));

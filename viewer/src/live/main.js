@@ -5,6 +5,7 @@ import '../style/panels.css';
 import { usualLimits } from '../colour/colourings.js';
 import { element } from '../dom.js';
 import { createLegend } from '../panels/legend.js';
+import { onNextFrame } from '../scene/context.js';
 import { createStore } from '../store.js';
 import { followTheme } from '../theme.js';
 import { connect } from './connection.js';
@@ -41,7 +42,6 @@ function start() {
   let pending = {}; // what came and is not yet drawn
   let warningTimer = 0;
   let plotTimer = 0;
-  let drawing = false;
 
   const fail = (text) => {
     clearTimeout(warningTimer);
@@ -67,8 +67,7 @@ function start() {
     if (wider.compensated > limits.compensated || wider.doppler > limits.doppler) store.set({ limits: wider });
   }
 
-  function drawPending() {
-    drawing = false;
+  const draw = onNextFrame(() => {
     if (store.state.paused) return;
     const { cloud, path, truth, objects, state } = pending;
     const pose = state && poses.get(state.stamp);
@@ -88,13 +87,7 @@ function start() {
     } catch (error) {
       fail(`a message cannot be read: ${error.message}`);
     }
-  }
-
-  function draw() {
-    if (drawing) return;
-    drawing = true;
-    requestAnimationFrame(drawPending);
-  }
+  });
 
   function takeState(stamp, message) {
     const value = decodeState(message);

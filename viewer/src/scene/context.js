@@ -1,5 +1,7 @@
 // What everything in 3D begins with.
-import { Matrix4, Quaternion, Vector3 } from 'three';
+import { LinearSRGBColorSpace, Matrix4, Quaternion, Vector3, WebGLRenderer } from 'three';
+
+const MOST_PIXELS_PER_POINT = 2;
 
 /** Whether lines are drawn by the processor: then every pixel counts. */
 function isSoftware(gl) {
@@ -8,13 +10,36 @@ function isSoftware(gl) {
 }
 
 /** A WebGL 2 context on a canvas and whether the processor draws, or null. */
-export function openContext(canvas) {
+function openContext(canvas) {
   const probe = document.createElement('canvas').getContext('webgl2');
   if (!probe) return null;
   const software = isSoftware(probe);
   probe.getExtension('WEBGL_lose_context')?.loseContext();
   const gl = canvas.getContext('webgl2', { alpha: false, antialias: !software, powerPreference: 'high-performance' });
   return gl && { gl, software };
+}
+
+/** @returns {{renderer: WebGLRenderer, software: boolean} | null} null without WebGL 2; software: the processor draws */
+export function createRenderer(canvas) {
+  const context = openContext(canvas);
+  if (!context) return null;
+  const renderer = new WebGLRenderer({ canvas, context: context.gl });
+  renderer.outputColorSpace = LinearSRGBColorSpace; // colours go to the screen as they are
+  renderer.setPixelRatio(context.software ? 1 : Math.min(window.devicePixelRatio, MOST_PIXELS_PER_POINT));
+  return { renderer, software: context.software };
+}
+
+/** What draws once before the screen is shown next, however often it is called until then. */
+export function onNextFrame(drawNow) {
+  let waiting = false;
+  return () => {
+    if (waiting) return;
+    waiting = true;
+    requestAnimationFrame(() => {
+      waiting = false;
+      drawNow();
+    });
+  };
 }
 
 /** Of a pose [x y z qx qy qz qw], about the origin that is drawn around. */

@@ -1,5 +1,5 @@
 // The view: puts the scene together and draws it whenever something changed, and only then.
-import { Color, LinearSRGBColorSpace, Matrix4, Scene, Vector3, WebGLRenderer } from 'three';
+import { Color, Matrix4, Scene, Vector3 } from 'three';
 import { canInflate } from '../bytes.js';
 import { colouring, quantile } from '../colour/colourings.js';
 import { mapStops } from '../colour/maps.js';
@@ -12,7 +12,7 @@ import { groupAt, runAt, runsShown, sameScan } from '../session.js';
 import { headingInWorld, nearestOf, objectAt, tracksOf, yawOf } from '../tracks.js';
 import { cssColour, groundOf } from '../theme.js';
 import { createCameraRig } from './camera_rig.js';
-import { openContext, poseMatrix } from './context.js';
+import { createRenderer, onNextFrame, poseMatrix } from './context.js';
 import { createLabels } from './labels.js';
 import { createObjects } from './objects.js';
 import { createOverlay } from './overlay.js';
@@ -26,7 +26,6 @@ import { createMap, createRings, createSensor } from './surroundings.js';
 const KEPT_POINTS = 4e6; // decoded, 29 bytes each
 const KEPT_SCANS = [8, 64]; // but not fewer and not more
 const READ_AHEAD = 4;
-const MOST_PIXELS_PER_POINT = 2;
 // Where the processor draws: so many points while something moves, all of them once it rests (ms).
 const POINTS_IN_MOTION = 8000;
 const REST = 180;
@@ -55,11 +54,9 @@ function boundsOf(runs, origin) {
  */
 export function createView(report, store) {
   const canvas = element('canvas', { class: 'scene', tabindex: 0, role: 'img', 'aria-label': 'Scan and trajectory in 3D' });
-  const context = openContext(canvas);
+  const context = createRenderer(canvas);
   if (!context) return null;
-  const renderer = new WebGLRenderer({ canvas, context: context.gl });
-  renderer.outputColorSpace = LinearSRGBColorSpace; // colours go to the screen as they are
-  renderer.setPixelRatio(context.software ? 1 : Math.min(window.devicePixelRatio, MOST_PIXELS_PER_POINT));
+  const { renderer, software } = context;
 
   const several = report.kind !== 'run'; // then all of the trajectories are what one looks at
   const labels = createLabels();
@@ -92,7 +89,6 @@ export function createView(report, store) {
   let groundHeight = -1.8;
   let current = { ticket: 0, frame: 0, place: null, scan: null, objects: [], scanObjects: [], run: null };
   let tickets = 0;
-  let waiting = false;
   let eyeTimer = 0;
   let restTimer = 0;
   let drawn = null; // the scan in the buffers, and whether it is all of it
@@ -102,14 +98,7 @@ export function createView(report, store) {
     eyeTimer = setTimeout(() => store.set({ eye: rig.eye() }), 120);
   };
 
-  function draw() {
-    if (waiting) return;
-    waiting = true;
-    requestAnimationFrame(() => {
-      waiting = false;
-      drawNow();
-    });
-  }
+  const draw = onNextFrame(drawNow);
 
   function drawNow() {
     const { clientWidth: width, clientHeight: height } = holder;
@@ -155,7 +144,7 @@ export function createView(report, store) {
   /** Puts the points of the current scan into the buffers: fewer while something moves and that would be slow. */
   function showPoints(inMotion) {
     const { scan, scanObjects } = current;
-    const most = context.software && inMotion && scan ? POINTS_IN_MOTION : Infinity;
+    const most = software && inMotion && scan ? POINTS_IN_MOTION : Infinity;
     const all = !scan || scan.count <= most;
     if (drawn?.scan !== scan || drawn.all !== all) points.show(scan, scanObjects.map(({ id }) => id), most);
     drawn = { scan, all };
