@@ -221,7 +221,7 @@ std::string read_text_file(const std::filesystem::path& path) {
 
 void for_each_text_line(const std::filesystem::path& path,
                         const std::function<void(std::string_view line, std::size_t number)>& use) {
-  constexpr std::size_t kBlockBytes = std::size_t{1} << 20U;
+  constexpr std::size_t kReadBytes = std::size_t{1} << 20U;
   const Descriptor file = open_to_read(path);
   std::string buffer;
   std::size_t used = 0;  // bytes of the buffer that were read and not used yet
@@ -235,9 +235,9 @@ void for_each_text_line(const std::filesystem::path& path,
   };
   for (bool at_end = false; !at_end;) {
     refuse_longer(path, used, kMaxTextBytes);
-    with_memory_for(path, [&] { buffer.resize(used + kBlockBytes); });
+    with_memory_for(path, [&] { buffer.resize(used + kReadBytes); });
     const std::size_t got = read_into(buffer, used, file.number, path);
-    at_end = got < kBlockBytes;
+    at_end = got < kReadBytes;
     std::string_view rest = std::string_view(buffer).substr(0, used + got);
     if (number == 0) {
       refuse_other_kind(path, rest, FileKind::kUnknown);

@@ -95,13 +95,13 @@ YAML::Node parse_document(std::string_view text, const std::filesystem::path& or
 }
 
 void SettingsReader::read(const YAML::Node& key_node, const YAML::Node& value, const std::string& key, int depth) {
-  constexpr int kDeepest = 32;           // an alias may make a map its own part
+  constexpr int kMaxDepth = 32;          // an alias may make a map its own part
   constexpr std::size_t kMost = 10'000;  // and aliases of aliases double their number with every line
   const std::string here = place(origin_, line_of(key_node));
   if (++visited_ > kMost) {
     throw UsageError(fmt::format("{}: more than {} keys, those of aliases counted each time", here, kMost));
   }
-  if (value.IsMap() && depth < kDeepest && (value.size() > 0 || holds_fields(key))) {
+  if (value.IsMap() && depth < kMaxDepth && (value.size() > 0 || holds_fields(key))) {
     for (const auto& entry : value) {
       const std::string name = entry.first.IsScalar() ? entry.first.Scalar() : "";
       read(entry.first, entry.second, key + "." + name, depth + 1);
