@@ -48,11 +48,14 @@ std::string LiveView::authority() const { return live::authority(address_, serve
 
 void LiveView::add(RawScan scan, odometry::Frame frame, double latency_ms) {
   const std::lock_guard lock(mutex_);
-  if (waiting_.size() >= kMaxScansWaiting) {
+  waiting_.push_back({std::move(scan), std::move(frame), latency_ms, {}});
+  if (waiting_.size() > kMaxScansWaiting) {
+    formats::Trajectory poses = std::move(waiting_.front().left_out);
+    poses.push_back({waiting_.front().frame.stamp, waiting_.front().frame.T_world_sensor});
     waiting_.pop_front();
+    waiting_.front().left_out = std::move(poses);
     ++left_out_;
   }
-  waiting_.push_back({std::move(scan), std::move(frame), latency_ms});
   changed_.notify_one();
 }
 
@@ -81,6 +84,9 @@ void LiveView::make_messages() {
     waiting_.pop_front();
     lock.unlock();
     try {
+      for (const formats::StampedPose& pose : next.left_out) {
+        messages_.pass(pose);
+      }
       messages_.add(next.scan, next.frame, next.latency_ms);
       server_.tell_time(next.frame.stamp);
     } catch (const DataError&) {

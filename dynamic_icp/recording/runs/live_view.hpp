@@ -22,7 +22,8 @@ namespace dynamic_icp::runs {
 /// Sends the messages of a run (run_messages.hpp) to all who watch it (live/live_server.hpp).
 ///
 /// The run hands over what it has done with; messages are made on a thread of low priority. Where that falls behind, or
-/// a client does, scans are left out of the view; the run waits for nobody, and what it computes is the same bits.
+/// a client does, scans are left out of the view, but for their poses; the run waits for nobody, and what it computes
+/// is the same bits.
 class LiveView {
  public:
   static constexpr std::size_t kMaxScansWaiting = 2;
@@ -50,6 +51,7 @@ class LiveView {
     RawScan scan;
     odometry::Frame frame;
     double latency_ms;
+    formats::Trajectory left_out;  ///< the poses of the scans just before it that nobody sees
   };
   void make_messages();
 

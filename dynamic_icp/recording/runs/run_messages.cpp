@@ -167,9 +167,16 @@ void RunMessages::add(const RawScan& raw, const odometry::Frame& frame, double l
   sink_.write(RunTopic::kTransforms, frame.stamp, messages::encode_transforms({&transform, 1}));
   write_points(raw, frame);
   write_path(frame);
-  write_truth(frame);
+  write_truth({frame.stamp, frame.T_world_sensor});
   write_objects(frame);
   write_state(frame, latency_ms);
+  ++scans_;
+}
+
+void RunMessages::pass(const formats::StampedPose& pose) {
+  write_truth(pose);
+  remember_pose(pose.T_world_sensor);
+  thin_poses();
   ++scans_;
 }
 
@@ -199,40 +206,49 @@ void RunMessages::write_points(const RawScan& raw, const odometry::Frame& frame)
 /// A message holds the whole path until then. So that messages stay small, the longer it is the fewer of its poses are
 /// in them.
 void RunMessages::write_path(const odometry::Frame& frame) {
-  if (scans_ % pose_stride_ == 0) {
-    poses_.push_back(frame.T_world_sensor);
-  }
+  remember_pose(frame.T_world_sensor);
   std::vector<Eigen::Isometry3d> path = poses_;
   if (scans_ % pose_stride_ != 0) {
     path.push_back(frame.T_world_sensor);
   }
   sink_.write(RunTopic::kPath, frame.stamp, messages::encode_poses({frame.stamp, kRecordedWorld}, path));
-  if (poses_.size() >= kMaxPathPoses) {
-    for (std::size_t k = 0; 2 * k < poses_.size(); ++k) {
-      poses_[k] = poses_[2 * k];
-    }
-    poses_.resize((poses_.size() + 1) / 2);
-    pose_stride_ *= 2;
+  thin_poses();
+}
+
+void RunMessages::remember_pose(const Eigen::Isometry3d& T_world_sensor) {
+  if (scans_ % pose_stride_ == 0) {
+    poses_.push_back(T_world_sensor);
   }
 }
 
+void RunMessages::thin_poses() {
+  if (poses_.size() < kMaxPathPoses) {
+    return;
+  }
+  for (std::size_t k = 0; 2 * k < poses_.size(); ++k) {
+    poses_[k] = poses_[2 * k];
+  }
+  poses_.resize((poses_.size() + 1) / 2);
+  pose_stride_ *= 2;
+}
+
 /// Once, as soon as a scan has a pose of the ground truth.
-void RunMessages::write_truth(const odometry::Frame& frame) {
+void RunMessages::write_truth(const formats::StampedPose& pose) {
   if (truth_.empty() || T_world_truth_) {
     return;
   }
-  const std::optional<Eigen::Isometry3d> pose =
-      formats::pose_at(truth_, frame.stamp, evaluation::AssociationConfig{}.max_gap_s);
-  if (!pose) {
+  const std::optional<Eigen::Isometry3d> T_truth_sensor =
+      formats::pose_at(truth_, pose.stamp, evaluation::AssociationConfig{}.max_gap_s);
+  if (!T_truth_sensor) {
     return;
   }
-  T_world_truth_ = frame.T_world_sensor * pose->inverse();
+  T_world_truth_ = pose.T_world_sensor * T_truth_sensor->inverse();
   const std::size_t stride = 1 + (truth_.size() - 1) / kMaxTruthPoses;
   std::vector<Eigen::Isometry3d> path;
   for (std::size_t k = 0; k < truth_.size(); k += stride) {
     path.push_back(*T_world_truth_ * truth_[k].T_world_sensor);
   }
-  sink_.write(RunTopic::kTruthPath, frame.stamp, messages::encode_poses({frame.stamp, kRecordedWorld}, path));
+  sink_.write(RunTopic::kTruthPath, pose.stamp, messages::encode_poses({pose.stamp, kRecordedWorld}, path));
 }
 
 void RunMessages::write_objects(const odometry::Frame& frame) {

@@ -65,10 +65,15 @@ class RunMessages {
   /// `latency_ms`: see OdometryState. Throws DataError when the stamp is before 1970.
   void add(const RawScan& raw, const odometry::Frame& frame, double latency_ms);
 
+  /// For a scan that is left out, in place of `add`: only the paths, now and later, are as if it had been added.
+  void pass(const formats::StampedPose& pose);
+
  private:
   void write_points(const RawScan& raw, const odometry::Frame& frame);
   void write_path(const odometry::Frame& frame);
-  void write_truth(const odometry::Frame& frame);
+  void remember_pose(const Eigen::Isometry3d& T_world_sensor);
+  void thin_poses();
+  void write_truth(const formats::StampedPose& pose);
   void write_objects(const odometry::Frame& frame);
   void write_state(const odometry::Frame& frame, double latency_ms);
 
