@@ -8,10 +8,13 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/config_file.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/point_table.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
+#include "dynamic_icp/recording/runs/calibration_file.hpp"
 
 #include "testing/bags_by_hand.hpp"
 #include "testing/db3_by_hand.hpp"
@@ -111,6 +114,7 @@ class Seeds {
         R"("b","reference_frame":"a","dimensions":{"x":1,"y":2,"z":3},"pose":{"translation":{"x":1,"y":2,"z":3},)"
         R"("rotation":{"w":1,"x":0,"y":0,"z":0}},"linear_velocity":{"x":1,"y":2,"z":3},"class":"car"}]}]})");
     write_texts();
+    write_settings();
     write_bags();
     write_messages();
   }
@@ -151,6 +155,26 @@ class Seeds {
     write("mcap", by_hand::mcap_file(channels, messages, layout));
     formats::make_folder(folder_ / "db3");
     by_hand::write_db3(folder_ / "db3" / "seed", channels, messages, "PRAGMA page_size = 512;");
+  }
+
+  /// The first byte says which file it is, see settings.cpp.
+  void write_settings() {
+    write("settings",
+          "0description: two roads\nformat: hercules\nlidars: [front, 'rear']\nsequences:\n  - name: bridge-01\n"
+          "    folders: [Bridge/01_Day, \"other\"]\n  - {name: b, folders: [c]}\n");
+    write("settings", "1" + runs::calibration_text({}));
+    for (std::size_t k = 0; k < odometry::pipelines().size(); ++k) {
+      odometry::Config config = odometry::pipelines()[k].config;
+      const auto kind = static_cast<char>('0' + odometry::pipelines().size() * 2 + k);
+      write("settings", kind + formats::config_yaml(fields(config)));
+    }
+    write("settings", "7preprocess:\n  voxel: {voxel_size_m: 0.5}\ntracking.coast_s: &a 1\n");
+    write("live", R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":1,"channelId":4294967295}]})");
+    write("live", R"({"op":"unsubscribe","subscriptionIds":[0,1]})");
+    for (const char* header : {"foxglove.sdk.v1, foxglove.websocket.v1", "localhost:8765", "[::1]:8765",
+                               "http://127.0.0.1:8765", "https://app.foxglove.dev"}) {
+      write("live", header);
+    }
   }
 
   /// The first byte says which text it is, see texts.cpp.

@@ -1,0 +1,89 @@
+#!/usr/bin/env python3
+"""What fuzzing has tried so far, as a table: executions and findings of each target as scripts/fuzz.sh notes them in
+build-fuzz, and how many lines of the readers the inputs it kept reach (a build of its own by clang, build-coverage).
+
+usage: scripts/fuzz_table.py [TARGET...]
+"""
+
+import json
+import pathlib
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+RESULTS = ROOT / "build-fuzz"
+BUILD = ROOT / "build-coverage"
+
+# What each target is there for: sources under dynamic_icp, by the beginnings of their names.
+READERS = {
+    "npy": ["recording/formats/npy"],
+    "npz": ["recording/formats/npz"],
+    "pcd": ["recording/formats/pcd_read", "recording/formats/pcd_header"],
+    "ply": ["recording/formats/ply"],
+    "tum": ["recording/formats/tum"],
+    "xyzd": ["recording/formats/xyzd_bin"],
+    "records": ["recording/datasets/record_guess"],
+    "aevascenes": ["recording/datasets/aevascenes_sequence"],
+    "columns": ["recording/datasets/column_file", "recording/datasets/column_scan"],
+    "csv": ["recording/formats/csv", "recording/datasets/pose_file"],
+    "texts": ["recording/datasets/calibration"],
+    "rosbag": ["recording/bags/ros1_"],
+    "mcap": ["recording/bags/mcap_file", "recording/bags/mcap_records"],
+    "db3": ["recording/bags/sqlite_bag"],
+    "messages": ["recording/messages/" + name
+                 for name in ("messages", "cloud_columns", "ros_messages", "foxglove_protobuf", "foxglove_json",
+                              "wire_cursor", "protobuf_cursor")],
+    "settings": ["recording/formats/config_file", "recording/formats/yaml_", "recording/runs/calibration_file",
+                 "tools/benchmark/manifest"],
+    "live": ["recording/live/access", "recording/live/protocol"],
+    "scans": ["method/"],
+}
+
+
+def run(*command, **options):
+    return subprocess.run([str(word) for word in command], check=True, text=True, **options)
+
+
+def tried(target):
+    """Executions and findings over all runs of scripts/fuzz.sh."""
+    rows = [line.split("\t") for line in (RESULTS / "executions.tsv").read_text().splitlines()]
+    return sum(int(row[1]) for row in rows if row[0] == target), len(list((RESULTS / "findings").glob(f"{target}-*")))
+
+
+def covered_lines(target):
+    """Lines of the readers that are reached, and all that have code."""
+    program = BUILD / "fuzz" / f"fuzz_{target}"
+    raw, data = BUILD / f"{target}.profraw", BUILD / f"{target}.profdata"
+    inputs = [folder for folder in (RESULTS / "corpus" / target, RESULTS / "seeds" / target) if folder.is_dir()]
+    run(program, "-runs=0", *inputs, env={"LLVM_PROFILE_FILE": str(raw)}, stderr=subprocess.DEVNULL)
+    run("llvm-profdata", "merge", "-sparse", raw, "-o", data)
+    export = json.loads(run("llvm-cov", "export", "-summary-only", f"-instr-profile={data}", program,
+                            stdout=subprocess.PIPE).stdout)
+    reached = lines = 0
+    for file in export["data"][0]["files"]:
+        name = file["filename"].partition(f"{ROOT}/dynamic_icp/")[2]
+        if any(name.startswith(reader) for reader in READERS[target]):
+            reached += file["summary"]["lines"]["covered"]
+            lines += file["summary"]["lines"]["count"]
+    return reached, lines
+
+
+def main():
+    targets = sys.argv[1:] or list(READERS)
+    if unknown := [target for target in targets if target not in READERS]:
+        sys.exit(f"unknown target '{unknown[0]}'; known are: {', '.join(READERS)}")
+    run("cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_COMPILER=clang++",
+        "-DCMAKE_CXX_FLAGS_DEBUG=-O1", "-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping",
+        "-DCMAKE_UNITY_BUILD=ON", "-DDYNAMIC_ICP_BUILD_FUZZERS=ON", "-DDYNAMIC_ICP_PRECOMPILED_HEADERS=OFF",
+        stdout=subprocess.DEVNULL)
+    run("cmake", "--build", BUILD, "--target", *(f"fuzz_{target}" for target in targets), stdout=subprocess.DEVNULL)
+    print("| target | executions | findings | lines reached |")
+    print("|---|---|---|---|")
+    for target in targets:
+        executions, findings = tried(target)
+        reached, lines = covered_lines(target)
+        print(f"| {target} | {executions:,} | {findings} | {reached} of {lines} ({100 * reached / lines:.0f} %) |")
+
+
+if __name__ == "__main__":
+    main()
