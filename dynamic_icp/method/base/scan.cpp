@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp {
 namespace {
@@ -220,6 +221,11 @@ Scan Scan::select(std::span<const std::uint32_t> rows) const {
   select(channels_.intensity, result.channels_.intensity);
   select(channels_.return_number, result.channels_.return_number);
   return result;
+}
+
+void Scan::state(StateArchive& archive) {
+  archive(stamp_, doppler_kind_, points_, directions_, doppler_, times_, records_, channels_.sensor, channels_.line,
+          channels_.face, channels_.intensity, channels_.return_number, mountings_);
 }
 
 }  // namespace dynamic_icp

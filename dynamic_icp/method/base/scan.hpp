@@ -18,6 +18,8 @@
 
 namespace dynamic_icp {
 
+class StateArchive;
+
 /// The set P_t of the paper, Eq. (1): points p_i, lines of sight u_i and Doppler velocities s_i of one scan, with the
 /// time each was measured and the record of the file it came from.
 ///
@@ -90,6 +92,9 @@ class Scan {
 
   /// Whether several sensors measured the points, each from a known place.
   [[nodiscard]] bool is_of_rig() const { return !mountings_.empty(); }
+
+  /// All of it.
+  void state(StateArchive& archive);
 
  private:
   template <class Visit>

@@ -17,6 +17,10 @@
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 #include "dynamic_icp/method/spatial/key_numbers.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::mapping {
 
 /// A plane of the map under its number.
@@ -70,6 +74,8 @@ class PlaneMap {
 
   /// Forgets everything but how far ranges err.
   void clear();
+
+  void state(StateArchive& archive);
 
  private:
   static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::odometry {
 
@@ -24,5 +25,7 @@ void AdaptiveThreshold::observe(const Eigen::Isometry3d& T_predicted_registered,
 double AdaptiveThreshold::sigma_m() const {
   return has_moved_ && count_ > 0 ? std::sqrt(sum_of_squares_ / static_cast<double>(count_)) : initial_m_;
 }
+
+void AdaptiveThreshold::state(StateArchive& archive) { archive(has_moved_, sum_of_squares_, count_); }
 
 }  // namespace dynamic_icp::odometry

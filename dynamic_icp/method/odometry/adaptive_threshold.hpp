@@ -6,6 +6,10 @@
 
 #include <Eigen/Geometry>
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::odometry {
 
 /// How far the points at `max_range_m` are moved by the motion T at most, in metres: by its translation and by the
@@ -27,6 +31,8 @@ class AdaptiveThreshold {
   void observe(const Eigen::Isometry3d& T_predicted_registered, double distance_from_first_m);
 
   [[nodiscard]] double sigma_m() const;
+
+  void state(StateArchive& archive);
 
  private:
   double initial_m_;

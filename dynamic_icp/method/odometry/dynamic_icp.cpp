@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/dynamic_icp.hpp"
 
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/dynamics/prediction.hpp"
 #include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
@@ -171,6 +172,25 @@ std::vector<std::int32_t> DynamicIcp::cluster(const Scan& scan, const std::vecto
     labels[rows[k]] = clusters.labels[k];
   }
   return labels;
+}
+
+void DynamicIcp::state(StateArchive& archive) {
+  archive(stream_, by_geometry_, published_);
+  bool is_there = last_ != nullptr;
+  archive(is_there);
+  if (!is_there) {
+    last_.reset();
+    return;
+  }
+  if (!last_) {
+    last_ = std::make_unique<Reference>();
+  }
+  archive(last_->scan, last_->is_dynamic, last_->velocity_sensor, last_->T_world_sensor);
+  archive.each(last_->clusters, [&](dynamics::ObjectEstimate& cluster) {
+    archive(cluster.verdict, cluster.velocity_sensor, cluster.covariance, cluster.inlier_fraction,
+            cluster.smallest_singular_value, cluster.condition_number, cluster.members, cluster.centroid,
+            cluster.extent);
+  });
 }
 
 }  // namespace dynamic_icp::odometry

@@ -47,6 +47,8 @@ class DynamicIcp final : public Odometry {
   [[nodiscard]] Eigen::Isometry3d predicted_motion() const;
   [[nodiscard]] Eigen::Vector3d velocity_prior(const Frame& frame) const;
   [[nodiscard]] std::vector<std::int32_t> cluster(const Scan& scan, const std::vector<std::uint8_t>& is_dynamic) const;
+  [[nodiscard]] Config configuration() const override { return config_; }
+  void state(StateArchive& archive) override;
 
   PaperConfig config_;
   Workers workers_;

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/estimation/robust_kernel.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
@@ -171,5 +172,7 @@ void KissIcp::go_on_to(Frame& frame) {
   T_world_last_ = frame.T_world_sensor;
   frame.T_target_source = T_last_now_.inverse();
 }
+
+void KissIcp::state(StateArchive& archive) { archive(map_, threshold_, stream_, T_world_last_, T_last_now_); }
 
 }  // namespace dynamic_icp::odometry

@@ -50,6 +50,8 @@ class KissIcp final : public Odometry {
   void register_to_map(const Scan& source, const Eigen::Isometry3d& T_world_predicted, Frame& frame);
   void update_map(const Scan& points, const Eigen::Isometry3d& T_world_sensor);
   void go_on_to(Frame& frame);
+  [[nodiscard]] Config configuration() const override { return config_; }
+  void state(StateArchive& archive) override;
 
   KissIcpConfig config_;
   Workers workers_;

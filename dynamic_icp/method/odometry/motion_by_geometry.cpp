@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/motion_by_geometry.hpp"
 
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/registration/translation_search.hpp"
@@ -45,5 +46,7 @@ ego_motion::EgoVelocity MotionByGeometry::velocity(const Eigen::Vector3d& veloci
   }
   return ego;
 }
+
+void MotionByGeometry::state(StateArchive& archive) { archive(twist_); }
 
 }  // namespace dynamic_icp::odometry

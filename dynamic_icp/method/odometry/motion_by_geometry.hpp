@@ -11,6 +11,10 @@
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/registration/align.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::odometry {
 
 /// The motion of the sensor as alignments found it. Where its own motion was taken out of the Doppler before, no scan
@@ -34,6 +38,8 @@ class MotionByGeometry {
 
   /// `velocity_sensor` (m/s), which is that of the motion, where it is known; else at rest.
   [[nodiscard]] ego_motion::EgoVelocity velocity(const Eigen::Vector3d& velocity_sensor) const;
+
+  void state(StateArchive& archive);
 
  private:
   std::optional<Vector6d> twist_;  // log(T_target_source) / dt

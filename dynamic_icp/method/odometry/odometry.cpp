@@ -5,12 +5,45 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
+#include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/method/odometry/dynamic_icp.hpp"
 #include "dynamic_icp/method/odometry/kiss_icp.hpp"
 #include "dynamic_icp/method/odometry/scan_to_scan_icp.hpp"
 #include "dynamic_icp/method/odometry/window_odometry.hpp"
 
 namespace dynamic_icp::odometry {
+
+std::string Odometry::save() {
+  StateArchive archive;
+  all_state(archive);
+  return archive.take();
+}
+
+void Odometry::load(std::string_view bytes) {
+  StateArchive archive(bytes);
+  all_state(archive);
+  archive.end();
+}
+
+/// What must be the same comes first.
+void Odometry::all_state(StateArchive& archive) {
+  const auto agree = [&](std::string_view what, const std::string& own) {
+    std::string other = own;
+    archive(other);
+    if (other != own) {
+      throw DataError(fmt::format("the state was saved with {} {}, this is {}", what, other, own));
+    }
+  };
+  agree("version", std::string(version()));
+  Config config = configuration();
+  const auto* const icp = std::get_if<ScanToScanIcpConfig>(&config);
+  agree("pipeline", fmt::format("{}.{}", config.index(), icp != nullptr ? static_cast<int>(icp->geometry) : 0));
+  for (const ConfigField& field : fields(config)) {
+    agree(field.key, value_text(field));
+  }
+  state(archive);
+}
 
 bool needs_doppler(std::string_view method) { return method == "dynamic-icp" || method == "doppler-icp"; }
 

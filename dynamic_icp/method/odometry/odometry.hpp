@@ -14,6 +14,10 @@
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::odometry {
 
 /// A method over a stream of scans. The same scans give the same bits for any number of threads.
@@ -32,6 +36,19 @@ class Odometry {
 
   /// What was learned of the sensor so far; nothing where a method does not.
   [[nodiscard]] virtual std::optional<window::SensorCalibration> calibration() const { return std::nullopt; }
+
+  /// What it knows after the scans so far, in bytes. Another object of the same configuration and version that loads
+  /// them gives the same bits for the scans that follow.
+  [[nodiscard]] std::string save();
+
+  /// Goes on where `save` was called, in whatever state this one is. Throws DataError when the bytes are damaged, or
+  /// come from another version or configuration, which it names; the object is of no use then.
+  void load(std::string_view bytes);
+
+ private:
+  [[nodiscard]] virtual Config configuration() const = 0;
+  virtual void state(StateArchive& archive) = 0;
+  void all_state(StateArchive& archive);
 };
 
 /// What a method may know besides the scans.

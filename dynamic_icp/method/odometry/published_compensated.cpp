@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/published_compensated.hpp"
 
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/preprocess/voxel_grid.hpp"
 #include "dynamic_icp/method/registration/align.hpp"
@@ -44,5 +45,7 @@ registration::Alignment PublishedCompensated::align(const Scan& source, const Sc
   }
   return registration::align(source, target, of_static.T_target_source, config.registration, workers);
 }
+
+void PublishedCompensated::state(StateArchive& archive) { archive(T_target_source_); }
 
 }  // namespace dynamic_icp::odometry

@@ -10,6 +10,10 @@
 #include "dynamic_icp/method/registration/alignment.hpp"
 #include "dynamic_icp/method/registration/target.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::odometry {
 
 /// Preset `paper` with compensated Doppler as its authors ran it for their table on AevaScenes. Each pair begins with
@@ -21,6 +25,8 @@ class PublishedCompensated {
   /// `source`: static and predicted points; `source_static`, `target_static`: those that do not move.
   registration::Alignment align(const Scan& source, const Scan& source_static, const registration::Target& target,
                                 const Scan& target_static, const PaperConfig& config, const Workers& workers);
+
+  void state(StateArchive& archive);
 
  private:
   Eigen::Isometry3d T_target_source_ = Eigen::Isometry3d::Identity();  ///< of the static points, last

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {
@@ -48,6 +49,10 @@ FrameStatus ScanStream::obstacle(std::size_t points) const {
     return FrameStatus::kTooSoon;
   }
   return interval_s_ > config_.max_gap_s ? FrameStatus::kTimeGap : FrameStatus::kNotRun;
+}
+
+void ScanStream::state(StateArchive& archive) {
+  archive(first_usable_, last_usable_, last_, elapsed_s_, interval_s_, since_any_s_);
 }
 
 bool is_skipped(FrameStatus obstacle) {

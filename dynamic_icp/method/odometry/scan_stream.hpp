@@ -10,6 +10,10 @@
 #include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::odometry {
 
 /// The scans of a stream in their order: which of them can be aligned, and the times between them.
@@ -34,6 +38,8 @@ class ScanStream {
 
   /// The interval, but no longer than a motion is predicted ahead.
   [[nodiscard]] double prediction_time_s() const;
+
+  void state(StateArchive& archive);
 
  private:
   [[nodiscard]] FrameStatus obstacle(std::size_t points) const;

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
 #include "dynamic_icp/method/odometry/frame_steps.hpp"
 #include "dynamic_icp/method/odometry/stage_clock.hpp"
@@ -102,10 +103,7 @@ Frame ScanToScanIcp::process(const ScanView& raw) {
   }
 
   Scan points = T_vehicle_sensor_ ? scan.transformed(*T_vehicle_sensor_) : scan;
-  auto now = std::make_unique<Reference>(
-      Reference{config_.geometry == registration::GeometryTerm::kPointToPoint
-                    ? registration::PreparedTarget(std::move(points), workers_)
-                    : registration::PreparedTarget(std::move(points), config_.normals, workers_)});
+  auto now = std::make_unique<Reference>(Reference{prepared(std::move(points))});
   clock.finish(Stage::kNormals);
 
   if (can_align) {
@@ -124,6 +122,12 @@ Frame ScanToScanIcp::process(const ScanView& raw) {
   now->T_world_sensor = frame.T_world_sensor;
   last_ = std::move(now);
   return frame;
+}
+
+registration::PreparedTarget ScanToScanIcp::prepared(Scan points) const {
+  return config_.geometry == registration::GeometryTerm::kPointToPoint
+             ? registration::PreparedTarget(std::move(points), workers_)
+             : registration::PreparedTarget(std::move(points), config_.normals, workers_);
 }
 
 /// Deskews to the middle of the scan by the last motion; the frame tells it. Returns when the middle is, s after the
@@ -195,6 +199,30 @@ registration::Objective ScanToScanIcp::objective(DopplerKind kind, double dt_s) 
     objective.vehicle.sensor_vehicle = T_vehicle_sensor_->translation();
   }
   return objective;
+}
+
+Config ScanToScanIcp::configuration() const {
+  if (!doppler_icp_) {
+    return config_;
+  }
+  return *doppler_icp_;
+}
+
+/// Search tree and normals of the last scan are found again from its points.
+void ScanToScanIcp::state(StateArchive& archive) {
+  archive(stream_, T_vehicle_sensor_);
+  bool is_there = last_ != nullptr;
+  archive(is_there);
+  if (!is_there) {
+    last_.reset();
+    return;
+  }
+  Scan points = last_ ? last_->prepared.scan : Scan();
+  archive(points);
+  if (archive.reads()) {
+    last_ = std::make_unique<Reference>(Reference{prepared(std::move(points))});
+  }
+  archive(last_->T_world_sensor, last_->twist, last_->middle_s);
 }
 
 }  // namespace dynamic_icp::odometry

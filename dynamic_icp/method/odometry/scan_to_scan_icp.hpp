@@ -35,6 +35,9 @@ class ScanToScanIcp final : public Odometry {
   void align_to_last(const Reference& now, Frame& frame) const;
   [[nodiscard]] Eigen::Isometry3d predicted_motion() const;
   [[nodiscard]] registration::Objective objective(DopplerKind kind, double dt_s) const;
+  [[nodiscard]] registration::PreparedTarget prepared(Scan points) const;
+  [[nodiscard]] Config configuration() const override;
+  void state(StateArchive& archive) override;
 
   ScanToScanIcpConfig config_;
   std::optional<DopplerIcpConfig> doppler_icp_;        ///< of Doppler-ICP only

@@ -8,6 +8,7 @@
 
 #include "dynamic_icp/method/base/scan_limits.hpp"
 #include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/ego_motion/support_plane.hpp"
 #include "dynamic_icp/method/mapping/pose_search.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
@@ -324,6 +325,12 @@ void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) 
                               workers_, ego_.covariance);
   }
   describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, std::move(objects), workers_);
+}
+
+/// The scan at hand is none of it, but for the first one in a map.
+void WindowOdometry::state(StateArchive& archive) {
+  archive(mountings_, map_, estimator_, first_points_, tracker_, stream_, T_world_sensor_, stamp_s_, usual_match_,
+          is_map_bent_, is_map_renewed_, clear_scans_);
 }
 
 }  // namespace dynamic_icp::odometry

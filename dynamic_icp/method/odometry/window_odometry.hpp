@@ -78,6 +78,8 @@ class WindowOdometry final : public Odometry {
   void judge_points(const window::WindowScan& now);
   void track_objects(const window::WindowScan& now, Frame& frame);
   [[nodiscard]] motion::SweepMotion sweep_of(const window::WindowScan& now) const;
+  [[nodiscard]] Config configuration() const override { return config_; }
+  void state(StateArchive& archive) override;
 
   WindowOdometryConfig config_;
   Workers workers_;

@@ -7,6 +7,8 @@
 #include <numeric>
 #include <stdexcept>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
+
 namespace dynamic_icp::spatial {
 namespace {
 
@@ -78,10 +80,15 @@ void VoxelHashMap::remove_far(const Eigen::Vector3d& position, double max_distan
   if (kept != counts_.size()) {
     counts_.resize(kept);
     points_.resize(kept * capacity_);
-    voxels_.clear();
-    for (std::size_t row = 0; row < kept; ++row) {
-      voxels_.number_of(*cell_of(points_[row * capacity_]));
-    }
+    number_voxels();
+  }
+}
+
+/// By the first point of each.
+void VoxelHashMap::number_voxels() {
+  voxels_.clear();
+  for (std::size_t row = 0; row < counts_.size(); ++row) {
+    voxels_.number_of(*cell_of(points_[row * capacity_]));
   }
 }
 
@@ -145,6 +152,19 @@ double VoxelHashMap::squared_gap(const Eigen::Vector3d& query, const Cell& cell)
     sum += gap * gap;
   }
   return sum;
+}
+
+void VoxelHashMap::state(StateArchive& archive) {
+  archive(counts_);
+  points_.resize(counts_.size() * capacity_);
+  for (std::size_t row = 0; row < counts_.size(); ++row) {
+    for (std::uint32_t i = 0; i < counts_[row]; ++i) {
+      archive(points_[row * capacity_ + i]);
+    }
+  }
+  if (archive.reads()) {
+    number_voxels();
+  }
 }
 
 }  // namespace dynamic_icp::spatial

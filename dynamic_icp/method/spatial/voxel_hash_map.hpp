@@ -14,6 +14,10 @@
 #include "dynamic_icp/method/spatial/key_numbers.hpp"
 #include "dynamic_icp/method/spatial/neighbour.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::spatial {
 
 /// Points that come and go, sorted into cubic voxels: the local map of an odometry. A point p lies in the voxel
@@ -47,11 +51,14 @@ class VoxelHashMap {
   [[nodiscard]] std::size_t size() const;
   [[nodiscard]] bool empty() const { return counts_.empty(); }
 
+  void state(StateArchive& archive);
+
  private:
   using Cell = std::array<std::int32_t, 3>;
 
   [[nodiscard]] std::optional<Cell> cell_of(const Eigen::Vector3d& point) const;
   [[nodiscard]] double squared_gap(const Eigen::Vector3d& query, const Cell& cell) const;
+  void number_voxels();
 
   double voxel_size_m_;
   std::uint32_t capacity_;

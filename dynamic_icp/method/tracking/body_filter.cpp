@@ -10,6 +10,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "dynamic_icp/method/base/se3.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -220,5 +221,7 @@ void BodyFilter::turn_around() {
     P_.col(i).swap(P_.col(i + 1));
   }
 }
+
+void BodyFilter::state(StateArchive& archive) { archive(x_, P_, level_); }
 
 }  // namespace dynamic_icp::tracking

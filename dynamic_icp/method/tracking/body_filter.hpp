@@ -8,6 +8,10 @@
 #include "dynamic_icp/method/tracking/cluster_velocity.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::tracking {
 
 /// How motions change between scans: random walks of velocity and yaw rate, in units per square root of a second.
@@ -91,6 +95,8 @@ class BodyFilter {
   void turn_around();
 
   void set_level(const Eigen::Matrix3d& level) { level_ = level; }
+
+  void state(StateArchive& archive);
 
  private:
   using Row = Eigen::Matrix<double, 1, kStates>;

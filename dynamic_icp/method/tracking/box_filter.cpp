@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <numbers>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/tracking/size_prior.hpp"
 
 namespace dynamic_icp::tracking {
@@ -411,6 +412,21 @@ BoxEstimate BoxFilter::estimate() const {
     }
   }
   return estimate;
+}
+
+BoxFilter BoxFilter::blank() {
+  return BoxFilter(BodyFilter(BodyFilter::Vector::Zero(), BodyFilter::Matrix::Zero(), Eigen::Matrix3d::Identity()));
+}
+
+void BoxFilter::state(StateArchive& archive) {
+  archive(body_, has_heading_, least_, faces_, log_likelihood_, size_log_likelihood_, spread_mps_, signal_mps_);
+  for (std::optional<Interval>& seen : last_seen_) {
+    bool is_known = seen.has_value();
+    archive(is_known);
+    Interval interval = seen.value_or(Interval{});
+    archive(interval.low, interval.high);
+    seen = is_known ? std::optional(interval) : std::nullopt;
+  }
 }
 
 }  // namespace dynamic_icp::tracking

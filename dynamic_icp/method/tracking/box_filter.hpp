@@ -13,6 +13,10 @@
 #include "dynamic_icp/method/tracking/detection.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::tracking {
 
 /// A body as one hypothesis has it, world.
@@ -41,6 +45,9 @@ class BoxFilter {
   BoxFilter(const Detection& detection, std::optional<double> yaw_rad, double log_likelihood,
             const TrackConfig& config);
 
+  /// One of which nothing is known, for its state to be read.
+  static BoxFilter blank();
+
   /// Moves the state on by `dt_s` seconds, which may be negative.
   void predict(double dt_s, const TrackConfig& config);
 
@@ -63,8 +70,12 @@ class BoxFilter {
   /// Root mean square of the radial velocities of a rigid body that explains them best, m/s.
   [[nodiscard]] double signal_mps() const { return signal_mps_; }
 
+  void state(StateArchive& archive);
+
  private:
   struct Extent;
+
+  explicit BoxFilter(const BodyFilter& body) : body_(body), has_heading_(false) {}
 
   void correct_doppler(const Detection& detection, const TrackConfig& config);
   void correct_heading(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);

@@ -9,6 +9,7 @@
 #include <Eigen/Geometry>
 
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -130,6 +131,11 @@ Ground GroundHeights::below(const Eigen::Vector3d& lowest) const {
     result.offset_m.reset();
   }
   return result;
+}
+
+void GroundFilter::state(StateArchive& archive) {
+  archive.each(last_, [&](Plane& plane) { archive(plane.normal, plane.height_m); });
+  archive(next_, ground_.level, ground_.offset_m);
 }
 
 }  // namespace dynamic_icp::tracking

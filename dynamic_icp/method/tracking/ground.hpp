@@ -12,6 +12,10 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::tracking {
 
 /// What objects stand on.
@@ -33,9 +37,11 @@ class GroundFilter {
 
   [[nodiscard]] const Ground& ground() const { return ground_; }
 
+  void state(StateArchive& archive);
+
  private:
   struct Plane {
-    Eigen::Vector3d normal;
+    Eigen::Vector3d normal = Eigen::Vector3d::Zero();
     double height_m = 0.0;  ///< of the sensor above it
   };
 

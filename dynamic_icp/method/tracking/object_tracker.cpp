@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/tracking/track_merging.hpp"
 
 namespace dynamic_icp::tracking {
@@ -467,6 +468,15 @@ TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sens
   object.scans_seen = entry.seen;
   object.members = entry.members;
   return object;
+}
+
+/// What tracks predict is computed from their states.
+void ObjectTracker::state(StateArchive& archive) {
+  archive.each(entries_, Entry{0, Track::blank(), Track::blank()}, [&](Entry& entry) {
+    archive(entry.id, entry.track, entry.confirmed, entry.has_moved, entry.moved_s, entry.age, entry.seen,
+            entry.missed);
+  });
+  archive(ground_, next_id_, first_stamp_, last_stamp_, T_world_last_);
 }
 
 }  // namespace dynamic_icp::tracking

@@ -19,6 +19,10 @@
 #include "dynamic_icp/method/tracking/tracked_object.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::tracking {
 
 /// Follows moving things from scan to scan.
@@ -61,6 +65,9 @@ class ObjectTracker {
                                     std::span<const std::uint8_t> is_moving, const Eigen::Isometry3d& T_world_sensor,
                                     const std::optional<ego_motion::SupportPlane>& support, const Workers& workers,
                                     const Eigen::Matrix3d& ego_covariance = Eigen::Matrix3d::Zero());
+
+  /// What is known between two scans.
+  void state(StateArchive& archive);
 
  private:
   struct Entry;

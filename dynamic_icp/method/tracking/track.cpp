@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/tracking/size_prior.hpp"
 
 namespace dynamic_icp::tracking {
@@ -131,6 +132,11 @@ BoxEstimate Track::estimate() const {
   result.velocity_covariance = velocity / weights;
   result.centre_covariance = centre / weights;
   return result;
+}
+
+void Track::state(StateArchive& archive) {
+  archive.each(hypotheses_, BoxFilter::blank(), [&](BoxFilter& one) { archive(one); });
+  archive(best_, time_s_, detections_, has_sides_);
 }
 
 }  // namespace dynamic_icp::tracking

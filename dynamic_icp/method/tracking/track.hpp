@@ -9,6 +9,10 @@
 
 #include "dynamic_icp/method/tracking/box_filter.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::tracking {
 
 /// One object over time.
@@ -20,6 +24,9 @@ class Track {
  public:
   /// From a first detection with at least one point, in a scan `stamp_s` after any origin of time.
   Track(const Detection& detection, double stamp_s, const TrackConfig& config);
+
+  /// One of nothing, for its state to be read.
+  static Track blank() { return Track(); }
 
   /// Moves the state to `time_s`.
   void predict(double time_s, const TrackConfig& config);
@@ -34,7 +41,10 @@ class Track {
   /// The best hypothesis; its covariances hold the disagreement of the others.
   [[nodiscard]] BoxEstimate estimate() const;
 
+  void state(StateArchive& archive);
+
  private:
+  Track() = default;
   void add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config);
   [[nodiscard]] std::optional<double> heading_of_motion() const;
   [[nodiscard]] bool has_heading() const;
@@ -42,7 +52,7 @@ class Track {
 
   std::vector<BoxFilter> hypotheses_;
   std::size_t best_ = 0;
-  double time_s_;
+  double time_s_ = 0.0;
   int detections_ = 1;
   bool has_sides_ = false;  ///< long enough to show a heading, at any time
 };

@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
 
 namespace dynamic_icp::window {
@@ -207,6 +208,10 @@ DopplerCell DopplerCells::mean_of(std::size_t cell, const Scan& scan, const std:
     }
   }
   return mean;
+}
+
+void DopplerCells::state(StateArchive& archive) {
+  archive(noise_.range_edges_m, noise_.intensity_edges, noise_.variance);
 }
 
 }  // namespace dynamic_icp::window

@@ -13,6 +13,10 @@
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/spatial/cell_order.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::window {
 
 /// Tukey's kernel around the mean of a cell and around the motion, in standard deviations.
@@ -75,6 +79,9 @@ class DopplerCells {
   static std::uint16_t line_of(const Eigen::Vector3d& u);
 
   [[nodiscard]] const DopplerNoise& noise() const { return noise_; }
+
+  /// What was learned of the noise.
+  void state(StateArchive& archive);
 
  private:
   void find_bins(const Scan& scan, const Workers& workers);

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -76,6 +78,11 @@ double LearnedVariance::renew(double squares, double counts) {
       std::clamp((squares + followed_squares_) / (counts + followed_counts_) / variance_, 1.0 / kMaxChange, kMaxChange);
   variance_ = std::clamp(variance_ * ratio, min_variance_, max_variance_);
   return variance_ / before - 1.0;
+}
+
+void LearnedVariance::state(StateArchive& archive) {
+  archive(memory_, variance_, min_variance_, max_variance_, squares_, counts_, followed_squares_, followed_counts_,
+          next_squares_, next_counts_);
 }
 
 }  // namespace dynamic_icp::window

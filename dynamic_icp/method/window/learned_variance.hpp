@@ -2,6 +2,10 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::window {
 
 /// Mean and variance of what is known of an unknown.
@@ -50,6 +54,8 @@ class LearnedVariance {
   void follow(double variance, double counts);
 
   [[nodiscard]] double counts() const { return next_counts_; }  ///< unknowns seen, faded
+
+  void state(StateArchive& archive);
 
  private:
   double renew(double squares, double counts);

@@ -8,6 +8,8 @@
 #include <utility>
 #include <vector>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -211,5 +213,7 @@ void MotionPrior::keep() {
 Vector6d MotionPrior::jerk_variance() const { return values(jerk_); }
 
 Vector6d MotionPrior::vibration_variance() const { return gain_ * values(vibration_); }
+
+void MotionPrior::state(StateArchive& archive) { archive(jerk_, vibration_); }
 
 }  // namespace dynamic_icp::window

@@ -14,6 +14,10 @@
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
 #include "dynamic_icp/method/window/window_config.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::window {
 
 /// What is known of the motion before anything is measured. The coefficients of the trajectory are the sum c = s + v of
@@ -34,6 +38,8 @@ class MotionPrior {
   void learn(const SplineTrajectory& trajectory, std::size_t begin, std::size_t end, const Layout& layout,
              const RestFactor& factor);
   void keep();
+
+  void state(StateArchive& archive);
 
   [[nodiscard]] Vector6d jerk_variance() const;       ///< q, [rad/s^3; m/s^3] squared
   [[nodiscard]] Vector6d vibration_variance() const;  ///< of v, [rad; m] squared

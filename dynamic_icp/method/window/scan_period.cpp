@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::window {
 namespace {
@@ -78,5 +79,7 @@ std::optional<KnownValue> ScanPeriod::expected(double interval_s) const {
   }
   return KnownValue{*periods * period_s, *periods * *periods * residuals / (n - 2.0) / squares};
 }
+
+void ScanPeriod::state(StateArchive& archive) { archive(stamps_s_); }
 
 }  // namespace dynamic_icp::window

@@ -7,6 +7,10 @@
 
 #include "dynamic_icp/method/window/learned_variance.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::window {
 
 /// The regular period of a sensor's scans, by least squares over its last stamps. A lost scan leaves a gap of whole
@@ -17,6 +21,8 @@ class ScanPeriod {
   /// before as the stamps until then have it, a whole number of periods, and its variance, had it no variance of its
   /// own; nothing where too few stamps were seen or they follow no period.
   std::optional<KnownValue> add(double stamp_s);
+
+  void state(StateArchive& archive);
 
  private:
   [[nodiscard]] std::optional<KnownValue> expected(double interval_s) const;

@@ -7,6 +7,8 @@
 
 #include <Eigen/LU>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -173,5 +175,7 @@ SampledMotion::SampledMotion(const SplineTrajectory& trajectory, double first_s,
     omega_.push_back(at.omega);
   }
 }
+
+void SplineTrajectory::state(StateArchive& archive) { archive(first_, T_map_reference_, c_, v_); }
 
 }  // namespace dynamic_icp::window

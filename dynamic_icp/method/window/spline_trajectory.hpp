@@ -11,6 +11,10 @@
 
 #include "dynamic_icp/method/base/se3.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::window {
 
 /// Slices of a knot interval within which the sensor moves straight on: what is asked for each of many points is asked
@@ -78,6 +82,8 @@ class SplineTrajectory {
   [[nodiscard]] Vector6d jerk(std::size_t interval) const;
   /// d jerk / d c_{interval + k}, 1/s^3.
   [[nodiscard]] std::array<double, 4> jerk_weights() const;
+
+  void state(StateArchive& archive);
 
  private:
   double h_;

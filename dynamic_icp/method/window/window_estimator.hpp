@@ -27,6 +27,10 @@
 #include "dynamic_icp/method/window/window_config.hpp"
 #include "dynamic_icp/method/window/window_quadratic.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::window {
 
 /// What the estimator reads of a scan; all of it must outlive the call.
@@ -111,6 +115,9 @@ class WindowEstimator {
   [[nodiscard]] const std::optional<DopplerErrorField>& field() const { return field_; }
   [[nodiscard]] const Eigen::VectorXd& theta() const { return theta_; }
 
+  /// What is known between two scans.
+  void state(StateArchive& archive);
+
  private:
   /// Of all unknowns but theta.
   struct Problem {
@@ -168,6 +175,9 @@ class WindowEstimator {
 
   // window_calibration.cpp
   void check_calibration(std::size_t faces) const;
+
+  // window_state.cpp
+  void field_state(StateArchive& archive);
 
   // window_uses.cpp
   [[nodiscard]] Matrix6d covariance_of(const Eigen::MatrixXd& rows) const;

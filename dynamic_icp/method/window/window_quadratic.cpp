@@ -9,6 +9,8 @@
 
 #include <Eigen/Cholesky>
 
+#include "dynamic_icp/method/base/state_archive.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -192,6 +194,10 @@ void WindowQuadratic::walk(Eigen::Index begin, const Eigen::MatrixXd& W) {
   const Eigen::LLT<Eigen::MatrixXd> sum(A);
   const Eigen::MatrixXd Z = sum.matrixL().solve(Q_.block(begin, 0, n, layout_.head()));
   subtract(Z, sum.matrixL().solve(g_.segment(begin, n)));
+}
+
+void WindowQuadratic::state(StateArchive& archive) {
+  archive(layout_.field, layout_.coefficients, layout_.vibrates, Q_, g_);
 }
 
 }  // namespace dynamic_icp::window

@@ -9,6 +9,10 @@
 #include "dynamic_icp/method/window/doppler_terms.hpp"
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::window {
 
 /// 1/m^2 or 1/rad^2: keeps what nothing is known of solvable.
@@ -53,6 +57,8 @@ class WindowQuadratic {
 
   /// Some unknowns, from `begin` on, walk at random with the covariance W: Q <- (Q^-1 + W)^-1, the estimate stays.
   void walk(Eigen::Index begin, const Eigen::MatrixXd& W);
+
+  void state(StateArchive& archive);
 
  private:
   void mirror(Eigen::Index size);

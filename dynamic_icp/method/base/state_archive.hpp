@@ -1,0 +1,172 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <concepts>
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/base/stamp.hpp"
+
+namespace dynamic_icp {
+
+/// What an object remembers, as bytes, and back again.
+///
+/// One function of a class, `void state(StateArchive& archive)`, names what it remembers, `archive(a_, b_)`: it serves
+/// both directions, so that they cannot differ. Numbers keep all their bits. What is computed anew from the rest, or
+/// for each scan, is left out. The bytes are those of this machine and of this version of the program; a checksum at
+/// their end tells damaged ones.
+class StateArchive {
+ public:
+  /// Writes.
+  StateArchive() = default;
+
+  /// Reads `bytes`, which must outlive it. Throws DataError when they are not as they were written.
+  explicit StateArchive(std::string_view bytes);
+
+  [[nodiscard]] bool reads() const { return reads_; }
+
+  /// What was written, with its checksum.
+  [[nodiscard]] std::string take();
+
+  /// Throws DataError unless all was read.
+  void end() const;
+
+  /// Writes these values, or reads them. Throws DataError when there are no bytes left.
+  template <class... Values>
+  void operator()(Values&... values) {
+    (value(values), ...);
+  }
+
+  /// The same for the elements of a vector: as many copies of `blank` are made as there were, and `state_of(element)`
+  /// reads each.
+  template <class Element, class StateOf>
+  void each(std::vector<Element>& elements, const std::type_identity_t<Element>& blank, const StateOf& state_of) {
+    const std::size_t size = size_of(elements.size());
+    if (reads_) {
+      elements.assign(size, blank);
+    }
+    for (Element& element : elements) {
+      state_of(element);
+    }
+  }
+  template <class Element, class StateOf>
+  void each(std::vector<Element>& elements, const StateOf& state_of) {
+    each(elements, Element{}, state_of);
+  }
+
+ private:
+  template <class Value>
+  requires(std::is_arithmetic_v<Value> || std::is_enum_v<Value>) void value(Value& number) {
+    bytes(&number, sizeof number);
+  }
+
+  void value(bool& flag) {
+    std::uint8_t byte = flag ? 1 : 0;
+    bytes(&byte, 1);
+    flag = byte != 0;
+  }
+
+  void value(Stamp& stamp) { value(stamp.ns); }
+
+  void value(std::string& text) {
+    text.resize(size_of(text.size()));
+    bytes(text.data(), text.size());
+  }
+
+  template <class First, class Second>
+  void value(std::pair<First, Second>& both) {
+    value(both.first);
+    value(both.second);
+  }
+
+  template <class Element>
+  void value(std::optional<Element>& one) {
+    bool is_there = one.has_value();
+    value(is_there);
+    if (!is_there) {
+      one.reset();
+      return;
+    }
+    if (!one) {
+      one.emplace();
+    }
+    value(*one);
+  }
+
+  template <class Element, std::size_t size>
+  void value(std::array<Element, size>& elements) {
+    for (Element& element : elements) {
+      value(element);
+    }
+  }
+
+  template <class Element>
+  void value(std::vector<Element>& elements) {
+    elements.resize(size_of(elements.size()));
+    if constexpr (std::is_arithmetic_v<Element>) {
+      bytes(elements.data(), elements.size() * sizeof(Element));
+    } else {
+      for (Element& element : elements) {
+        value(element);
+      }
+    }
+  }
+
+  template <class Key, class Element>
+  void value(std::map<Key, Element>& elements) {
+    const std::size_t size = size_of(elements.size());
+    if (!reads_) {
+      for (auto& [key, element] : elements) {
+        Key copy = key;
+        value(copy);
+        value(element);
+      }
+      return;
+    }
+    elements.clear();
+    for (std::size_t i = 0; i < size; ++i) {
+      Key key{};
+      value(key);
+      value(elements[key]);
+    }
+  }
+
+  template <class Number, int rows, int columns, int options, int max_rows, int max_columns>
+  void value(Eigen::Matrix<Number, rows, columns, options, max_rows, max_columns>& matrix) {
+    if constexpr (rows == Eigen::Dynamic || columns == Eigen::Dynamic) {
+      const std::size_t height = size_of(static_cast<std::size_t>(matrix.rows()));
+      const std::size_t width = size_of(static_cast<std::size_t>(matrix.cols()), height);
+      matrix.resize(static_cast<Eigen::Index>(height), static_cast<Eigen::Index>(width));
+    }
+    bytes(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(Number));
+  }
+
+  void value(Eigen::Isometry3d& T) { value(T.matrix()); }
+
+  template <class Object>
+  requires(requires(Object& object, StateArchive& archive) { object.state(archive); }) void value(Object& object) {
+    object.state(*this);
+  }
+
+  /// Writes a number of elements, or reads one: no larger than the bytes that are left, `each` of one.
+  std::size_t size_of(std::size_t size, std::size_t each = 1);
+  void bytes(void* data, std::size_t size);
+
+  bool reads_ = false;
+  std::string written_;
+  std::string_view unread_;
+};
+
+}  // namespace dynamic_icp
