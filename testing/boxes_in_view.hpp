@@ -160,8 +160,9 @@ inline ego_motion::SupportPlane ground_from(const Eigen::Isometry3d& T_world_sen
 inline std::vector<TrackedObject> step(ObjectTracker& tracker, const View& view,
                                        const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity(),
                                        int threads = 1) {
-  return tracker.update(view.scan, view.radial, view.is_moving, T_world_sensor, ground_from(T_world_sensor),
-                        Workers(threads));
+  const auto objects = tracker.update(view.scan, view.radial, view.is_moving, T_world_sensor,
+                                      ground_from(T_world_sensor), Workers(threads));
+  return {objects.begin(), objects.end()};
 }
 
 inline std::vector<TrackedObject> confirmed(const std::vector<TrackedObject>& all) {

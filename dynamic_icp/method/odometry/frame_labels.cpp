@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/frame_labels.hpp"
 
-#include <utility>
-
 namespace dynamic_icp::odometry {
 namespace {
 
@@ -46,12 +44,12 @@ void describe_clusters(Frame& frame, const Scan& scan, const std::vector<std::ui
 }
 
 void describe_tracks(Frame& frame, const Scan& scan, const std::vector<std::uint8_t>& is_moving,
-                     std::span<const std::uint32_t> thinned, std::vector<tracking::TrackedObject> objects,
+                     std::span<const std::uint32_t> thinned, std::span<const tracking::TrackedObject> objects,
                      const Workers& workers) {
   workers.for_each(scan.size(), kLabelBlock,
                    [&](std::size_t row) { frame.labels[scan.records()[row]] = is_moving[row] != 0 ? -1 : 0; });
   std::vector<std::uint8_t> in_track(scan.size(), 0);
-  for (tracking::TrackedObject& object : objects) {
+  for (const tracking::TrackedObject& object : objects) {
     const bool is_confirmed = object.status == tracking::TrackStatus::kConfirmed;
     for (const std::uint32_t row : object.members) {
       in_track[row] = 1;
@@ -60,7 +58,7 @@ void describe_tracks(Frame& frame, const Scan& scan, const std::vector<std::uint
       }
     }
     if (is_confirmed) {
-      frame.tracked.push_back(std::move(object));
+      frame.tracked.push_back(object);
     }
   }
   for (const std::uint32_t row : thinned) {

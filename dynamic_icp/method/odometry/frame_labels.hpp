@@ -19,7 +19,7 @@ void describe_clusters(Frame& frame, const Scan& scan, const std::vector<std::ui
 
 /// From tracked objects, of which the confirmed ones become those of the frame. Counts over the `thinned` rows.
 void describe_tracks(Frame& frame, const Scan& scan, const std::vector<std::uint8_t>& is_moving,
-                     std::span<const std::uint32_t> thinned, std::vector<tracking::TrackedObject> objects,
+                     std::span<const std::uint32_t> thinned, std::span<const tracking::TrackedObject> objects,
                      const Workers& workers);
 
 }  // namespace dynamic_icp::odometry

@@ -315,7 +315,7 @@ motion::SweepMotion WindowOdometry::sweep_of(const window::WindowScan& now) cons
 }
 
 void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) {
-  std::vector<tracking::TrackedObject> objects;
+  std::span<const tracking::TrackedObject> objects;
   const motion::SweepMotion sweep = sweep_of(now);
   frame.twist = estimator_.twist();
   if (config_.track_objects) {
@@ -324,7 +324,7 @@ void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) 
     objects = tracker_.update(memory_.whole, memory_.radial, memory_.may_be_object, frame.T_world_sensor, support_,
                               workers_, ego_.covariance);
   }
-  describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, std::move(objects), workers_);
+  describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, objects, workers_);
 }
 
 /// The scan at hand is none of it, but for the first one in a map.

@@ -12,8 +12,14 @@ namespace dynamic_icp::spatial {
 /// The numbers [0, n) in disjoint sets, each known by one of its members. At first every number is alone.
 class DisjointSets {
  public:
-  explicit DisjointSets(std::size_t n) : parent_(n), size_(n, 1), count_(n) {
+  explicit DisjointSets(std::size_t n = 0) { reset(n); }
+
+  /// The numbers [0, n), each alone, in the memory of those before.
+  void reset(std::size_t n) {
+    parent_.resize(n);
     std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
+    size_.assign(n, 1);
+    count_ = n;
   }
 
   /// Number of sets.
@@ -50,7 +56,7 @@ class DisjointSets {
  private:
   std::vector<std::uint32_t> parent_;
   std::vector<std::uint32_t> size_;
-  std::size_t count_;
+  std::size_t count_ = 0;
 };
 
 }  // namespace dynamic_icp::spatial

@@ -108,19 +108,20 @@ void BoxFilter::predict(double dt_s, const TrackConfig& config) { body_.predict(
 void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
   body_.set_level(detection.ground.level);
   correct_doppler(detection, config);
-  std::vector<Vector3d> points = points_at_mean_time(detection, body_.velocity());
   if (has_heading_) {
-    correct_heading(points, detection, config);
-    points = points_at_mean_time(detection, body_.velocity());
+    DetectionMemory memory;
+    correct_heading(points_at_mean_time(detection, body_.velocity(), memory), detection, config);
   } else {
     log_likelihood_ += kLogHeading;
   }
-  correct_faces(points, detection, config);
+  DetectionMemory memory;
+  correct_faces(points_at_mean_time(detection, body_.velocity(), memory), detection, config);
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
+  DetectionMemory memory;
   const ClusterVelocity measured = fit_cluster_velocity(
-      detection.directions, radial_at_sensor(detection, body_.yaw_rate()), config.doppler_sigma_mps);
+      detection.directions, radial_at_sensor(detection, body_.yaw_rate(), memory), config.doppler_sigma_mps);
   spread_mps_ = measured.spread_mps;
   signal_mps_ = measured.signal_mps;
   // Roll and pitch of the body look like a vertical velocity, the more the farther it is.

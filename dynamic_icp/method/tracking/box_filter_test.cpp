@@ -98,8 +98,8 @@ struct Scene {
 
   Scene(const std::vector<MovingBox>& boxes, double time_s)
       : view(view_of(boxes, time_s, 0.0)), image(view.scan, Vector3d::Zero(), Workers(1)) {
-    detection = make_detection(view.scan, view.radial, rows_on(view, 0), SensorMotion{},
-                               GroundHeights({Eigen::Matrix3d::Identity(), -kSensorHeight_m}), &image);
+    make_detection(view.scan, view.radial, rows_on(view, 0), SensorMotion{},
+                   GroundHeights({Eigen::Matrix3d::Identity(), -kSensorHeight_m}), &image, detection);
   }
   Scene(const Scene&) = delete;
   Scene& operator=(const Scene&) = delete;

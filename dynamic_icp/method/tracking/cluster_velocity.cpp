@@ -5,12 +5,14 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory_resource>
 #include <vector>
 
 #include <Eigen/Eigenvalues>
 
 #include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/estimation/robust_kernel.hpp"
+#include "dynamic_icp/method/tracking/stack_memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -45,9 +47,10 @@ ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions
   for (const Eigen::Vector3d& u : directions) {
     mean += u;
   }
-  result.W = median({radial.begin(), radial.end()}) * mean.normalized();
-  std::vector<double> magnitudes(radial.size());
-  std::vector<double> sorted(radial.size());
+  StackMemory<8192> memory;  // enough for what make_detection takes of an object
+  std::pmr::vector<double> sorted(radial.begin(), radial.end(), memory.resource());
+  std::pmr::vector<double> magnitudes(radial.size(), memory.resource());
+  result.W = quantile_among(sorted, 0.5) * mean.normalized();
   for (int iteration = 0; iteration < kIterations; ++iteration) {
     for (std::size_t i = 0; i < radial.size(); ++i) {
       magnitudes[i] = std::abs(radial[i] - directions[i].dot(result.W));

@@ -6,22 +6,23 @@
 #include <cstddef>
 
 namespace dynamic_icp::tracking {
-namespace {
 
-constexpr std::size_t kMaxPoints = 500;
-
-}  // namespace
-
-Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
-                         const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view) {
-  Detection detection;
-  const std::size_t stride = std::max<std::size_t>(1, (rows.size() + kMaxPoints - 1) / kMaxPoints);
-  const std::size_t points = (rows.size() + stride - 1) / stride;
-  detection.points.reserve(points);
-  detection.directions.reserve(points);
-  detection.radial.reserve(points);
-  detection.times.reserve(points);
-  detection.levers.reserve(scan.is_of_rig() ? points : 0);
+void make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
+                    const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view,
+                    Detection& detection) {
+  const std::size_t stride = std::max<std::size_t>(1, (rows.size() + kMaxDetectionPoints - 1) / kMaxDetectionPoints);
+  // All at once, so that no later detection asks for memory.
+  detection.points.reserve(kMaxDetectionPoints);
+  detection.directions.reserve(kMaxDetectionPoints);
+  detection.radial.reserve(kMaxDetectionPoints);
+  detection.times.reserve(kMaxDetectionPoints);
+  detection.levers.reserve(scan.is_of_rig() ? kMaxDetectionPoints : 0);
+  detection.points.clear();
+  detection.directions.clear();
+  detection.radial.clear();
+  detection.times.clear();
+  detection.levers.clear();
+  detection.mean_time_s = 0.0;
   for (std::size_t i = 0; i < rows.size(); i += stride) {
     const std::uint32_t row = rows[i];
     const double time = scan.has_times() ? scan.times()[row] : 0.0;
@@ -42,19 +43,19 @@ Detection make_detection(const Scan& scan, std::span<const double> radial, std::
       detection.points.begin(), detection.points.end(),
       [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return heights.up().dot(a) < heights.up().dot(b); }));
   detection.view = view;
-  return detection;
 }
 
-std::vector<double> radial_at_sensor(const Detection& detection, double yaw_rate_rps) {
-  std::vector<double> radial = detection.radial;
+std::pmr::vector<double> radial_at_sensor(const Detection& detection, double yaw_rate_rps, DetectionMemory& memory) {
+  std::pmr::vector<double> radial(detection.radial.begin(), detection.radial.end(), memory.resource());
   for (std::size_t i = 0; i < detection.levers.size(); ++i) {
     radial[i] -= yaw_rate_rps * detection.directions[i].dot(detection.ground.up().cross(detection.levers[i]));
   }
   return radial;
 }
 
-std::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity) {
-  std::vector<Eigen::Vector3d> points = detection.points;
+std::pmr::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity,
+                                                      DetectionMemory& memory) {
+  std::pmr::vector<Eigen::Vector3d> points(detection.points.begin(), detection.points.end(), memory.resource());
   for (std::size_t i = 0; i < points.size(); ++i) {
     points[i] += (detection.mean_time_s - detection.times[i]) * velocity;
   }

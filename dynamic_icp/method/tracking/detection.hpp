@@ -2,7 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <memory_resource>
 #include <span>
 #include <vector>
 
@@ -13,6 +15,7 @@
 #include "dynamic_icp/method/tracking/ground.hpp"
 #include "dynamic_icp/method/tracking/range_image.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
+#include "dynamic_icp/method/tracking/stack_memory.hpp"
 
 namespace dynamic_icp::tracking {
 
@@ -30,16 +33,23 @@ struct Detection {
   const RangeImage* view = nullptr;                                  ///< of the whole scan; none: nothing is hidden
 };
 
-/// The rows of the scan (at least one) as a detection; of many an evenly spread part, for more would not make it
-/// better.
-Detection make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
-                         const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view);
+/// Detections have no more points: they would not make them better.
+inline constexpr std::size_t kMaxDetectionPoints = 500;
+
+/// The rows of the scan (at least one) as a detection, in the memory of another one; of many an evenly spread part.
+void make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
+                    const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view,
+                    Detection& detection);
+
+/// Memory on the stack for the points of a detection.
+using DetectionMemory = StackMemory<kMaxDetectionPoints * sizeof(Eigen::Vector3d)>;
 
 /// The radial velocities (m/s) as one sensor at `sensor` would measure them along the same lines of sight, if the body
 /// turns with `yaw_rate_rps` about the upward axis: without Omega z x l of the lever arms.
-std::vector<double> radial_at_sensor(const Detection& detection, double yaw_rate_rps);
+std::pmr::vector<double> radial_at_sensor(const Detection& detection, double yaw_rate_rps, DetectionMemory& memory);
 
 /// The points where they would be seen at the mean time if all moved with `velocity` (m/s, world).
-std::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity);
+std::pmr::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity,
+                                                      DetectionMemory& memory);
 
 }  // namespace dynamic_icp::tracking

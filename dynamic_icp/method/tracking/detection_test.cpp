@@ -40,7 +40,8 @@ TEST(Detection, IsInTheWorldAndKeepsTheChosenRows) {
   const std::vector<std::uint32_t> rows = {3, 7, 11};
   const SensorMotion sensor = left_turn_at({100.0, 50.0, 0.0});
   const Ground ground{Eigen::AngleAxisd(0.1, Vector3d::UnitX()).toRotationMatrix(), -1.5};
-  const Detection detection = make_detection(scan, radial, rows, sensor, GroundHeights(ground), nullptr);
+  Detection detection;
+  make_detection(scan, radial, rows, sensor, GroundHeights(ground), nullptr, detection);
   ASSERT_EQ(detection.points.size(), 3u);
   EXPECT_NEAR(detection.mean_time_s, (scan.times()[3] + scan.times()[7] + scan.times()[11]) / 3.0, 1e-15);
   for (std::size_t k = 0; k < 3; ++k) {
@@ -73,7 +74,8 @@ TEST(Detection, LeverArmsOfARigDoNotLookLikeMotion) {
     const Vector3d there = velocity + yaw_rate * Vector3d::UnitZ().cross(point - reference);
     detection.radial.push_back(detection.directions.back().dot(there));
   }
-  const std::vector<double> radial = radial_at_sensor(detection, yaw_rate);
+  DetectionMemory memory;
+  const auto radial = radial_at_sensor(detection, yaw_rate, memory);
   const Vector3d W = velocity - yaw_rate * Vector3d::UnitZ().cross(reference);
   for (std::size_t i = 0; i < radial.size(); ++i) {
     EXPECT_NEAR(radial[i], detection.directions[i].dot(W), 1e-12);
@@ -84,8 +86,10 @@ TEST(Detection, OfManyRowsAnEvenPartFromEndToEnd) {
   const Scan scan = scan_of(5000);
   std::vector<std::uint32_t> rows(5000);
   std::iota(rows.begin(), rows.end(), 0U);
-  const Detection detection =
-      make_detection(scan, std::vector<double>(5000, 1.0), rows, SensorMotion{}, GroundHeights(), nullptr);
+  Detection detection;
+  detection.points.resize(3);  // of another one
+  detection.mean_time_s = 0.05;
+  make_detection(scan, std::vector<double>(5000, 1.0), rows, SensorMotion{}, GroundHeights(), nullptr, detection);
   EXPECT_LE(detection.points.size(), 500u);
   EXPECT_GE(detection.points.size(), 250u);
   const double step = detection.times[1] - detection.times[0];

@@ -4,8 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory_resource>
 
 #include <Eigen/Geometry>
+
+#include "dynamic_icp/method/tracking/stack_memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -20,13 +23,6 @@ constexpr double kUnseenRatio = 0.9;  // of points where the body is likely but 
 
 constexpr double kGroundClearance_m = 0.3;  // points lower in a box may be the road ...
 constexpr double kGroundShare = 0.25;       // ... but at most so much of its height is left out
-
-/// A still point in the box of an expectation.
-struct Hit {
-  std::uint32_t expectation;
-  std::uint32_t row;
-  Vector3d direction_world;
-};
 
 OrientedBox above_ground(OrientedBox box) {
   const double clearance = std::min(kGroundClearance_m, kGroundShare * box.size.z());
@@ -106,50 +102,26 @@ bool Expectation::may_appear_static(const Vector3d& sensor_world, double slow_mp
   return std::abs(to_object.dot(W)) / range < slow_mps + difference;
 }
 
-void visit_static_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,
-                         const StaticVisitor& visit) {
-  if (expectations.empty()) {
-    return;
-  }
-  const Eigen::Isometry3d T_sensor_world = input.sensor.T_world_sensor.inverse();
-  std::vector<Searched> searched;
-  for (const Expectation& expected : expectations) {
-    const OrientedBox box = above_ground(expected.box);
-    // What moves during the sweep is not seen where it is at the stamp.
-    const double reach = 0.5 * box.size.norm() + input.sweep_s * expected.velocity.norm() + kRounding_m;
-    searched.push_back({box, reach, T_sensor_world * box.centre});
-  }
-  const std::size_t rows = input.scan.size();
-  std::vector<std::vector<Hit>> hits(Workers::block_count(rows, kPointBlock));
-  const auto search_row = [&](std::uint32_t i, std::size_t row, std::vector<Hit>& found) {
-    if (input.is_moving[row] != 0 || (input.scan.points()[row] - searched[i].centre_sensor).squaredNorm() >
-                                         searched[i].reach_m * searched[i].reach_m) {
-      return;
+void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows) {
+  rows.clear();
+  const OrientedBox box = above_ground(expected.box);
+  // What moves during the sweep is not seen where it is at the stamp.
+  const double reach = 0.5 * box.size.norm() + input.sweep_s * expected.velocity.norm() + kRounding_m;
+  const Vector3d centre_sensor = input.sensor.T_world_sensor.inverse() * box.centre;
+  const std::vector<RangeImage::Patch>& patches = input.view.patches();
+  for (std::size_t patch = 0; patch < patches.size(); ++patch) {
+    if (patches[patch].squaredExteriorDistance(centre_sensor) > reach * reach) {
+      continue;
     }
-    const double time = input.scan.has_times() ? input.scan.times()[row] : 0.0;
-    const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
-    if (distance_outside(searched[i].box, point - time * expectations[i].velocity) <= 0.0) {
-      found.push_back(
-          {i, static_cast<std::uint32_t>(row), input.sensor.direction_world(input.scan.directions()[row], time)});
-    }
-  };
-  workers.for_blocks(rows, kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    for (std::size_t patch = begin / RangeImage::kPatch; patch * RangeImage::kPatch < end; ++patch) {
-      for (std::uint32_t i = 0; i < searched.size(); ++i) {
-        const double apart = input.view.patches()[patch].squaredExteriorDistance(searched[i].centre_sensor);
-        if (apart > searched[i].reach_m * searched[i].reach_m) {
-          continue;
-        }
-        const std::size_t last = std::min((patch + 1) * RangeImage::kPatch, end);
-        for (std::size_t row = patch * RangeImage::kPatch; row < last; ++row) {
-          search_row(i, row, hits[block]);
-        }
+    const std::size_t end = std::min((patch + 1) * RangeImage::kPatch, input.scan.size());
+    for (std::size_t row = patch * RangeImage::kPatch; row < end; ++row) {
+      if (input.is_moving[row] != 0 || (input.scan.points()[row] - centre_sensor).squaredNorm() > reach * reach) {
+        continue;
       }
-    }
-  });
-  for (const std::vector<Hit>& of_block : hits) {
-    for (const Hit& hit : of_block) {
-      visit(hit.expectation, hit.row, hit.direction_world);
+      const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
+      if (distance_outside(box, point - input.time_s(row) * expected.velocity) <= 0.0) {
+        rows.push_back(static_cast<std::uint32_t>(row));
+      }
     }
   }
 }
@@ -158,7 +130,9 @@ void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMot
                std::span<const Expectation> expectations, const Workers& workers,
                std::vector<std::uint8_t>& is_moving) {
   const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
-  std::vector<Searched> flagged;
+  StackMemory<32768> memory;
+  std::pmr::vector<Searched> flagged(memory.resource());
+  flagged.reserve(expectations.size());
   for (const Expectation& expected : expectations) {
     const OrientedBox box = flagged_box(expected);
     flagged.push_back({box, 0.5 * box.size.norm(), T_sensor_world * box.centre});

@@ -4,7 +4,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <functional>
 #include <span>
 #include <vector>
 
@@ -69,15 +68,16 @@ struct TrackingInput {
   std::span<const Eigen::Vector3d> cell_directions;  ///< their lines of sight, world
   const RangeImage& view;
   const GroundHeights& heights;
+
+  [[nodiscard]] double time_s(std::size_t row) const { return scan.has_times() ? scan.times()[row] : 0.0; }
+  [[nodiscard]] Eigen::Vector3d direction_world(std::size_t row) const {
+    return sensor.direction_world(scan.directions()[row], time_s(row));
+  }
 };
 
-/// Called with the number of an expectation, a row, and the row's line of sight in world axes.
-using StaticVisitor = std::function<void(std::size_t expectation, std::uint32_t row, const Eigen::Vector3d& direction)>;
-
-/// Visits each point that is not among the moving ones in the box of each expectation, without the lowest part of the
-/// box, where the ground may be. Those of each in the order of the rows.
-void visit_static_points(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers,
-                         const StaticVisitor& visit);
+/// The rows, ascending, of the points that are not among the moving ones in the box of an expectation, without the
+/// lowest part of the box, where the ground may be.
+void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows);
 
 /// Sets `is_moving` of the rows of a scan that is not deskewed that an expectation may take for its own: in its box,
 /// without the lowest part but with its gate around, and with the radial velocity that it expects.

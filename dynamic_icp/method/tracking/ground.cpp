@@ -3,8 +3,8 @@
 #include "dynamic_icp/method/tracking/ground.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -41,11 +41,9 @@ const Ground& GroundFilter::update(const Eigen::Vector3d& normal, double offset_
     next_ = (next_ + 1) % kMemory;
   }
   const auto median_of = [&](const auto& part) {
-    std::vector<double> values;
-    for (const Plane& one : last_) {
-      values.push_back(part(one));
-    }
-    return median(std::move(values));
+    std::array<double, kMemory> values;
+    std::transform(last_.begin(), last_.end(), values.begin(), part);
+    return quantile_among(std::span(values).first(last_.size()), 0.5);
   };
   Eigen::Vector3d up;
   for (int axis = 0; axis < 3; ++axis) {

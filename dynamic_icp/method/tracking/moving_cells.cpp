@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstddef>
 #include <cstring>
-#include <iterator>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -15,7 +14,6 @@
 
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 #include "dynamic_icp/method/spatial/cell_order.hpp"
-#include "dynamic_icp/method/spatial/disjoint_sets.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 
 namespace dynamic_icp::tracking {
@@ -116,16 +114,18 @@ constexpr std::array<std::uint64_t, 14> kHalfNeighbourhood = [] {
 /// Calls visit(i, k) once for each pair of the chosen cells that are at most `reach_m` apart, and for some more.
 template <typename Visit>
 void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::uint32_t> chosen, double reach_m,
-                      const Visit& visit) {
+                      GroupingMemory& memory, const Visit& visit) {
   const double cube_m = kWiderThanReach * reach_m;
-  spatial::CellOrder cubes;
+  spatial::CellOrder& cubes = memory.cubes;
+  std::vector<std::uint64_t>& keys = memory.keys;
+  std::vector<std::uint32_t>& members = memory.members;
   cubes.keys.resize(chosen.size());
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     cubes.keys[k] = spatial::clamped_cell_key(cells[chosen[k]].centroid / cube_m);
   }
   cubes.sort();
-  std::vector<std::uint64_t> keys(cubes.cells());
-  std::vector<std::uint32_t> members(chosen.size());
+  keys.resize(cubes.cells());
+  members.resize(chosen.size());
   for (std::size_t k = 0; k < chosen.size(); ++k) {
     keys[cubes.cell[k]] = cubes.keys[k];
     members[cubes.place(k)] = chosen[k];
@@ -148,23 +148,45 @@ void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::ui
 constexpr double kTighter = 0.8;    // links are shortened by this factor ...
 constexpr int kMaxTightenings = 2;  // ... so often; much shorter ones than a cell would part everything
 
-/// The groups that some of the cells make among themselves.
-std::vector<CellGroup> groups_among(const MovingCells& moving, std::span<const std::uint32_t> cells,
-                                    const GroupingConfig& config) {
-  std::vector<MovingCell> chosen;
-  chosen.reserve(cells.size());
+/// Adds a group to others.
+void add_group(std::span<const std::uint32_t> cells, CellGroups& groups) {
+  groups.cells.insert(groups.cells.end(), cells.begin(), cells.end());
+  groups.first_cell.push_back(static_cast<std::uint32_t>(groups.cells.size()));
+}
+
+/// Adds the groups that some of the cells make among themselves, without those with too few points: parts of them have
+/// no more.
+void add_groups_among(const MovingCells& moving, std::span<const std::uint32_t> cells, int min_points,
+                      const GroupingConfig& config, GroupingMemory& memory, CellGroups& groups) {
+  constexpr std::uint32_t kDropped = ~0u;
+  memory.chosen.clear();
   for (const std::uint32_t cell : cells) {
-    chosen.push_back(moving.cells[cell]);
+    memory.chosen.push_back(moving.cells[cell]);
   }
-  const std::vector<std::uint32_t> numbers = group_cells(chosen, config);
-  std::vector<CellGroup> groups;
+  group_cells(memory.chosen, config, memory, memory.numbers);
+  memory.sizes.clear();
+  memory.points.clear();
   for (std::size_t i = 0; i < cells.size(); ++i) {
-    if (numbers[i] == groups.size()) {
-      groups.emplace_back();
+    if (memory.numbers[i] == memory.sizes.size()) {
+      memory.sizes.push_back(0);
+      memory.points.push_back(0);
     }
-    groups[numbers[i]].cells.push_back(cells[i]);
+    ++memory.sizes[memory.numbers[i]];
+    memory.points[memory.numbers[i]] += memory.chosen[i].count;
   }
-  return groups;
+  memory.places.assign(memory.sizes.size(), kDropped);
+  for (std::size_t number = 0; number < memory.sizes.size(); ++number) {
+    if (!std::cmp_less(memory.points[number], min_points)) {
+      memory.places[number] = groups.first_cell.back();
+      groups.first_cell.push_back(groups.first_cell.back() + memory.sizes[number]);
+    }
+  }
+  groups.cells.resize(groups.first_cell.back());
+  for (std::size_t i = 0; i < cells.size(); ++i) {
+    if (std::uint32_t& place = memory.places[memory.numbers[i]]; place != kDropped) {
+      groups.cells[place++] = cells[i];
+    }
+  }
 }
 
 constexpr std::size_t kDirections = 12;
@@ -179,12 +201,12 @@ std::array<Eigen::Vector3d, kDirections> directions_across() {
 }
 
 /// Whether seen from above the cells need a wider strip than one vehicle.
-bool too_wide(const MovingCells& moving, const CellGroup& group, double largest_width_m) {
+bool too_wide(const MovingCells& moving, std::span<const std::uint32_t> cells, double largest_width_m) {
   static const std::array<Eigen::Vector3d, kDirections> kAcross = directions_across();
   for (const Eigen::Vector3d& across : kAcross) {
     double low = std::numeric_limits<double>::infinity();
     double high = -low;
-    for (const std::uint32_t cell : group.cells) {
+    for (const std::uint32_t cell : cells) {
       low = std::min(low, across.dot(moving.cells[cell].centroid));
       high = std::max(high, across.dot(moving.cells[cell].centroid));
     }
@@ -195,32 +217,31 @@ bool too_wide(const MovingCells& moving, const CellGroup& group, double largest_
   return true;
 }
 
-/// Drops groups with too few points: parts of them have no more.
-void drop_small(const MovingCells& moving, int min_points, std::vector<CellGroup>& groups) {
-  std::erase_if(groups, [&](const CellGroup& group) {
-    std::size_t points = 0;
-    for (const std::uint32_t cell : group.cells) {
-      points += moving.cells[cell].count;
-    }
-    return std::cmp_less(points, min_points);
-  });
-}
-
 /// Gives each group its rows.
-void add_rows(const MovingCells& moving, std::vector<CellGroup>& groups) {
+void add_rows(const MovingCells& moving, std::vector<std::uint32_t>& group_of_cell, CellGroups& groups) {
   constexpr std::uint32_t kNoGroup = ~0u;
-  std::vector<std::uint32_t> group_of_cell(moving.cells.size(), kNoGroup);
-  for (std::uint32_t i = 0; i < groups.size(); ++i) {
-    for (const std::uint32_t cell : groups[i].cells) {
-      group_of_cell[cell] = i;
+  group_of_cell.assign(moving.cells.size(), kNoGroup);
+  groups.first_row.assign(1, 0);
+  for (std::uint32_t group = 0; group < groups.size(); ++group) {
+    std::uint32_t rows = 0;
+    for (const std::uint32_t cell : groups.cells_of(group)) {
+      group_of_cell[cell] = group;
+      rows += moving.cells[cell].count;
     }
+    groups.first_row.push_back(groups.first_row.back() + rows);
   }
+  groups.rows.resize(groups.first_row.back());
   for (std::size_t i = 0; i < moving.rows.size(); ++i) {
     const std::uint32_t group = group_of_cell[moving.order.cell[i]];
     if (group != kNoGroup) {
-      groups[group].rows.push_back(moving.rows[i]);
+      groups.rows[groups.first_row[group]++] = moving.rows[i];
     }
   }
+  // Each first place has moved on to that of the next group.
+  for (std::size_t group = groups.size(); group > 0; --group) {
+    groups.first_row[group] = groups.first_row[group - 1];
+  }
+  groups.first_row[0] = 0;
 }
 
 }  // namespace
@@ -264,68 +285,70 @@ void gather_cells(const Scan& scan, std::span<const double> radial, std::span<co
   });
 }
 
-std::vector<std::uint32_t> group_cells(std::span<const MovingCell> cells, const GroupingConfig& config) {
-  std::vector<std::uint32_t> all(cells.size());
-  std::iota(all.begin(), all.end(), 0u);
-  std::vector<std::uint32_t> slow;
-  std::vector<double> ranges(cells.size());
+void group_cells(std::span<const MovingCell> cells, const GroupingConfig& config, GroupingMemory& memory,
+                 std::vector<std::uint32_t>& groups) {
+  memory.all.resize(cells.size());
+  std::iota(memory.all.begin(), memory.all.end(), 0u);
+  memory.slow.clear();
+  memory.ranges.resize(cells.size());
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    ranges[i] = cells[i].centroid.norm();
+    memory.ranges[i] = cells[i].centroid.norm();
     if (beside_gap(cells[i], config)) {
-      slow.push_back(i);
+      memory.slow.push_back(i);
     }
   }
-  spatial::DisjointSets sets(cells.size());
+  memory.sets.reset(cells.size());
   const auto link = [&](std::uint32_t i, std::uint32_t k) {
-    if (linked(cells[i], cells[k], std::min(ranges[i], ranges[k]), config)) {
-      sets.unite(i, k);
+    if (linked(cells[i], cells[k], std::min(memory.ranges[i], memory.ranges[k]), config)) {
+      memory.sets.unite(i, k);
     }
   };
-  const double farthest = cells.empty() ? 0.0 : *std::max_element(ranges.begin(), ranges.end());
+  const double farthest = cells.empty() ? 0.0 : *std::max_element(memory.ranges.begin(), memory.ranges.end());
   const double longest = config.link_distance_m + config.link_growth * farthest;
-  visit_near_pairs(cells, all, std::max(longest, config.cell_size_m), link);
+  visit_near_pairs(cells, memory.all, std::max(longest, config.cell_size_m), memory, link);
   // Only bridges over gaps are longer.
   if (config.bridge_m > longest) {
-    visit_near_pairs(cells, slow, config.bridge_m, link);
+    visit_near_pairs(cells, memory.slow, config.bridge_m, memory, link);
   }
-  std::vector<std::uint32_t> number_of_root(cells.size(), ~0u);
-  std::vector<std::uint32_t> groups(cells.size());
+  memory.number_of_root.assign(cells.size(), ~0u);
+  groups.resize(cells.size());
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    std::uint32_t& number = number_of_root[sets.find(i)];
+    std::uint32_t& number = memory.number_of_root[memory.sets.find(i)];
     if (number == ~0u) {
       number = count++;
     }
     groups[i] = number;
   }
-  return groups;
 }
 
-std::vector<CellGroup> vehicle_groups(const MovingCells& moving, std::span<const std::uint32_t> cells,
-                                      double largest_width_m, int min_points, const GroupingConfig& config) {
-  GroupingConfig tighter = config;
-  std::vector<CellGroup> groups = groups_among(moving, cells, config);
-  drop_small(moving, min_points, groups);
-  tighter.bridge_m = 0.0;  // a gap in one body, or two bodies beside each other?
+void vehicle_groups(const MovingCells& moving, std::span<const std::uint32_t> cells, double largest_width_m,
+                    int min_points, const GroupingConfig& config, GroupingMemory& memory, CellGroups& groups) {
+  GroupingConfig links = config;
+  const auto clear = [&] {
+    groups.cells.clear();
+    groups.first_cell.assign(1, 0);
+  };
+  clear();
+  add_groups_among(moving, cells, min_points, links, memory, groups);
+  links.bridge_m = 0.0;  // a gap in one body, or two bodies beside each other?
   for (int i = 0; i <= kMaxTightenings; ++i) {
     if (i > 0) {
-      tighter.link_distance_m *= kTighter;
-      tighter.link_growth *= kTighter;
+      links.link_distance_m *= kTighter;
+      links.link_growth *= kTighter;
     }
-    std::vector<CellGroup> parted;
-    for (CellGroup& group : groups) {
-      if (too_wide(moving, group, largest_width_m)) {
-        std::vector<CellGroup> parts = groups_among(moving, group.cells, tighter);
-        std::move(parts.begin(), parts.end(), std::back_inserter(parted));
+    std::swap(groups, memory.wide);
+    clear();
+    for (std::size_t group = 0; group < memory.wide.size(); ++group) {
+      const std::span<const std::uint32_t> of_group = memory.wide.cells_of(group);
+      if (too_wide(moving, of_group, largest_width_m)) {
+        add_groups_among(moving, of_group, min_points, links, memory, groups);
       } else {
-        parted.push_back(std::move(group));
+        add_group(of_group, groups);
       }
     }
-    groups = std::move(parted);
-    drop_small(moving, min_points, groups);
   }
-  add_rows(moving, groups);
-  return groups;
+  add_rows(moving, memory.group_of_cell, groups);
 }
 
 }  // namespace dynamic_icp::tracking

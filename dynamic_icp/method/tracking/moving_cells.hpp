@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/spatial/cell_order.hpp"
+#include "dynamic_icp/method/spatial/disjoint_sets.hpp"
 
 namespace dynamic_icp::tracking {
 
@@ -52,22 +54,57 @@ struct MovingCells {
 void gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
                   const GroupingConfig& config, const Workers& workers, MovingCells& cells);
 
+/// Memory of the functions below. It may be used again.
+struct GroupingMemory;
+
 /// A group number 0, 1, ... for each cell, in the order of the first cells: cells belong together when a chain of
 /// neighbours joins them, each link short enough for its range and without a jump of the radial velocity. Where the
 /// radial velocity of a crossing or turning body passes zero its points are not among the moving ones: slow cells with
 /// velocities of opposite signs may be linked across such a gap.
-std::vector<std::uint32_t> group_cells(std::span<const MovingCell> cells, const GroupingConfig& config);
+void group_cells(std::span<const MovingCell> cells, const GroupingConfig& config, GroupingMemory& memory,
+                 std::vector<std::uint32_t>& groups);
 
-/// Cells that may be one object.
-struct CellGroup {
-  std::vector<std::uint32_t> cells;  ///< numbers of cells, ascending
-  std::vector<std::uint32_t> rows;   ///< their rows of the scan, ascending
+/// Groups of cells, each of which may be one object.
+struct CellGroups {
+  std::vector<std::uint32_t> cells;       ///< numbers of cells, group by group, ascending in each
+  std::vector<std::uint32_t> first_cell;  ///< group g holds the places [first_cell[g], first_cell[g + 1]) of these
+  std::vector<std::uint32_t> rows;        ///< their rows of the scan, in the same way
+  std::vector<std::uint32_t> first_row;
+
+  [[nodiscard]] std::size_t size() const { return first_cell.empty() ? 0 : first_cell.size() - 1; }
+  [[nodiscard]] std::span<const std::uint32_t> cells_of(std::size_t group) const {
+    return std::span(cells).subspan(first_cell[group], first_cell[group + 1] - first_cell[group]);
+  }
+  [[nodiscard]] std::span<const std::uint32_t> rows_of(std::size_t group) const {
+    return std::span(rows).subspan(first_row[group], first_row[group + 1] - first_row[group]);
+  }
 };
 
 /// The groups that some of the cells (ascending) make among themselves, if they have `min_points` points, in the order
 /// of their first cells. What is wider than `largest_width_m` seen from above, in every direction, is no single
 /// vehicle: it is parted with shorter links, as far as that goes.
-std::vector<CellGroup> vehicle_groups(const MovingCells& moving, std::span<const std::uint32_t> cells,
-                                      double largest_width_m, int min_points, const GroupingConfig& config);
+void vehicle_groups(const MovingCells& moving, std::span<const std::uint32_t> cells, double largest_width_m,
+                    int min_points, const GroupingConfig& config, GroupingMemory& memory, CellGroups& groups);
+
+struct GroupingMemory {
+  // Of cells near each other
+  spatial::CellOrder cubes;
+  std::vector<std::uint64_t> keys;
+  std::vector<std::uint32_t> members;
+  std::vector<double> ranges;
+  std::vector<std::uint32_t> all;
+  std::vector<std::uint32_t> slow;
+  spatial::DisjointSets sets;
+  std::vector<std::uint32_t> number_of_root;
+
+  // Of groups among some of the cells
+  std::vector<MovingCell> chosen;
+  std::vector<std::uint32_t> numbers;
+  std::vector<std::uint32_t> sizes;
+  std::vector<std::size_t> points;
+  std::vector<std::uint32_t> places;
+  CellGroups wide;
+  std::vector<std::uint32_t> group_of_cell;
+};
 
 }  // namespace dynamic_icp::tracking

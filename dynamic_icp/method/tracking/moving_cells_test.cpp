@@ -39,11 +39,18 @@ MovingCells gathered(const Scan& scan, std::span<const double> radial, std::span
   return cells;
 }
 
+std::vector<std::uint32_t> grouped(std::span<const MovingCell> cells, const GroupingConfig& config) {
+  GroupingMemory memory;
+  std::vector<std::uint32_t> groups{7, 7};
+  group_cells(cells, config, memory, groups);
+  return groups;
+}
+
 TEST(MovingCells, NothingMovesNothingIsGathered) {
   EXPECT_TRUE(gathered(Scan{}, {}, {}, {}, kWorkers).cells.empty());
   const Scan scan = scan_of({{5, 0, 0}});
   EXPECT_TRUE(gathered(scan, std::vector<double>{1.0}, std::vector<std::uint8_t>{0}, {}, kWorkers).cells.empty());
-  EXPECT_TRUE(group_cells({}, {}).empty());
+  EXPECT_TRUE(grouped({}, {}).empty());
 }
 
 TEST(MovingCells, HoldMeansAndRowsOfTheMovingPoints) {
@@ -66,21 +73,21 @@ TEST(MovingCells, CellsFloorBelowZero) {
 
 TEST(MovingCells, NeighboursWithOneVelocityAreOneGroup) {
   const std::vector<MovingCell> cells = {cell({10, 0, 0}, 5), cell({20, 0, 0}, 5), cell({10.5, 0, 0}, 5.2)};
-  EXPECT_EQ(group_cells(cells, {}), (std::vector<std::uint32_t>{0, 1, 0}));
+  EXPECT_EQ(grouped(cells, {}), (std::vector<std::uint32_t>{0, 1, 0}));
 }
 
 TEST(MovingCells, AJumpOfTheVelocityParts) {
   const std::vector<MovingCell> cells = {cell({10, 0, 0}, 5), cell({10.5, 0, 0}, 8)};
-  EXPECT_EQ(group_cells(cells, {}), (std::vector<std::uint32_t>{0, 1}));
+  EXPECT_EQ(grouped(cells, {}), (std::vector<std::uint32_t>{0, 1}));
 }
 
 TEST(MovingCells, TheGapWhereTheVelocityPassesZeroIsBridged) {
-  EXPECT_EQ(group_cells(std::vector<MovingCell>{cell({30, 1, 0}, 0.4), cell({30, -1, 0}, -0.4)}, {}),
+  EXPECT_EQ(grouped(std::vector<MovingCell>{cell({30, 1, 0}, 0.4), cell({30, -1, 0}, -0.4)}, {}),
             (std::vector<std::uint32_t>{0, 0}));
-  EXPECT_EQ(group_cells(std::vector<MovingCell>{cell({30, 1, 0}, 0.4), cell({30, -1, 0}, 0.4)}, {}),
+  EXPECT_EQ(grouped(std::vector<MovingCell>{cell({30, 1, 0}, 0.4), cell({30, -1, 0}, 0.4)}, {}),
             (std::vector<std::uint32_t>{0, 1}))
       << "no sign changes: nothing is missing between them";
-  EXPECT_EQ(group_cells(std::vector<MovingCell>{cell({30, 1, 0}, 4.0), cell({30, -1, 0}, -4.0)}, {}),
+  EXPECT_EQ(grouped(std::vector<MovingCell>{cell({30, 1, 0}, 4.0), cell({30, -1, 0}, -4.0)}, {}),
             (std::vector<std::uint32_t>{0, 1}))
       << "two that pass each other";
 }
@@ -119,7 +126,7 @@ TEST(MovingCells, GroupsAreTheConnectedOnesOfAllPairs) {
       }
     }
   }
-  const std::vector<std::uint32_t> groups = group_cells(cells, config);
+  const std::vector<std::uint32_t> groups = grouped(cells, config);
   for (std::size_t i = 0; i < cells.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       ASSERT_EQ(groups[i] == groups[k], expected[i] == expected[k]) << i << " and " << k;
@@ -136,8 +143,8 @@ TEST(MovingCells, GroupsDoNotDependOnTheOrderOfTheCells) {
     cells.push_back(cell({30.0, one.uniform(0, -40, 40), one.uniform(1, -2, 12)}, one.uniform(2, -1.5, 1.5)));
   }
   const std::vector<MovingCell> reversed(cells.rbegin(), cells.rend());
-  const std::vector<std::uint32_t> groups = group_cells(cells, {});
-  const std::vector<std::uint32_t> of_reversed = group_cells(reversed, {});
+  const std::vector<std::uint32_t> groups = grouped(cells, {});
+  const std::vector<std::uint32_t> of_reversed = grouped(reversed, {});
   for (std::size_t i = 0; i < cells.size(); ++i) {
     for (std::size_t k = 0; k < i; ++k) {
       ASSERT_EQ(groups[i] == groups[k], of_reversed[cells.size() - 1 - i] == of_reversed[cells.size() - 1 - k]);
@@ -172,22 +179,32 @@ void add_vehicle(std::vector<Vector3d>& places, double x, double y) {
   }
 }
 
-std::vector<CellGroup> groups_of(const MovingCells& moving, int min_points) {
-  std::vector<std::uint32_t> all(moving.cells.size());
-  std::iota(all.begin(), all.end(), 0u);
-  return vehicle_groups(moving, all, 2.6, min_points, {});
+CellGroups groups_of(const MovingCells& moving, std::span<const std::uint32_t> cells, int min_points) {
+  GroupingMemory memory;
+  CellGroups groups;
+  for (int i = 0; i < 2; ++i) {  // what was there before does not count
+    vehicle_groups(moving, cells, 2.6, min_points, {}, memory, groups);
+  }
+  return groups;
 }
 
-TEST(CellGroups, OfNothingThereAreNone) { EXPECT_TRUE(groups_of(MovingCells(), 1).empty()); }
+CellGroups groups_of(const MovingCells& moving, int min_points) {
+  std::vector<std::uint32_t> all(moving.cells.size());
+  std::iota(all.begin(), all.end(), 0u);
+  return groups_of(moving, all, min_points);
+}
+
+TEST(CellGroups, OfNothingThereAreNone) { EXPECT_EQ(groups_of(MovingCells(), 1).size(), 0u); }
 
 TEST(CellGroups, AVehicleIsOne) {
   std::vector<Vector3d> places;
   add_vehicle(places, 40.0, 0.0);
-  const std::vector<CellGroup> groups = groups_of(cells_at(places), 10);
+  const CellGroups groups = groups_of(cells_at(places), 10);
   ASSERT_EQ(groups.size(), 1u);
-  EXPECT_EQ(groups[0].cells.size(), places.size());
-  EXPECT_EQ(groups[0].rows.front(), 0u);
-  EXPECT_EQ(groups[0].rows.back(), 10 * (places.size() - 1));
+  EXPECT_EQ(groups.cells_of(0).size(), places.size());
+  EXPECT_EQ(groups.rows_of(0).size(), places.size());
+  EXPECT_EQ(groups.rows_of(0).front(), 0u);
+  EXPECT_EQ(groups.rows_of(0).back(), 10 * (places.size() - 1));
 }
 
 TEST(CellGroups, TwoAbreastThatAreLinkedAreParted) {
@@ -207,20 +224,21 @@ TEST(CellGroups, TwoAbreastThatOnlyABridgeLinksAreParted) {
   for (MovingCell& one : moving.cells) {
     one.radial_mps = one.centroid.y() > 0.0 ? 0.4 : -0.4;
   }
-  ASSERT_EQ(group_cells(moving.cells, {}), std::vector<std::uint32_t>(places.size(), 0)) << "a bridge";
+  ASSERT_EQ(grouped(moving.cells, {}), std::vector<std::uint32_t>(places.size(), 0)) << "a bridge";
   EXPECT_EQ(groups_of(moving, 10).size(), 2u);
 }
 
 TEST(CellGroups, TooFewPointsAreNoObject) {
-  EXPECT_TRUE(groups_of(cells_at({{20, 0, 0}, {20.5, 0, 0}}), 3).empty());
+  EXPECT_EQ(groups_of(cells_at({{20, 0, 0}, {20.5, 0, 0}}), 3).size(), 0u);
   EXPECT_EQ(groups_of(cells_at({{20, 0, 0}, {20.5, 0, 0}}), 2).size(), 1u);
 }
 
 TEST(CellGroups, OnlyTheChosenCellsAreGrouped) {
   const MovingCells moving = cells_at({{20, 0, 0}, {20.5, 0, 0}, {21, 0, 0}});
-  const std::vector<CellGroup> groups = vehicle_groups(moving, std::vector<std::uint32_t>{0, 2}, 2.6, 1, {});
+  const CellGroups groups = groups_of(moving, std::vector<std::uint32_t>{0, 2}, 1);
   ASSERT_EQ(groups.size(), 2u) << "without the middle one they are too far apart";
-  EXPECT_EQ(groups[1].rows, (std::vector<std::uint32_t>{20}));
+  ASSERT_EQ(groups.rows_of(1).size(), 1u);
+  EXPECT_EQ(groups.rows_of(1).front(), 20u);
 }
 
 }  // namespace

@@ -18,7 +18,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::int32_t kNobody = -1;
 constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
 constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
@@ -50,9 +49,9 @@ bool are_finite(std::span<const double> values) {
 
 }  // namespace
 
-/// A track with what is known of it besides its motion.
+/// A track with what is known of it besides its motion. Its memory is used again by another one.
 struct ObjectTracker::Entry {
-  std::int64_t id;
+  std::int64_t id = 0;
   Track track;                             ///< at the mean time of its last detection
   Track predicted;                         ///< at the stamp of the present scan, with what that scan shows
   BoxEstimate now = {};                    ///< of the latter
@@ -64,6 +63,12 @@ struct ObjectTracker::Entry {
   int seen = 0;
   int missed = 0;
   std::vector<std::uint32_t> members = {};
+
+  // For their memory
+  Track other;
+  Detection detection = {};
+  std::vector<std::uint32_t> static_rows = {};
+  std::vector<std::uint32_t> merged = {};
 
   /// The track at the stamp of a scan. It is asked for several times a scan.
   void predict(double stamp_s, const TrackConfig& config) {
@@ -77,11 +82,6 @@ struct ObjectTracker::Entry {
   }
 
   [[nodiscard]] SeenTrack seen_track() const { return {predicted, now, members.size()}; }
-
-  void set_track(Track corrected) {
-    track = std::move(corrected);
-    predicted_s.reset();
-  }
 };
 
 ObjectTracker::ObjectTracker(const TrackerConfig& config) : config_(config) { check_fields(fields(config_)); }
@@ -89,11 +89,20 @@ ObjectTracker::~ObjectTracker() = default;
 ObjectTracker::ObjectTracker(ObjectTracker&&) noexcept = default;
 ObjectTracker& ObjectTracker::operator=(ObjectTracker&&) noexcept = default;
 
-std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<const double> radial,
-                                                 std::span<const std::uint8_t> is_moving,
-                                                 const Eigen::Isometry3d& T_world_sensor,
-                                                 const std::optional<ego_motion::SupportPlane>& support,
-                                                 const Workers& workers, const Eigen::Matrix3d& ego_covariance) {
+std::span<ObjectTracker::Entry> ObjectTracker::living() { return std::span(entries_).first(living_); }
+
+/// Makes an entry behind the living ones the last of these.
+void ObjectTracker::keep(Entry& entry) {
+  if (Entry& last = entries_[living_++]; &last != &entry) {
+    std::swap(last, entry);
+  }
+}
+
+std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span<const double> radial,
+                                                     std::span<const std::uint8_t> is_moving,
+                                                     const Eigen::Isometry3d& T_world_sensor,
+                                                     const std::optional<ego_motion::SupportPlane>& support,
+                                                     const Workers& workers, const Eigen::Matrix3d& ego_covariance) {
   if (radial.size() != scan.size() || is_moving.size() != scan.size()) {
     throw std::invalid_argument("radial velocities and moving flags must have one value per point of the scan");
   }
@@ -116,19 +125,14 @@ std::vector<TrackedObject> ObjectTracker::update(const Scan& scan, std::span<con
   }
 
   const TrackingInput input = prepare(scan, radial, is_moving, sensor, workers);
-  const std::vector<Expectation> expected = expectations(input.stamp_s, sensor, [](const Entry&) { return true; });
-  owner_.assign(input.moving.cells.size(), kNobody);
-  assign(input, expected, owner_);
-  associate(input, expected, owner_);
-  collect_members(input, expected, owner_, workers);
-  initiate_tracks(input, owner_, workers);
+  expect(input.stamp_s, sensor, [](const Entry&) { return true; });
+  associate(input, expected_, config_.growth_m, owners_);
+  collect_members(input, workers);
+  initiate_tracks(input, workers);
   delete_tracks(input);
-  std::vector<TrackedObject> objects;
-  objects.reserve(entries_.size());
-  for (const Entry& entry : entries_) {
-    objects.push_back(report(entry, sensor, ego_covariance));
-  }
-  return objects;
+  objects_.resize(std::max(objects_.size(), living_));
+  workers.for_each(living_, 1, [&](std::size_t k) { report(sensor, ego_covariance, entries_[k], objects_[k]); });
+  return std::span(objects_).first(living_);
 }
 
 TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> radial,
@@ -138,7 +142,7 @@ TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> r
   workers.both([&] { view_.draw(scan, velocity_sensor, workers); },
                [&] {
                  gather_cells(scan, radial, is_moving, config_.grouping, workers, moving_);
-                 groups_ = group_cells(moving_.cells, config_.grouping);
+                 group_cells(moving_.cells, config_.grouping, grouping_, groups_);
                  heights_.emplace(ground_.ground(), scan.points(), is_moving, sensor.T_world_sensor);
                });
   cell_points_.clear();
@@ -161,26 +165,23 @@ TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> r
           *heights_};
 }
 
-/// Of the chosen entries, at the stamp of a scan.
+/// What the chosen tracks expect at the stamp of a scan.
 template <typename Choice>
-std::vector<Expectation> ObjectTracker::expectations(double stamp_s, const SensorMotion& sensor, const Choice& choice) {
-  std::vector<Expectation> expected;
-  expected.reserve(entries_.size());
-  for (Entry& entry : entries_) {
+void ObjectTracker::expect(double stamp_s, const SensorMotion& sensor, const Choice& choice) {
+  expected_.clear();
+  for (Entry& entry : living()) {
     if (choice(entry)) {
       entry.predict(stamp_s, config_.track);
-      expected.emplace_back(entry.predicted, entry.now, sensor, config_);
+      expected_.emplace_back(entry.predicted, entry.now, sensor, config_);
     }
   }
-  return expected;
 }
 
 void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
                                   const Workers& workers, std::vector<std::uint8_t>& is_moving) {
-  if (!entries_.empty()) {
-    const double stamp_s = seconds_between(*first_stamp_, scan.stamp());
-    flag_rows(scan, radial, sensor, expectations(stamp_s, sensor, [](const Entry& entry) { return entry.confirmed; }),
-              workers, is_moving);
+  if (living_ > 0) {
+    expect(seconds_between(*first_stamp_, scan.stamp()), sensor, [](const Entry& entry) { return entry.confirmed; });
+    flag_rows(scan, radial, sensor, expected_, workers, is_moving);
   }
 }
 
@@ -196,133 +197,70 @@ void ObjectTracker::clear_carrier(const Scan& scan, const Workers& workers,
   });
 }
 
-/// Gives each cell to the track whose box and velocity fit it best.
-void ObjectTracker::assign(const TrackingInput& input, std::span<const Expectation> expectations,
-                           std::vector<std::int32_t>& owner) const {
-  std::vector<double> best(owner.size(), 1.0);
-  for (std::size_t k = 0; k < expectations.size(); ++k) {
-    const Expectation& expected = expectations[k];
-    const double reach =
-        std::max(0.5 * expected.box.size.norm() + expected.gate_m,
-                 (expected.whole.centre - expected.box.centre).norm() + 0.5 * expected.whole.size.norm());
-    for (std::size_t i = 0; i < owner.size(); ++i) {
-      const MovingCell& cell = input.moving.cells[i];
-      const Vector3d& point = input.cell_points[i];
-      if ((point - cell.time_s * expected.velocity - expected.box.centre).squaredNorm() > reach * reach) {
-        continue;
-      }
-      const double score = std::max(expected.distance_ratio(point, cell.time_s),
-                                    expected.gate_ratio(input.cell_directions[i], cell.radial_mps));
-      if (score < best[i] && expected.width_with(point, cell.time_s) < expected.max_width_m) {
-        best[i] = score;
-        owner[i] = static_cast<std::int32_t>(k);
-      }
-    }
+/// Adds to a slow track the points in its box that are not among the moving ones but move as it does.
+void ObjectTracker::gather_static(const TrackingInput& input, const Expectation& expected, Entry& entry) const {
+  if (!entry.has_moved || !expected.may_appear_static(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
+    return;
   }
-}
-
-/// Cells that are linked to those of a track and not far from its box become part of it: sides that come into view.
-void ObjectTracker::associate(const TrackingInput& input, std::span<const Expectation> expectations,
-                              std::vector<std::int32_t>& owner) const {
-  std::vector<std::vector<std::int32_t>> owners_of_group;
-  for (std::size_t i = 0; i < owner.size(); ++i) {
-    if (input.groups[i] >= owners_of_group.size()) {
-      owners_of_group.resize(input.groups[i] + 1);
-    }
-    std::vector<std::int32_t>& owners = owners_of_group[input.groups[i]];
-    if (owner[i] != kNobody && std::find(owners.begin(), owners.end(), owner[i]) == owners.end()) {
-      owners.push_back(owner[i]);
-    }
-  }
-  for (std::size_t i = 0; i < owner.size(); ++i) {
-    if (owner[i] != kNobody) {
-      continue;
-    }
-    const MovingCell& cell = input.moving.cells[i];
-    double nearest = config_.growth_m;
-    for (const std::int32_t k : owners_of_group[input.groups[i]]) {
-      const Expectation& expected = expectations[static_cast<std::size_t>(k)];
-      const double outside = expected.outside(input.cell_points[i], cell.time_s);
-      if (outside < nearest && expected.gate_ratio(input.cell_directions[i], cell.radial_mps) < 2.0 &&
-          expected.width_with(input.cell_points[i], cell.time_s) < expected.max_width_m) {
-        nearest = outside;
-        owner[i] = k;
-      }
-    }
-  }
-}
-
-/// Adds to slow tracks the points in their boxes that are not among the moving ones but move as they do.
-void ObjectTracker::gather_static(const TrackingInput& input, std::span<const Expectation> expectations,
-                                  const Workers& workers) {
-  std::vector<std::size_t> slow;
-  std::vector<Expectation> expected;
-  for (std::size_t k = 0; k < entries_.size(); ++k) {
-    if (entries_[k].has_moved &&
-        expectations[k].may_appear_static(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
-      slow.push_back(k);
-      expected.push_back(expectations[k]);
-    }
-  }
-  std::vector<std::vector<std::uint32_t>> static_points(slow.size());
-  std::vector<std::size_t> contradictions(slow.size(), 0);
-  visit_static_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
-    if (contradicts(expected[i], direction, input.radial[row], config_)) {
-      ++contradictions[i];
-    } else if (expected[i].gate_ratio(direction, input.radial[row]) < 1.0) {
-      static_points[i].push_back(row);
-    }
+  find_static_rows(input, expected, entry.static_rows);
+  std::size_t contradictions = 0;
+  std::erase_if(entry.static_rows, [&](std::uint32_t row) {
+    const Vector3d direction = input.direction_world(row);
+    const bool is_contrary = contradicts(expected, direction, input.radial[row], config_);
+    contradictions += is_contrary ? 1 : 0;
+    return is_contrary || !(expected.gate_ratio(direction, input.radial[row]) < 1.0);
   });
-  for (std::size_t i = 0; i < slow.size(); ++i) {
-    std::vector<std::uint32_t>& members = entries_[slow[i]].members;
-    if (contradictions[i] > members.size() + static_points[i].size()) {
-      members.clear();
-      continue;
-    }
-    const auto middle = static_cast<std::ptrdiff_t>(members.size());
-    members.insert(members.end(), static_points[i].begin(), static_points[i].end());
-    std::inplace_merge(members.begin(), members.begin() + middle, members.end());
+  if (contradictions > entry.members.size() + entry.static_rows.size()) {
+    entry.members.clear();
+    return;
   }
+  entry.merged.resize(entry.members.size() + entry.static_rows.size());
+  std::merge(entry.members.begin(), entry.members.end(), entry.static_rows.begin(), entry.static_rows.end(),
+             entry.merged.begin());
+  std::swap(entry.members, entry.merged);
 }
 
 /// Lets each track take in its points.
-void ObjectTracker::collect_members(const TrackingInput& input, std::span<const Expectation> expectations,
-                                    const std::vector<std::int32_t>& owner, const Workers& workers) {
-  for (Entry& entry : entries_) {
+void ObjectTracker::collect_members(const TrackingInput& input, const Workers& workers) {
+  for (Entry& entry : living()) {
     entry.members.clear();
   }
   for (std::size_t i = 0; i < input.moving.rows.size(); ++i) {
-    const std::int32_t k = owner[input.moving.order.cell[i]];
+    const std::int32_t k = owners_.owner[input.moving.order.cell[i]];
     if (k != kNobody) {
       entries_[static_cast<std::size_t>(k)].members.push_back(input.moving.rows[i]);
     }
   }
-  gather_static(input, expectations, workers);
-  workers.for_each(entries_.size(), 1, [&](std::size_t k) {
-    Entry& entry = entries_[k];
-    ++entry.age;
-    if (entry.members.size() < kMinPoints || input.view.are_mirrored(entry.members)) {
-      ++entry.missed;
-      entry.members.clear();
-      return;
-    }
-    Track corrected = entry.track;
-    corrected.correct(make_detection(input.scan, input.radial, entry.members, input.sensor, input.heights, &input.view),
-                      input.stamp_s, config_.track);
-    if (corrected.best().spread_mps() > config_.max_spread_mps) {
-      ++entry.missed;
-      entry.members.clear();
-      return;
-    }
-    entry.set_track(std::move(corrected));
-    entry.predict(input.stamp_s, config_.track);
-    entry.missed = 0;
-    ++entry.seen;
-    const bool seen_often =
-        entry.seen >= config_.confirm_scans || entry.members.size() >= static_cast<std::size_t>(config_.confirm_points);
-    entry.confirmed = entry.confirmed || (seen_often && is_credible(entry));
-    note_motion(entry, input.stamp_s);
-  });
+  workers.for_each(living_, 1, [&](std::size_t k) { correct(input, expected_[k], entries_[k]); });
+}
+
+/// Lets a track take in its points and such as stand but may be its own.
+void ObjectTracker::correct(const TrackingInput& input, const Expectation& expected, Entry& entry) const {
+  const auto miss = [&] {
+    ++entry.missed;
+    entry.members.clear();
+  };
+  gather_static(input, expected, entry);
+  ++entry.age;
+  if (entry.members.size() < kMinPoints || input.view.are_mirrored(entry.members)) {
+    return miss();
+  }
+  Track& corrected = entry.other;
+  corrected = entry.track;
+  make_detection(input.scan, input.radial, entry.members, input.sensor, input.heights, &input.view, entry.detection);
+  corrected.correct(entry.detection, input.stamp_s, config_.track);
+  if (corrected.best().spread_mps() > config_.max_spread_mps) {
+    return miss();
+  }
+  std::swap(entry.track, corrected);
+  entry.predicted_s.reset();
+  entry.predict(input.stamp_s, config_.track);
+  entry.missed = 0;
+  ++entry.seen;
+  const bool seen_often =
+      entry.seen >= config_.confirm_scans || entry.members.size() >= static_cast<std::size_t>(config_.confirm_points);
+  entry.confirmed = entry.confirmed || (seen_often && is_credible(entry));
+  note_motion(entry, input.stamp_s);
 }
 
 /// Whether the velocity is worth reporting: known well enough, or as well as it will be.
@@ -340,56 +278,63 @@ void ObjectTracker::note_motion(Entry& entry, double stamp_s) const {
 }
 
 /// Groups nobody owns become tracks.
-void ObjectTracker::initiate_tracks(const TrackingInput& input, const std::vector<std::int32_t>& owner,
-                                    const Workers& workers) {
-  std::vector<std::uint32_t> unowned;
-  for (std::uint32_t cell = 0; cell < owner.size(); ++cell) {
-    if (owner[cell] == kNobody) {
-      unowned.push_back(cell);
+void ObjectTracker::initiate_tracks(const TrackingInput& input, const Workers& workers) {
+  unowned_.clear();
+  for (std::uint32_t cell = 0; cell < owners_.owner.size(); ++cell) {
+    if (owners_.owner[cell] == kNobody) {
+      unowned_.push_back(cell);
     }
   }
-  std::vector<Entry> newborn;
-  std::vector<Expectation> expected;
-  std::vector<CellGroup> groups =
-      vehicle_groups(input.moving, unowned, config_.track.largest_width_m, config_.min_points, config_.grouping);
-  std::erase_if(groups, [&](const CellGroup& group) { return input.view.are_mirrored(group.rows); });
-  std::vector<std::optional<Track>> tracks(groups.size());
-  workers.for_each(groups.size(), 1, [&](std::size_t i) {
-    tracks[i].emplace(
-        make_detection(input.scan, input.radial, groups[i].rows, input.sensor, input.heights, &input.view),
-        input.stamp_s, config_.track);
-  });
-  for (std::size_t i = 0; i < groups.size(); ++i) {
-    const Track& track = *tracks[i];
-    // Errors around zero have more spread than signal.
-    const double spread = track.best().spread_mps();
-    const bool plausible = track.best().seen_box().size.y() <= kMax * config_.track.largest_width_m;
-    if (plausible && spread <= config_.max_spread_mps && track.best().signal_mps() >= kMinSignal * spread) {
-      newborn.push_back({0, track, track});
-      newborn.back().predict(input.stamp_s, config_.track);
-      newborn.back().members = std::move(groups[i].rows);
-      expected.emplace_back(newborn.back().predicted, newborn.back().now, input.sensor, config_);
+  vehicle_groups(input.moving, unowned_, config_.track.largest_width_m, config_.min_points, config_.grouping, grouping_,
+                 unowned_groups_);
+  const std::size_t groups = unowned_groups_.size();
+  entries_.resize(std::max(entries_.size(), living_ + groups));
+  const std::size_t first = living_;
+  workers.for_each(groups, 1, [&](std::size_t i) { begin(input, unowned_groups_.rows_of(i), entries_[first + i]); });
+  for (std::size_t i = first; i < first + groups; ++i) {
+    if (entries_[i].seen > 0) {
+      entries_[i].id = next_id_++;
+      keep(entries_[i]);
     }
   }
+}
+
+/// Makes a new track of these rows of the scan. It was never seen if they are no object.
+void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint32_t> rows, Entry& entry) const {
+  entry.seen = 0;
+  if (input.view.are_mirrored(rows)) {
+    return;
+  }
+  make_detection(input.scan, input.radial, rows, input.sensor, input.heights, &input.view, entry.detection);
+  entry.track.begin(entry.detection, input.stamp_s, config_.track);
+  // Errors around zero have more spread than signal.
+  const BoxFilter& best = entry.track.best();
+  const bool is_plausible = best.seen_box().size.y() <= kMax * config_.track.largest_width_m &&
+                            best.spread_mps() <= config_.max_spread_mps &&
+                            best.signal_mps() >= kMinSignal * best.spread_mps();
+  if (!is_plausible) {
+    return;
+  }
+  entry.predicted_s.reset();
+  entry.predict(input.stamp_s, config_.track);
   // Where many points are static, some that seem to move are errors of measurement.
-  std::vector<std::size_t> contradictions(newborn.size(), 0);
-  visit_static_points(input, expected, workers, [&](std::size_t i, std::uint32_t row, const Vector3d& direction) {
-    contradictions[i] += contradicts(expected[i], direction, input.radial[row], config_) ? 1 : 0;
+  const Expectation expected(entry.predicted, entry.now, input.sensor, config_);
+  find_static_rows(input, expected, entry.static_rows);
+  const auto contradictions = std::count_if(entry.static_rows.begin(), entry.static_rows.end(), [&](std::uint32_t row) {
+    return contradicts(expected, input.direction_world(row), input.radial[row], config_);
   });
-  for (std::size_t i = 0; i < newborn.size(); ++i) {
-    Entry& entry = newborn[i];
-    const std::size_t points = entry.members.size();
-    if (contradictions[i] > points) {
-      continue;
-    }
-    entry.id = next_id_++;
-    entry.age = 1;
-    entry.seen = 1;
-    const bool seen_often = points >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
-    entry.confirmed = seen_often && is_credible(entry);
-    note_motion(entry, input.stamp_s);
-    entries_.push_back(std::move(entry));
+  if (std::cmp_greater(contradictions, rows.size())) {
+    return;
   }
+  entry.members.assign(rows.begin(), rows.end());
+  entry.age = 1;
+  entry.seen = 1;
+  entry.missed = 0;
+  entry.has_moved = false;
+  entry.moved_s = 0.0;
+  const bool seen_often = rows.size() >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
+  entry.confirmed = seen_often && is_credible(entry);
+  note_motion(entry, input.stamp_s);
 }
 
 /// Whether nothing is to be expected of a track any more.
@@ -408,17 +353,18 @@ bool ObjectTracker::is_over(const Entry& entry, double stamp_s) const {
 
 /// Ends tracks of which nothing is to be expected any more, and makes one of those that share a place.
 void ObjectTracker::delete_tracks(const TrackingInput& input) {
-  std::vector<Entry> living;
-  living.reserve(entries_.size());
-  for (Entry& entry : entries_) {
+  const std::span<Entry> all = living();
+  living_ = 0;
+  for (Entry& entry : all) {
     if (is_over(entry, input.stamp_s)) {
       continue;
     }
-    const auto same = std::find_if(living.begin(), living.end(), [&](const Entry& older) {
+    const std::span<Entry> kept = living();
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const Entry& older) {
       return are_same_object(older.seen_track(), entry.seen_track(), input.view, input.sensor.T_world_sensor, config_);
     });
-    if (same == living.end()) {
-      living.push_back(std::move(entry));
+    if (same == kept.end()) {
+      keep(entry);
     } else if (entry.members.size() > same->members.size()) {
       // The name of the older one continues with the state of what is seen more of.
       entry.id = same->id;
@@ -426,18 +372,16 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
       entry.seen = same->seen;
       entry.confirmed = same->confirmed || entry.confirmed;
       entry.has_moved = same->has_moved || entry.has_moved;
-      *same = std::move(entry);
+      std::swap(*same, entry);
     }
   }
-  entries_ = std::move(living);
 }
 
-TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sensor,
-                                    const Eigen::Matrix3d& ego_covariance) const {
+void ObjectTracker::report(const SensorMotion& sensor, const Eigen::Matrix3d& ego_covariance, Entry& entry,
+                           TrackedObject& object) const {
   const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
   const Eigen::Matrix3d R = T_sensor_world.linear();
   const BodyFilter& body = entry.predicted.body();
-  TrackedObject object;
   object.id = entry.id;
   object.status = !entry.confirmed   ? TrackStatus::kTentative
                   : entry.missed > 0 ? TrackStatus::kCoasting
@@ -457,7 +401,8 @@ TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sens
   const Vector3d across = (R * ground_.ground().up()).cross(object.centroid);
   const double sigma_mps = config_.tangential_sigma_mps;
   object.tangential_observed = across.dot(object.covariance * across) < sigma_mps * sigma_mps * across.squaredNorm();
-  Track later = entry.predicted;
+  Track& later = entry.other;
+  later = entry.predicted;
   later.predict(later.time_s() + object.prediction.after_s, config_.track);
   const BoxEstimate then = later.estimate();
   object.prediction.centre = T_sensor_world * then.box.centre;
@@ -467,15 +412,16 @@ TrackedObject ObjectTracker::report(const Entry& entry, const SensorMotion& sens
   object.age_scans = entry.age;
   object.scans_seen = entry.seen;
   object.members = entry.members;
-  return object;
 }
 
-/// What tracks predict is computed from their states.
+/// What tracks predict is computed from their states; what lies behind the living ones is memory.
 void ObjectTracker::state(StateArchive& archive) {
-  archive.each(entries_, Entry{0, Track::blank(), Track::blank()}, [&](Entry& entry) {
+  entries_.resize(living_);
+  archive.each(entries_, [&](Entry& entry) {
     archive(entry.id, entry.track, entry.confirmed, entry.has_moved, entry.moved_s, entry.age, entry.seen,
             entry.missed);
   });
+  living_ = entries_.size();
   archive(ground_, next_id_, first_stamp_, last_stamp_, T_world_last_);
 }
 

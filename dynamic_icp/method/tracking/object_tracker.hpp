@@ -13,6 +13,7 @@
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/ego_motion/support_plane.hpp"
+#include "dynamic_icp/method/tracking/association.hpp"
 #include "dynamic_icp/method/tracking/expectation.hpp"
 #include "dynamic_icp/method/tracking/ground.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
@@ -59,12 +60,13 @@ class ObjectTracker {
   /// are as measured. `radial`: for each row the velocity of the point itself along its line of sight over ground
   /// (m/s). `is_moving`: for each row nonzero where that is too much for noise. `support`: the plane that carries the
   /// scene, where it shows one. `ego_covariance`: of the velocity of the sensor, (m/s)^2, sensor frame; all velocities
-  /// over ground share its error. Throws std::invalid_argument when these differ in length or are not finite, and when
-  /// the stamp is not later than that of the previous scan.
-  std::vector<TrackedObject> update(const Scan& scan, std::span<const double> radial,
-                                    std::span<const std::uint8_t> is_moving, const Eigen::Isometry3d& T_world_sensor,
-                                    const std::optional<ego_motion::SupportPlane>& support, const Workers& workers,
-                                    const Eigen::Matrix3d& ego_covariance = Eigen::Matrix3d::Zero());
+  /// over ground share its error. The objects are valid until the next call. Throws std::invalid_argument when these
+  /// differ in length or are not finite, and when the stamp is not later than that of the previous scan.
+  std::span<const TrackedObject> update(const Scan& scan, std::span<const double> radial,
+                                        std::span<const std::uint8_t> is_moving,
+                                        const Eigen::Isometry3d& T_world_sensor,
+                                        const std::optional<ego_motion::SupportPlane>& support, const Workers& workers,
+                                        const Eigen::Matrix3d& ego_covariance = Eigen::Matrix3d::Zero());
 
   /// What is known between two scans.
   void state(StateArchive& archive);
@@ -72,28 +74,27 @@ class ObjectTracker {
  private:
   struct Entry;
 
+  [[nodiscard]] std::span<Entry> living();
+  void keep(Entry& entry);
   TrackingInput prepare(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
                         const SensorMotion& sensor, const Workers& workers);
   template <typename Choice>
-  std::vector<Expectation> expectations(double stamp_s, const SensorMotion& sensor, const Choice& choice);
-  // `expectations`: of each of the entries, in their order.
-  void assign(const TrackingInput& input, std::span<const Expectation> expectations,
-              std::vector<std::int32_t>& owner) const;
-  void associate(const TrackingInput& input, std::span<const Expectation> expectations,
-                 std::vector<std::int32_t>& owner) const;
-  void collect_members(const TrackingInput& input, std::span<const Expectation> expectations,
-                       const std::vector<std::int32_t>& owner, const Workers& workers);
-  void gather_static(const TrackingInput& input, std::span<const Expectation> expectations, const Workers& workers);
-  void initiate_tracks(const TrackingInput& input, const std::vector<std::int32_t>& owner, const Workers& workers);
+  void expect(double stamp_s, const SensorMotion& sensor, const Choice& choice);
+  void collect_members(const TrackingInput& input, const Workers& workers);
+  void gather_static(const TrackingInput& input, const Expectation& expected, Entry& entry) const;
+  void correct(const TrackingInput& input, const Expectation& expected, Entry& entry) const;
+  void initiate_tracks(const TrackingInput& input, const Workers& workers);
+  void begin(const TrackingInput& input, std::span<const std::uint32_t> rows, Entry& entry) const;
   [[nodiscard]] bool is_credible(const Entry& entry) const;
   void note_motion(Entry& entry, double stamp_s) const;
   [[nodiscard]] bool is_over(const Entry& entry, double stamp_s) const;
   void delete_tracks(const TrackingInput& input);
-  [[nodiscard]] TrackedObject report(const Entry& entry, const SensorMotion& sensor,
-                                     const Eigen::Matrix3d& ego_covariance) const;
+  void report(const SensorMotion& sensor, const Eigen::Matrix3d& ego_covariance, Entry& entry,
+              TrackedObject& object) const;
 
   TrackerConfig config_;
-  std::vector<Entry> entries_;
+  std::vector<Entry> entries_;  ///< the tracks, and behind them memory for more
+  std::size_t living_ = 0;      ///< number of tracks
   GroundFilter ground_;
   std::int64_t next_id_ = 1;
   std::optional<Stamp> first_stamp_;
@@ -103,11 +104,16 @@ class ObjectTracker {
   // Of the last scan, for their memory
   RangeImage view_;
   MovingCells moving_;
+  GroupingMemory grouping_;
   std::vector<std::uint32_t> groups_;  ///< of the cells
   std::vector<Eigen::Vector3d> cell_points_;
   std::vector<Eigen::Vector3d> cell_directions_;
-  std::vector<std::int32_t> owner_;  ///< of the cells
+  std::vector<Expectation> expected_;   ///< of the tracks
+  CellOwners owners_;                   ///< numbers of tracks
+  std::vector<std::uint32_t> unowned_;  ///< cells
+  CellGroups unowned_groups_;
   std::optional<GroundHeights> heights_;
+  std::vector<TrackedObject> objects_;  ///< as many as tracks, and behind them memory for more
 };
 
 }  // namespace dynamic_icp::tracking

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <memory_resource>
 #include <numbers>
 #include <optional>
 #include <utility>
@@ -24,8 +25,12 @@ constexpr int kDecisionDetections = 10;      // after so many the best hypothesi
 
 }  // namespace
 
-Track::Track(const Detection& detection, double stamp_s, const TrackConfig& config)
-    : time_s_(stamp_s + detection.mean_time_s) {
+void Track::begin(const Detection& detection, double stamp_s, const TrackConfig& config) {
+  time_s_ = stamp_s + detection.mean_time_s;
+  detections_ = 1;
+  has_sides_ = false;
+  best_ = 0;
+  hypotheses_.clear();
   hypotheses_.emplace_back(detection, std::nullopt, 0.0, config);
   add_headings(detection, 0.0, config);
   evaluate();
@@ -50,7 +55,8 @@ std::optional<double> Track::heading_of_motion() const {
 /// The sides of what is seen, where they are long enough to show a direction, else the motion.
 void Track::add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config) {
   const Eigen::Matrix3d& level = detection.ground.level;
-  const std::vector<Eigen::Vector3d> points = points_at_mean_time(detection, body().velocity());
+  DetectionMemory memory;
+  const std::pmr::vector<Eigen::Vector3d> points = points_at_mean_time(detection, body().velocity(), memory);
   const std::optional<double> yaw = fit_yaw(points, level, 0.0, 0.5 * kQuarterTurn);
   double side_m = 0.0;
   if (yaw) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -22,11 +23,16 @@ namespace dynamic_icp::tracking {
 /// drops those that explain the next detections worse.
 class Track {
  public:
-  /// From a first detection with at least one point, in a scan `stamp_s` after any origin of time.
-  Track(const Detection& detection, double stamp_s, const TrackConfig& config);
+  /// Of nothing yet: to be begun, or to be read.
+  Track() { hypotheses_.reserve(kMostHypotheses); }
 
-  /// One of nothing, for its state to be read.
-  static Track blank() { return Track(); }
+  /// From a first detection with at least one point, in a scan `stamp_s` after any origin of time.
+  Track(const Detection& detection, double stamp_s, const TrackConfig& config) : Track() {
+    begin(detection, stamp_s, config);
+  }
+
+  /// The same in the memory of another track.
+  void begin(const Detection& detection, double stamp_s, const TrackConfig& config);
 
   /// Moves the state to `time_s`.
   void predict(double time_s, const TrackConfig& config);
@@ -44,7 +50,9 @@ class Track {
   void state(StateArchive& archive);
 
  private:
-  Track() = default;
+  // Without heading, with that of the motion, and with either direction along the sides.
+  static constexpr std::size_t kMostHypotheses = 4;
+
   void add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config);
   [[nodiscard]] std::optional<double> heading_of_motion() const;
   [[nodiscard]] bool has_heading() const;
@@ -53,7 +61,7 @@ class Track {
   std::vector<BoxFilter> hypotheses_;
   std::size_t best_ = 0;
   double time_s_ = 0.0;
-  int detections_ = 1;
+  int detections_ = 0;
   bool has_sides_ = false;  ///< long enough to show a heading, at any time
 };
 
