@@ -14,6 +14,7 @@ export const canInflate = () => typeof DecompressionStream === 'function';
 
 /** @param {string} text @returns {Uint8Array} */
 export function decodeBase64(text) {
+  if (Uint8Array.fromBase64) return Uint8Array.fromBase64(text);
   const binary = atob(text.trim());
   const bytes = new Uint8Array(binary.length);
   for (let i = 0; i < bytes.length; ++i) bytes[i] = binary.charCodeAt(i);

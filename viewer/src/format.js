@@ -14,5 +14,8 @@ export function shortNumber(value, digits = 3) {
 export const withUnit = (value, unit, digits = 3) =>
   `${shortNumber(value, digits)}${unit && value !== null ? `${unit === '°' ? '' : ' '}${unit}` : ''}`;
 
+/** A whole number with its thousands apart. What the browser has for that takes 15 ms to begin. */
+export const grouped = (count) => String(count).replace(/\B(?=(\d{3})+$)/g, ',');
+
 /** @param {number} count */
-export const counted = (count, one, many = `${one}s`) => `${count.toLocaleString('en')} ${count === 1 ? one : many}`;
+export const counted = (count, one, many = `${one}s`) => `${grouped(count)} ${count === 1 ? one : many}`;

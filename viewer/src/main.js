@@ -29,6 +29,8 @@ import { keptKeys, readFragment, writeFragment } from './state.js';
 import { createStore } from './store.js';
 import { followTheme } from './theme.js';
 
+const PICTURE_WITHIN = 3000; // ms; without one, say in a window nobody sees, the page goes on
+
 /** Ablations are many and much alike: they are shown when they are asked for, unless there is nothing else. */
 function ablationsOf(report) {
   const isAblation = (run) => run.facts.some(([name, value]) => name === 'ablation' && value !== 'none');
@@ -49,15 +51,17 @@ function usualState(report) {
 }
 
 function sheetsOf(report, store, player) {
-  const plots = { id: 'plots', name: 'Plots', element: createPlotSheet(report, store, player) };
+  const single = report.kind === 'run';
   const hasTruth = report.runs.some((run) => run.stretches);
-  const distances = hasTruth ? [{ id: 'distance', name: 'Distance', element: createDistanceSheet(report, store) }] : [];
-  const distributions = { id: 'distributions', name: 'CDF', element: createDistributionSheet(report, store) };
-  const hasObjects = report.kind === 'run' && report.runs[0].frames.objects.some((list) => list.length > 0);
-  const objects = hasObjects ? [{ id: 'objects', name: 'Objects', element: createObjectSheet(report, store, player) }] : [];
-  const summary = { id: 'summary', name: report.kind === 'run' ? 'Summary' : 'Run', element: createSummarySheet(report, store) };
-  const configuration = { id: 'configuration', name: 'Settings', element: createConfigurationSheet(report, store) };
-  return [plots, ...objects, ...distances, distributions, summary, configuration];
+  const hasObjects = single && report.runs[0].frames.objects.some((list) => list.length > 0);
+  return [
+    { id: 'plots', name: 'Plots', create: () => createPlotSheet(report, store, player) },
+    hasObjects && { id: 'objects', name: 'Objects', create: () => createObjectSheet(report, store, player) },
+    hasTruth && { id: 'distance', name: 'Distance', create: () => createDistanceSheet(report, store) },
+    { id: 'distributions', name: 'CDF', create: () => createDistributionSheet(report, store) },
+    { id: 'summary', name: single ? 'Summary' : 'Run', create: () => createSummarySheet(report, store) },
+    { id: 'configuration', name: 'Settings', create: () => createConfigurationSheet(report, store) },
+  ].filter(Boolean);
 }
 
 /** Keeps the address in step with the state, not more often than browsers allow. */
@@ -121,6 +125,7 @@ function start() {
     element('div', { class: 'readings' }, createPointReading(store), createObjectCard(report, store)));
   store.watch(['camera'], ({ camera }) => stage.classList.toggle('from-above', camera === 'top'));
   const single = report.kind === 'run';
+  const tabs = createTabs(store, sheetsOf(report, store, player));
   const page = element('div', { class: single ? 'page' : 'page several' },
     createHeader(report, store, { showHelp, link }),
     single ? null : createResults(report, store),
@@ -128,10 +133,11 @@ function start() {
       element('section', { class: 'view', 'aria-label': 'View' },
         createToolbar(report, store, view), report.kind === 'run' ? null : createRunChips(report, store),
         stage, createTimeline(report, store, player)),
-      createTabs(store, sheetsOf(report, store, player))),
+      tabs.element),
     help);
   show(page);
-  view.start();
+  // The picture first: what takes time beside it is made once it stands.
+  Promise.race([view.start(), new Promise((done) => { setTimeout(done, PICTURE_WITHIN); })]).then(tabs.fill);
   listenToKeys(bindings);
   keepAddress(store, usual);
   // Only a reader changes the fragment in a way that is told: another link, which is opened as if it were new.

@@ -14,7 +14,17 @@ export function readReport() {
   return report;
 }
 
+/** The viewer runs while the page is still being read: then what follows it is waited for. */
+const isRead = new Promise((done) => {
+  if (document.readyState === 'loading') document.addEventListener('DOMContentLoaded', done, { once: true });
+  else done();
+});
+
+/** Whether an element stands there to its end: something follows it. */
+const isWhole = (holder) => holder !== null && holder.nextSibling !== null;
+
 async function bytesOf(id) {
+  if (!isWhole(document.getElementById(id))) await isRead;
   const holder = document.getElementById(id);
   if (!holder) throw new Error(`The page has no element '${id}'.`);
   return inflate(decodeBase64(holder.textContent));

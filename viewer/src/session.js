@@ -44,12 +44,8 @@ export function fitState(report, state) {
   return { ...state, group, run, frame: Math.min(state.frame, lastFrame(report.runs[run])), object, chase: object !== null && state.chase === true };
 }
 
-/** A frame to begin with: the first whose scan has moving objects in it, some way into the drive. */
+/** A frame to begin with: that of the scan the page names, which stands before all others in it. */
 export function firstFrame(run) {
-  const begin = Math.min(frameCount(run) - 1, Math.max(1, Math.floor(frameCount(run) / 4)));
-  for (let frame = begin; frame < frameCount(run); ++frame) {
-    const place = keptScan(run, frame);
-    if (place !== null && run.scans.frames[place] === frame && run.frames.objects[frame]?.length > 0) return frame;
-  }
-  return Math.max(0, begin);
+  if (run.scans) return run.scans.frames[run.scans.first] ?? 0;
+  return Math.max(0, Math.min(frameCount(run) - 1, Math.floor(frameCount(run) / 4)));
 }

@@ -14,8 +14,13 @@ export function followTheme(store) {
 
 export const otherTheme = (state) => (groundOf(state) === 'dark' ? 'light' : 'dark');
 
+const known = new Map(); // colours by theme and name: asking the browser makes it style the page at once
+
 /** A colour of the style sheet: '#rrggbb', or three numbers from 0 to 1. */
 export function cssColour(name, asNumbers = false) {
-  const text = getComputedStyle(document.documentElement).getPropertyValue(name).trim();
+  const root = document.documentElement;
+  const key = `${root.dataset.theme} ${name}`;
+  if (!known.has(key)) known.set(key, getComputedStyle(root).getPropertyValue(name).trim());
+  const text = known.get(key);
   return asNumbers ? [1, 3, 5].map((at) => parseInt(text.slice(at, at + 2), 16) / 255) : text;
 }

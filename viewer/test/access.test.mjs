@@ -7,6 +7,7 @@ import test from 'node:test';
 import { findBrowser, openPage, skipIfMissing } from './browser.mjs';
 import { pageFiles } from './page_files.mjs';
 import { samples } from './sample_page.mjs';
+import { whole } from './use_page.mjs';
 
 const found = await findBrowser();
 skipIfMissing(found);
@@ -30,7 +31,7 @@ for (const kind of Object.keys(samples)) {
   for (const colorScheme of ['light', 'dark']) {
     test(`${kind}, ${colorScheme}: no violation of WCAG 2.1 AA on any sheet`, async () => {
       const { page } = await openPage(own.browser, own.write(kind, samples[kind]()), { colorScheme });
-      await page.waitForSelector('.scene-holder[data-frame]');
+      await whole(page);
       for (const tab of await page.$$('.tabs button')) {
         await tab.click();
         assert.deepEqual(await violations(page), [], await tab.textContent());

@@ -25,7 +25,7 @@ execFileSync(program, ['run', drive, '--output', out, '--save-labels', '--report
 const file = join(out, 'report.html');
 const html = readFileSync(file, 'utf8');
 const held = /<script type="application\/json" id="report">([^<]*)<\/script>/.exec(html);
-if (!held || !/<script type="module">/.test(html)) {
+if (!held || !/<script>/.test(html)) {
   rmSync(folder, { recursive: true, force: true });
   skipIfMissing({ missing: 'the program was built without the viewer' });
 }

@@ -185,6 +185,9 @@ export function sampleRun({ name = 'street', frames = 24, points = 1500, keepEve
       bytes.push(scanBytes(list2, unit));
     }
   }
+  // To begin with: the first scan with objects, a quarter of the way into the drive.
+  const begin = Math.min(frames - 1, Math.max(1, Math.floor(frames / 4)));
+  kept.first = Math.max(0, kept.frames.findIndex((frame) => frame >= begin && objects[frame].length > 0));
   const status = Array.from({ length: frames }, (_, k) => (k === 0 ? 'first' : k % 11 === 7 || k % 11 === 8 ? 'degenerate' : k % 17 === 12 ? 'lost' : 'ok'));
   const series = (value) => Array.from({ length: frames }, (_, k) => value(k));
   const jitter = (mean) => mean * (0.6 + 0.8 * random());
@@ -265,11 +268,13 @@ export function pageOf({ kind, title, parts, groups, tables, notes = [] }, viewe
     schema: 1, kind, title, generator: 'dynamic-icp 0.1.0', notes, runs: parts.map(({ run }) => run),
     ...(groups ? { groups } : {}), ...(tables ? { tables } : {}),
   };
+  const holder = (id, bytes) => `<script type="text/plain" id="${id}">${base64(bytes)}</script>`;
   const bytes = parts.flatMap(({ scans, map, traces }, r) => [
-    ...scans.map((scan, k) => `<script type="text/plain" id="scan-${r}-${k}">${base64(scan)}</script>`),
-    ...(map ? [`<script type="text/plain" id="map-${r}">${base64(map)}</script>`] : []),
-    ...(traces ? [`<script type="text/plain" id="traces-${r}">${base64(traces)}</script>`] : []),
+    ...scans.map((scan, k) => ({ first: k === 0 || k === parts[r].run.scans?.first, text: holder(`scan-${r}-${k}`, scan) })),
+    ...(map ? [{ first: false, text: holder(`map-${r}`, map) }] : []),
+    ...(traces ? [{ first: false, text: holder(`traces-${r}`, traces) }] : []),
   ]);
+  const texts = (first) => bytes.filter((entry) => entry.first === first).map(({ text }) => text).join('\n');
   return `<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -282,8 +287,9 @@ export function pageOf({ kind, title, parts, groups, tables, notes = [] }, viewe
 <body>
 <div id="app"><h1>${escapeText(title)}</h1><p>Without JavaScript this page shows its numbers only.</p></div>
 <script type="application/json" id="report">${escapeJson(report)}</script>
-${bytes.join('\n')}
-<script type="module">${viewer.script}</script>
+${texts(true)}
+<script>${viewer.script}</script>
+${texts(false)}
 </body>
 </html>
 `;

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/report/page.hpp"
 
+#include <algorithm>
+#include <span>
 #include <stdexcept>
 
 #include <fmt/format.h>
@@ -115,14 +117,21 @@ std::string html_page(const PageContent& content, const ViewerBundle& viewer) {
   html += "<script type=\"application/json\" id=\"report\">";
   html += data;
   html += "</script>\n";
-  for (const auto& [id, bytes] : content.blobs) {
-    html += fmt::format("<script type=\"text/plain\" id=\"{}\">", id);
-    html += bytes;
-    html += "</script>\n";
-  }
-  html += "<script type=\"module\">\n";
+  const auto append = [&](std::span<const std::pair<std::string, std::string>> blobs) {
+    for (const auto& [id, bytes] : blobs) {
+      html += fmt::format("<script type=\"text/plain\" id=\"{}\">", id);
+      html += bytes;
+      html += "</script>\n";
+    }
+  };
+  const std::span<const std::pair<std::string, std::string>> blobs = content.blobs;
+  const std::size_t first = std::min(content.first_blobs, blobs.size());
+  append(blobs.first(first));
+  html += "<script>\n";  // no module: those wait for the end of the page
   html += viewer.script;
-  html += "\n</script>\n</body>\n</html>\n";
+  html += "\n</script>\n";
+  append(blobs.subspan(first));
+  html += "</body>\n</html>\n";
   return html;
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -16,6 +17,8 @@ namespace dynamic_icp::report {
 struct PageContent {
   Json report;
   std::vector<std::pair<std::string, std::string>> blobs;  ///< id of the element and its base64 text
+  std::size_t first_blobs =
+      0;  ///< so many of them stand before the viewer, which begins with them; the others behind it
 };
 
 /// "dynamic-icp 0.1.0".

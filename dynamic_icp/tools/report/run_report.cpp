@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/report/run_report.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
@@ -11,6 +14,30 @@
 
 namespace dynamic_icp::report {
 namespace {
+
+/// The kept scan that a page begins with: the first one with moving objects, a quarter of the way into the drive, else
+/// the first one there.
+std::size_t first_shown(const runs::RunFiles& run, const std::vector<KeptScan>& scans) {
+  const std::size_t begin = run.frames.size() / 4;
+  const auto there =
+      std::find_if(scans.begin(), scans.end(), [&](const KeptScan& scan) { return scan.frame >= begin; });
+  const auto found =
+      std::find_if(there, scans.end(), [&](const KeptScan& scan) { return !run.objects[scan.frame].empty(); });
+  if (found != scans.end()) {
+    return static_cast<std::size_t>(found - scans.begin());
+  }
+  return there != scans.end() ? static_cast<std::size_t>(there - scans.begin()) : scans.size() - 1;
+}
+
+/// Puts what the first picture needs before everything else: the scan that is shown, and the first one, which tells
+/// where the sensor looks.
+void put_first(std::size_t run, std::size_t shown, PageContent& content) {
+  const std::string ids[] = {fmt::format("scan-{}-{}", run, shown), fmt::format("scan-{}-0", run)};
+  const auto rest = std::stable_partition(content.blobs.begin(), content.blobs.end(), [&](const auto& blob) {
+    return std::find(std::begin(ids), std::end(ids), blob.first) != std::end(ids);
+  });
+  content.first_blobs = static_cast<std::size_t>(rest - content.blobs.begin());
+}
 
 /// The entry "scans" of a run; its blobs go to `content`.
 Json scans_data(std::size_t run, RunScans& kept, PageContent& content) {
@@ -71,6 +98,11 @@ PageContent run_report(const std::filesystem::path& folder, const ScanChoice& ch
   data["scans"] = scans_data(0, kept, content);
   data["map"] = map_data("map", 0, kept.map, content);
   data["traces"] = map_data("traces", 0, kept.traces, content);
+  if (!kept.scans.empty()) {
+    const std::size_t shown = first_shown(run, kept.scans);
+    data["scans"]["first"] = shown;
+    put_first(0, shown, content);
+  }
   content.report = {{"schema", 1},           {"kind", "run"},
                     {"title", name_of(run)}, {"generator", generator()},
                     {"notes", notes},        {"runs", Json::array({std::move(data)})}};

@@ -113,6 +113,22 @@ TEST(RunReport, HoldsWhatTheContractNames) {
   EXPECT_EQ(page.data.size(), drive.frames + 3) << "report, map, traces and scans, nothing else";
 }
 
+TEST(RunReport, WhatIsShownFirstStandsBeforeTheViewerAndTheRestBehindIt) {
+  const runs::TestFolder folder;
+  WallDrive drive;
+  drive.frames = 9;
+  drive.write(folder);
+  const std::string html = html_of(folder);
+  const json scans = read_page(html).report["runs"][0]["scans"];
+  EXPECT_EQ(scans["first"], 2) << "the first with the car in it, a quarter of the way into the drive";
+  const std::size_t viewer = html.find("start();");
+  for (std::size_t k = 0; k < drive.frames; ++k) {
+    EXPECT_EQ(html.find(fmt::format("id=\"scan-0-{}\"", k)) < viewer, k == 0 || k == 2) << k;
+  }
+  EXPECT_LT(html.find("id=\"report\""), viewer);
+  EXPECT_GT(html.find("id=\"map-0\""), viewer);
+}
+
 TEST(RunReport, NeedsNothingFromOutside) {
   const runs::TestFolder folder;
   WallDrive().write(folder);

@@ -1,6 +1,6 @@
 // The moving objects: a card over the view about the selected one, and a sheet with its plot and the tracks of the run.
 import { button, element } from '../dom.js';
-import { counted, shortNumber } from '../format.js';
+import { counted, grouped, shortNumber } from '../format.js';
 import { createChart } from '../plots/chart.js';
 import { runAt } from '../session.js';
 import { headingInWorld, nearestOf, speedPlotOf, summaryOf, tracksOf } from '../tracks.js';
@@ -19,7 +19,7 @@ export function factsOf(run, object, track) {
     ['heading', withSigma(headingInWorld(run, object.frame, object), details?.headingSigma, '°')],
     ['size', `${sizeText(object.extent)} m`],
     ['range', `${shortNumber(Math.hypot(...object.centre))} m`],
-    ['points', object.points.toLocaleString('en')],
+    ['points', grouped(object.points)],
     ['seen in', counted(track.frames.length, 'scan')],
     ...(details ? [
       ['age', counted(details.age, 'scan')],

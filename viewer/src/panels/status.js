@@ -1,6 +1,6 @@
 // Over the view: which frame this is, how fast it goes, and what is wrong with it.
 import { element } from '../dom.js';
-import { counted, shortNumber } from '../format.js';
+import { counted, grouped, shortNumber } from '../format.js';
 import { speedOf } from '../runs.js';
 import { runAt } from '../session.js';
 
@@ -14,7 +14,7 @@ function scanNote(run, shown) {
   const parts = [];
   if (shown.scanFrame !== shown.frame) parts.push(`points of frame ${shown.scanFrame} (not every scan is in this page)`);
   if (!run.scans.whole[shown.place]) {
-    parts.push(`${run.scans.points[shown.place].toLocaleString('en')} of ${run.scans.of[shown.place].toLocaleString('en')} points`);
+    parts.push(`${grouped(run.scans.points[shown.place])} of ${grouped(run.scans.of[shown.place])} points`);
   }
   return parts.join(' · ');
 }
@@ -43,13 +43,14 @@ export function createStatus(report, store) {
       setText(entries[k].lastChild, value);
     });
     while (entries.length > facts.length) entries.pop().remove();
-    badge.className = `badge ${['ok', 'degenerate', 'lost', 'first'].includes(status) ? status : 'other'}`;
+    const look = `badge ${['ok', 'degenerate', 'lost', 'first'].includes(status) ? status : 'other'}`;
+    if (badge.className !== look) badge.className = look;
     setText(badge, status);
     const directions = frames.lost_directions[frame] ?? [];
     const reasons = [frames.reason[frame], directions.length ? `unknown: ${directions.join(', ')}` : ''].filter(Boolean);
-    trouble.textContent = reasons.join(' · ');
+    setText(trouble, reasons.join(' · '));
     trouble.hidden = reasons.length === 0;
-    note.textContent = state.shown ? scanNote(run, state.shown) : '';
+    setText(note, state.shown ? scanNote(run, state.shown) : '');
     note.hidden = note.textContent === '';
   });
   return element('div', { class: 'status' }, line, trouble, note);

@@ -198,7 +198,7 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
     const ratio = Math.min(2, window.devicePixelRatio || 1);
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
-    const pen = canvas.getContext('2d');
+    const pen = canvas.getContext('2d', { willReadFrequently: true });
     pen.scale(ratio, ratio);
     x = createScale({ ...plot.x, ...(span ? { low: span[0], high: span[1] } : {}), from: EDGE.left, to: width - EDGE.right });
     y = createScale({

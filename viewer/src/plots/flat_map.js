@@ -55,6 +55,7 @@ export function createFlatMap(report, store) {
     start() {
       store.watch(['frame', 'run', 'group', 'hidden', 'theme', 'systemTheme'], draw);
       new ResizeObserver(draw).observe(holder);
+      return Promise.resolve();
     },
     resetCamera() {},
     savePicture() { canvas.toBlob((blob) => save(blob, 'trajectory.png')); },

@@ -24,11 +24,30 @@ export function placeBoxes(boxes) {
   return stands;
 }
 
+/** Sets what differs: what is set again as it was makes the browser look at it again. */
+const put = (holder, key, value) => { if (holder[key] !== value) holder[key] = value; };
+
+const MOST_SIZES = 4000; // of texts, remembered
+
 export function createLabels() {
   const layer = element('div', { class: 'labels', 'aria-hidden': 'true' });
-  const pool = [];
+  const pool = []; // {span, transform}
+  const sizes = new Map(); // by look and text: asking for one lays the page out
   const world = new Vector3();
   const place = new Vector3();
+
+  /** The sizes of texts; those not known are read all at once. @param {{entry: object, label: object, key: string}[]} seen */
+  function measure(seen) {
+    const unknown = seen.filter(({ key }) => !sizes.has(key));
+    if (unknown.length === 0) return;
+    if (sizes.size > MOST_SIZES) sizes.clear();
+    for (const { entry } of unknown) put(entry.span, 'hidden', false);
+    for (const { entry, key } of unknown) {
+      const { offsetWidth: width, offsetHeight: height } = entry.span;
+      if (width > 0) sizes.set(key, { width, height });
+    }
+  }
+
   return {
     element: layer,
     /**
@@ -37,32 +56,38 @@ export function createLabels() {
      */
     draw(labels, toWorld, camera, width, height) {
       while (pool.length < labels.length) {
-        pool.push(element('span'));
-        layer.append(pool.at(-1));
+        const entry = { span: element('span', { hidden: true }), transform: '' };
+        pool.push(entry);
+        layer.append(entry.span);
       }
       const seen = [];
-      pool.forEach((span, k) => {
+      pool.forEach((entry, k) => {
         const label = labels[k];
         if (label) place.copy(world.fromArray(label.place).applyMatrix4(toWorld)).project(camera);
-        span.hidden = !label || Math.abs(place.z) >= 1 || Math.abs(place.x) >= 1 || Math.abs(place.y) >= 1;
-        if (span.hidden) return;
-        if (span.textContent !== label.text) span.textContent = label.text;
-        span.className = label.kind ?? '';
+        if (!label || Math.abs(place.z) >= 1 || Math.abs(place.x) >= 1 || Math.abs(place.y) >= 1) {
+          put(entry.span, 'hidden', true);
+          return;
+        }
+        const kind = label.kind ?? '';
+        put(entry.span, 'textContent', label.text);
+        put(entry.span, 'className', kind);
         seen.push({
-          span, x: (0.5 + 0.5 * place.x) * width, y: (0.5 - 0.5 * place.y) * height,
+          entry, key: `${kind} ${label.text}`, x: (0.5 + 0.5 * place.x) * width, y: (0.5 - 0.5 * place.y) * height,
           rank: label.rank, distance: world.distanceTo(camera.position),
         });
       });
-      // All sizes are read before anything is moved, so that the page is laid out once.
-      const boxes = seen.map(({ span, x, y, rank, distance }) => {
-        const { offsetWidth, offsetHeight } = span;
+      measure(seen);
+      const boxes = seen.map(({ key, x, y, rank, distance }) => {
+        const size = sizes.get(key) ?? { width: 0, height: 0 };
         // Those at the edge are moved in rather than cut off.
-        const left = Math.min(Math.max(0, x - offsetWidth / 2), Math.max(0, width - offsetWidth));
-        return { left, top: Math.max(0, y - offsetHeight), width: offsetWidth, height: offsetHeight, rank, distance };
+        const left = Math.min(Math.max(0, x - size.width / 2), Math.max(0, width - size.width));
+        return { left, top: Math.max(0, y - size.height), ...size, rank, distance };
       });
       placeBoxes(boxes).forEach((stands, k) => {
-        seen[k].span.hidden = !stands;
-        if (stands) seen[k].span.style.transform = `translate(${boxes[k].left}px, ${boxes[k].top}px)`;
+        const { entry } = seen[k];
+        put(entry.span, 'hidden', !stands);
+        const transform = `translate(${boxes[k].left}px, ${boxes[k].top}px)`;
+        if (stands && transform !== entry.transform) entry.span.style.transform = entry.transform = transform;
       });
     },
   };

@@ -1,7 +1,7 @@
 // The ways of the runs and of the ground truth: what is driven is strong, what is to come is pale.
 import { Group } from 'three';
 import { rgb } from '../colour/maps.js';
-import { frameCount, poseOf } from '../runs.js';
+import { frameCount } from '../runs.js';
 import { createSegments } from './segments.js';
 
 /**
@@ -11,15 +11,18 @@ import { createSegments } from './segments.js';
 export function pathSegments(poses, count, origin) {
   const ends = [];
   const until = [];
-  let last = null;
+  const isKnown = (frame) => {
+    for (let k = 7 * frame; k < 7 * frame + 7; ++k) if (!Number.isFinite(poses[k])) return false;
+    return true;
+  };
+  let wasKnown = false;
   for (let frame = 0; frame < count; ++frame) {
-    const pose = poseOf(poses, frame);
-    const here = pose && pose.slice(0, 3).map((value, axis) => value - origin[axis]);
-    if (last && here) {
-      ends.push(...last, ...here);
+    const known = isKnown(frame);
+    if (known && wasKnown) {
+      for (const place of [frame - 1, frame]) for (let axis = 0; axis < 3; ++axis) ends.push(poses[7 * place + axis] - origin[axis]);
       until.push(frame);
     }
-    last = here;
+    wasKnown = known;
   }
   return { ends, until };
 }
@@ -27,7 +30,8 @@ export function pathSegments(poses, count, origin) {
 function createPath(poses, count, origin, colour, look) {
   const { ends, until } = pathSegments(poses, count, origin);
   const lines = createSegments(look);
-  lines.show(ends, until.flatMap(() => rgb(colour).map((value) => value / 255)), until);
+  const shares = rgb(colour).map((value) => value / 255);
+  lines.show(ends, until.flatMap(() => shares), until);
   return { object: lines.object, drive: lines.setNow, fade: lines.fade, dispose: lines.dispose };
 }
 

@@ -97,7 +97,11 @@ export function createSegments({ width, opacity = 1, pale = opacity }) {
         }
         limit.array[vertex] = until[k] ?? 0;
       }
-      for (const attribute of [start, end, tint, limit]) attribute.needsUpdate = true;
+      for (const attribute of [start, end, tint, limit]) {
+        attribute.clearUpdateRanges();
+        attribute.addUpdateRange(0, 4 * count * attribute.itemSize);
+        attribute.needsUpdate = true;
+      }
       geometry.setDrawRange(0, 6 * count);
     },
     setNow(now) { uniforms.now.value = now; },

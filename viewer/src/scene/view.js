@@ -6,18 +6,19 @@ import { mapStops } from '../colour/maps.js';
 import { element } from '../dom.js';
 import { shortNumber } from '../format.js';
 import { readMap, readScan } from '../page_data.js';
-import { facingOf, frameCount, headingInSensor, keptScan, objectOf, originOf, poseOf } from '../runs.js';
+import { facingOf, headingInSensor, keptScan, objectOf, originOf, poseOf } from '../runs.js';
 import { createScanCache } from '../scan_cache.js';
 import { groupAt, runAt, runsShown, sameScan } from '../session.js';
 import { headingInWorld, nearestOf, objectAt, tracksOf, yawOf } from '../tracks.js';
 import { cssColour, groundOf } from '../theme.js';
+import { boundsOf } from './bounds.js';
 import { createCameraRig } from './camera_rig.js';
 import { createRenderer, onNextFrame, poseMatrix } from './context.js';
 import { createLabels } from './labels.js';
 import { createObjects } from './objects.js';
 import { createOverlay } from './overlay.js';
 import { createPaths } from './paths.js';
-import { boxUnder, pointUnder, rayThrough } from './picking.js';
+import { listenToPointer } from './pointer.js';
 import { createPredictedPoints } from './predicted_points.js';
 import { pictureOf, save } from './save_picture.js';
 import { createScanPoints } from './scan_points.js';
@@ -30,27 +31,9 @@ const READ_AHEAD = 4;
 const POINTS_IN_MOTION = 8000;
 const REST = 180;
 
-/** The middle and size of all positions of the runs. */
-function boundsOf(runs, origin) {
-  const low = [Infinity, Infinity, Infinity];
-  const high = [-Infinity, -Infinity, -Infinity];
-  for (const run of runs) {
-    for (let frame = 0; frame < frameCount(run); ++frame) {
-      poseOf(run.frames.poses, frame)?.slice(0, 3).forEach((value, axis) => {
-        low[axis] = Math.min(low[axis], value - origin[axis]);
-        high[axis] = Math.max(high[axis], value - origin[axis]);
-      });
-    }
-  }
-  if (!Number.isFinite(low[0])) return { centre: [0, 0, 0], radius: 30 };
-  return {
-    centre: low.map((value, axis) => 0.5 * (value + high[axis])),
-    radius: Math.max(10, 0.5 * Math.hypot(...low.map((value, axis) => high[axis] - value))),
-  };
-}
-
 /**
- * @returns {{element: HTMLElement, resetCamera: () => void} | null} null without WebGL
+ * @returns {{element: HTMLElement, start: () => Promise<void>, resetCamera: () => void, savePicture: () => Promise<void>} | null}
+ *   null without WebGL; what `start` promises is the first picture
  */
 export function createView(report, store) {
   const canvas = element('canvas', { class: 'scene', tabindex: 0, role: 'img', 'aria-label': 'Scan and trajectory in 3D' });
@@ -92,6 +75,10 @@ export function createView(report, store) {
   let eyeTimer = 0;
   let restTimer = 0;
   let drawn = null; // the scan in the buffers, and whether it is all of it
+  let predictedScan = null; // whose crosses are in the buffers
+  let extent = { width: 0, height: 0 }; // px; asking the page for it at every drawing would lay it out
+  let draws = 0;
+  let firstDrawn = null; // told after the first picture
 
   const keepEye = () => {
     clearTimeout(eyeTimer);
@@ -101,8 +88,8 @@ export function createView(report, store) {
   const draw = onNextFrame(drawNow);
 
   function drawNow() {
-    const { clientWidth: width, clientHeight: height } = holder;
-    if (width === 0 || height === 0) return;
+    const { width, height } = extent;
+    if (width === 0 || height === 0 || !current.run) return;
     const camera = rig.camera();
     renderer.render(scene, camera);
     const { layers, picked, object, ruler } = store.state;
@@ -115,7 +102,8 @@ export function createView(report, store) {
       picked: picked && new Vector3(...picked.place).applyMatrix4(points.object.matrix).toArray(),
     }, camera, width, height);
     holder.dataset.frame = current.frame;
-    holder.dataset.draws = Number(holder.dataset.draws ?? 0) + 1;
+    holder.dataset.draws = ++draws;
+    firstDrawn?.();
   }
 
   function colourPoints() {
@@ -157,13 +145,21 @@ export function createView(report, store) {
     }
   }
 
+  /** Where the points of objects go until the next scan; made when it is looked at. */
+  function showPredicted() {
+    const { scan, scanObjects, run, place } = current;
+    if (!store.state.layers.has('predicted') || predictedScan === scan) return;
+    predictedScan = scan;
+    predicted.show(scan, scanObjects, scan ? run.scans.dt[place] ?? 0 : 0);
+  }
+
   function showScan(run, place, scan) {
     const frame = place === null ? null : run.scans.frames[place];
     const listed = frame === null ? [] : (run.frames.objects[frame] ?? []).map(objectOf);
     current.scanObjects = listed;
     standOut();
     showPoints(true);
-    predicted.show(scan, listed, place === null ? 0 : run.scans.dt[place] ?? 0);
+    showPredicted();
     if (scan && scan.count > 0) {
       // One height for a whole run, so that colours and rings do not jump.
       if (current.groundOf !== run) {
@@ -271,6 +267,7 @@ export function createView(report, store) {
   function showLayers() {
     const { layers } = store.state;
     points.setShown(layers.has('unused'), layers.has('still'), layers.has('moving'));
+    showPredicted();
     predicted.object.visible = layers.has('predicted');
     objects.boxes.visible = layers.has('boxes');
     objects.arrows.visible = layers.has('arrows');
@@ -286,84 +283,14 @@ export function createView(report, store) {
 
   function resize() {
     const { clientWidth: width, clientHeight: height } = holder;
-    if (width === 0 || height === 0) return;
+    if (width === 0 || height === 0 || (width === extent.width && height === extent.height)) return;
+    extent = { width, height };
     renderer.setSize(width, height, false);
     rig.resize(width, height);
     drawNow(); // at once, or the emptied canvas shows for a moment
   }
 
-  /** A matrix from the frame of something in the scene to clip space. */
-  function toClip(part) {
-    const camera = rig.camera();
-    camera.updateMatrixWorld();
-    return new Matrix4().multiplyMatrices(camera.projectionMatrix, camera.matrixWorldInverse).multiply(part.matrix);
-  }
-
-  function pixelOf(event) {
-    const box = canvas.getBoundingClientRect();
-    return { x: event.clientX - box.left, y: event.clientY - box.top, width: box.width, height: box.height, reach: 10 };
-  }
-
-  /** What is known of the point under the pointer, or null. */
-  function pickPoint(pixel) {
-    const { scan } = current;
-    if (!scan || !points.object.visible) return null;
-    const { layers } = store.state;
-    const isShown = (i) => layers.has(scan.label[i] === 0 ? 'unused' : scan.label[i] === 1 ? 'still' : 'moving');
-    const i = pointUnder(scan.positions, scan.count, toClip(points.object).elements, pixel, isShown);
-    return i < 0 ? null : {
-      place: Array.from(scan.positions.slice(3 * i, 3 * i + 3)), doppler: scan.doppler[i],
-      compensated: scan.compensated[i], residual: scan.residual[i], label: scan.label[i],
-      object: current.scanObjects[scan.label[i] - 3]?.id ?? null,
-    };
-  }
-
-  /** The point and the object under the pointer: an object by its points, or by its box where no point lies before that. */
-  function pick(event) {
-    const pixel = pixelOf(event);
-    const picked = pickPoint(pixel);
-    if (picked && picked.object !== null) return { picked, object: picked.object };
-    const ray = rayThrough(toClip(objects.object).invert().elements, pixel);
-    const box = objects.boxes.visible ? boxUnder(ray, current.objects) : null;
-    const before = picked && box && new Vector3(...picked.place).applyMatrix4(points.object.matrix)
-      .applyMatrix4(objects.object.matrix.clone().invert()).distanceTo(new Vector3(...ray.from)) < box.distance;
-    return box && !before ? { picked: null, object: box.object.id } : { picked, object: null };
-  }
-
-  /** The place of the world under the pointer: of a point of the scan, else on the ground below the sensor. From above all is level. */
-  function placeUnder(event) {
-    const pixel = pixelOf(event);
-    const picked = pickPoint(pixel);
-    const level = rig.seenFromAbove() !== null;
-    if (picked) {
-      const [x, y, z] = new Vector3(...picked.place).applyMatrix4(points.object.matrix).toArray();
-      return [x, y, level ? 0 : z];
-    }
-    const { from, along } = rayThrough(toClip(rings.object).invert().elements, pixel);
-    const distance = (groundHeight - from[2]) / along[2];
-    if (!(distance > 0 && distance < 5000)) return null;
-    const [x, y, z] = new Vector3(...from).addScaledVector(new Vector3(...along), distance).applyMatrix4(rings.object.matrix).toArray();
-    return [x, y, level ? 0 : z];
-  }
-
-  function measure(event) {
-    const place = placeUnder(event);
-    const { ruler } = store.state;
-    if (place) store.set({ ruler: ruler.length === 1 ? [ruler[0], place] : [place] });
-  }
-
-  let pressedAt = null;
-  canvas.addEventListener('pointerdown', (event) => {
-    pressedAt = [event.clientX, event.clientY];
-    canvas.classList.add('by-pointer'); // keys that follow draw no frame about it
-  });
-  canvas.addEventListener('blur', () => canvas.classList.remove('by-pointer'));
-  canvas.addEventListener('pointerup', (event) => {
-    const moved = pressedAt && Math.hypot(event.clientX - pressedAt[0], event.clientY - pressedAt[1]);
-    if (moved === null || moved >= 4 || event.button !== 0) return;
-    if (store.state.measuring) measure(event);
-    else store.set(pick(event));
-  });
+  listenToPointer(canvas, store, { rig, points, objects, rings, shown: () => current, groundHeight: () => groundHeight });
   canvas.addEventListener('webglcontextrestored', draw);
 
   const start = () => {
@@ -432,6 +359,12 @@ export function createView(report, store) {
       draw();
     });
     new ResizeObserver(resize).observe(holder);
+    return new Promise((done) => {
+      firstDrawn = () => {
+        firstDrawn = null;
+        done();
+      };
+    });
   };
 
   const chaseOf = ({ chase, object }) => (chase ? object : null);
@@ -458,7 +391,7 @@ export function createView(report, store) {
       const run = runAt(report, store.state);
       const bar = run.scans && chosen.map !== 'categories'
         ? { gradient: mapStops(chosen.map, ground), ends: [chosen.map === 'diverging' ? `−${shortNumber(most)}` : '0', `${shortNumber(most)} ${chosen.unit}`] } : null;
-      const { clientWidth: width, clientHeight: height } = holder;
+      const { width, height } = extent;
       drawNow(); // a canvas keeps its picture only until the browser has shown it
       const blob = await pictureOf(
         { canvases: [canvas, ...overlay.elements], labels: [...labels.element.children].filter((span) => !span.hidden), width, height },
