@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
 # Installs the packages the build needs, if any is missing. For Debian 12, Ubuntu 22.04 and newer; as root or with sudo.
 # usage: scripts/install_dependencies.sh [clang] [tests] [pictures] [benchmarks [peers]] [fuzzing] [format] [lint] [packages]
-#                                         [python]
+#                                         [python] [site]
 #   clang        builds in two thirds of the time of g++, if the distribution has it
 #   pictures     for PNG files from dynamic-icp plot (60 MB)
 #   python       for the Python package and its tests
+#   site         for scripts/site.sh, the documentation as a site
 #   benchmarks   for scripts/benchmark_speed.sh; peers: also the libraries it compares with (1.2 GB)
 set -euo pipefail
 
@@ -41,8 +42,11 @@ for purpose in "$@"; do
       packages+=(pybind11-dev python3-dev python3-numpy python3-pytest)
       # For pip install and for those tests that compare or need more; without one they skip themselves.
       optional+=(python3-scipy python3-matplotlib python3-pandas python3-hypothesis mypy python3-skbuild python3-pip) ;;
+    site)
+      packages+=(mkdocs mkdocs-material doxygen)
+      optional+=(libjs-katex fonts-katex) ;;  # formulas
     *)
-      echo "unknown purpose '$purpose'; known are: clang, tests, pictures, benchmarks, peers, fuzzing, format, lint, packages, python" >&2
+      echo "unknown purpose '$purpose'; known are: clang, tests, pictures, benchmarks, peers, fuzzing, format, lint, packages, python, site" >&2
       exit 2 ;;
   esac
 done

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 // Documents that are made from the program, or say what the program does, are true.
+#include <algorithm>
+#include <cctype>
 #include <map>
 #include <regex>
 #include <sstream>
@@ -15,10 +17,18 @@ TEST(Documents, ConfigurationPageIsWhatTheProgramPrints) {
       << "make it again: build/dynamic-icp config --markdown > docs/configuration.md";
 }
 
-TEST(Documents, TheExampleOfTheReadmeIsTheOneThatIsCompiled) {
-  const std::string example = read_file(source_folder() / "tests" / "consumer" / "consumer.cpp");
-  const std::string code = example.substr(example.find("#include"));
-  EXPECT_NE(read_file(source_folder() / "README.md").find(code), std::string::npos);
+TEST(Documents, TheExamplesInCppAreThoseThatAreCompiled) {
+  const std::string page = read_file(source_folder() / "docs" / "cpp.md");
+  for (const char* name : {"consumer.cpp", "callback.cpp"}) {
+    const std::string example = read_file(source_folder() / "tests" / "consumer" / name);
+    const std::size_t begin = example.find("#include");
+    std::size_t end = example.size();
+    if (std::string(name) == "callback.cpp") {  // its main only makes up scans
+      end = example.find("\nint main");
+    }
+    ASSERT_NE(end, std::string::npos) << name;
+    EXPECT_NE(page.find(example.substr(begin, end - begin)), std::string::npos) << name;
+  }
 }
 
 /// What stands after a word, up to the end of its line.
@@ -50,7 +60,7 @@ TEST(Documents, TheMapNamesEveryModuleAndWhatItIncludes) {
 /// Every page of the documentation with its text.
 std::map<fs::path, std::string> pages() {
   std::map<fs::path, std::string> texts;
-  for (const char* folder : {"", "docs", "docs/derivations", "docs/results"}) {
+  for (const char* folder : {"", "docs", "docs/derivations", "docs/results", "docs/site"}) {
     for (const fs::directory_entry& page : fs::directory_iterator(source_folder() / folder)) {
       if (page.path().extension() == ".md") {
         texts[page.path()] = read_file(page.path());
@@ -60,15 +70,68 @@ std::map<fs::path, std::string> pages() {
   return texts;
 }
 
-TEST(Documents, LinksLeadToFiles) {
-  for (const auto& [page, text] : pages()) {
+/// A page without its blocks of code.
+std::string without_code(const std::string& text) {
+  std::istringstream lines(text);
+  std::string kept;
+  bool in_code = false;
+  for (std::string line; std::getline(lines, line);) {
+    const bool is_fence = line.starts_with("```");
+    if (!in_code && !is_fence) {
+      kept += line + "\n";
+    }
+    in_code ^= is_fence;
+  }
+  return kept;
+}
+
+/// The anchors of the headings of a page, as GitHub and the site (docs/site) make them: small letters, hyphens for
+/// blanks, nothing else but letters, digits and underscores.
+std::vector<std::string> anchors(const std::string& text) {
+  std::vector<std::string> found;
+  std::istringstream lines(without_code(text));
+  for (std::string line; std::getline(lines, line);) {
+    const std::size_t title = line.find_first_not_of('#');
+    if (title == 0 || title > 6 || title == std::string::npos || line[title] != ' ') {
+      continue;
+    }
+    std::string anchor;
+    for (const char c : line.substr(title + 1)) {
+      const auto letter = static_cast<unsigned char>(c);
+      if (c == ' ') {
+        anchor += '-';
+      } else if (std::isalnum(letter) != 0 || c == '-' || c == '_') {
+        anchor += static_cast<char>(std::tolower(letter));
+      }
+    }
+    found.push_back(anchor);
+  }
+  return found;
+}
+
+TEST(Documents, LinksLeadToFilesAndHeadings) {
+  EXPECT_EQ(anchors("# One: `two`, (three)\n```\n# no\n```\n## C++\n#no\n"),
+            (std::vector<std::string>{"one-two-three", "c"}));
+  int headings = 0;
+  for (const auto& [page, whole] : pages()) {
+    const std::string text = without_code(whole);
     for (std::size_t at = text.find("]("); at != std::string::npos; at = text.find("](", at + 1)) {
-      const std::string target = text.substr(at + 2, text.find_first_of(")#", at + 2) - at - 2);
-      if (!target.empty() && target.find("://") == std::string::npos) {
-        EXPECT_TRUE(fs::exists(page.parent_path() / target)) << page << ": " << target;
+      const std::string link = text.substr(at + 2, text.find(')', at + 2) - at - 2);
+      if (link.empty() || link.find("://") != std::string::npos) {
+        continue;
+      }
+      const std::size_t hash = link.find('#');
+      const fs::path target = hash == 0 ? page : page.parent_path() / link.substr(0, hash);
+      EXPECT_TRUE(fs::exists(target)) << page << ": " << link;
+      if (hash != std::string::npos && target.extension() == ".md" && fs::exists(target)) {
+        const std::vector<std::string> known = anchors(read_file(target));
+        EXPECT_TRUE(std::find(known.begin(), known.end(), link.substr(hash + 1)) != known.end())
+            << page << ": " << link;
+        ++headings;
       }
     }
   }
+  EXPECT_GT(headings, 20);
 }
 
 TEST(Documents, ScriptsTheyNameExist) {

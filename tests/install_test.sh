@@ -52,7 +52,7 @@ echo "== As a subproject: the method alone, and nothing of the parent is changed
 "$cmake" -S "$tests/consumer_subproject" -B "$folder/subproject" -DDYNAMIC_ICP_SOURCES="$tests/.." >"$folder/log" ||
   { cat "$folder/log"; exit 1; }
 
-echo "== The whole installation, and the example of the README"
+echo "== The whole installation, and the examples of docs/cpp.md"
 "$cmake" --install "$build" --prefix "$folder/all" >/dev/null
 build_consumer consumer "$folder/all" "$folder/io"
 shared_io=$(find "$folder/all" -name 'libdynamic_icp_io.so')
@@ -60,3 +60,5 @@ shared_io=$(find "$folder/all" -name 'libdynamic_icp_io.so')
 "$folder/all/bin/dynamic-icp" simulate street --frames 2 --quiet --output "$folder/two"
 "$folder/io/consumer" "$folder/two" | tee "$folder/output"
 [[ $(wc -l <"$folder/output") -eq 2 ]]
+"$folder/io/callback" | tee "$folder/output"
+grep -qE '^ok  position .* velocity +10(\.[0-9e-]+)? |^ok  position .* velocity +9\.9[0-9]* ' "$folder/output"

@@ -7,7 +7,6 @@ import importlib.util
 import inspect
 import os
 import pathlib
-import re
 import shutil
 import subprocess
 import sys
@@ -64,18 +63,6 @@ def test_examples_in_docstrings_are_right():
     modules = [sys.modules[name] for name in sorted(sys.modules) if name.split(".")[0] == "dynamic_icp"]
     results = [doctest.testmod(module) for module in modules if hasattr(module, "__file__")]
     assert sum(result.attempted for result in results) >= 6 and sum(result.failed for result in results) == 0
-
-
-def test_the_guide_is_right(folder, tmp_path, monkeypatch):
-    monkeypatch.chdir(tmp_path)
-    pytest.importorskip("matplotlib").use("svg")
-    shutil.copytree(folder, tmp_path / "RECORDING")
-    text = (SOURCES / "docs" / "python.md").read_text(encoding="utf-8")
-    blocks = re.findall(r"```python\n(.*?)```", text, re.DOTALL)
-    names = {}
-    assert len(blocks) >= 5
-    for block in blocks:
-        exec(compile(block, "docs/python.md", "exec"), names)  # one block goes on where the one before ended
 
 
 @pytest.mark.parametrize("script", sorted(path.name for path in EXAMPLES.glob("*.py")))

@@ -1,4 +1,4 @@
-// The example of the README, word for word: odometry over a recording in fifteen lines.
+// The first example of docs/cpp.md, word for word: odometry over a recording in fifteen lines.
 #include <iostream>
 
 #include <dynamic_icp/dynamic_icp.hpp>

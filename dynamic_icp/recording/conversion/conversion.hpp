@@ -21,9 +21,9 @@ Target find_target(std::string_view name);
 
 /// Writes scans of a recording into a folder, which exists and is empty, in another layout:
 ///   dicp  as datasets/layouts.hpp has it, with one pose for each scan, interpolated where the truth has other stamps
-///   npz   <stamp>.npz with points (N, 3), doppler, time_offset_ns or time_offset_s, los (N, 3) and the other columns
-///   pcd   <stamp>.pcd, binary, with x, y, z, doppler and so on; los_x, los_y, los_z
-///   ply   <stamp>.ply, the same
+///   npz   `<stamp>.npz` with points (N, 3), doppler, time_offset_ns or time_offset_s, los (N, 3) and the other columns
+///   pcd   `<stamp>.pcd`, binary, with x, y, z, doppler and so on; los_x, los_y, los_z
+///   ply   `<stamp>.ply`, the same
 ///   mcap  recording.mcap, one file with the same columns (mcap_target.hpp), the truth and the mountings
 /// The stamp is in nanoseconds, with zeros in front to 19 digits; the truth is in ref_poses.txt; where the sensor or
 /// the sensors of a rig sit in calibration.json (datasets/calibration.hpp). Every column has the smallest type that
