@@ -92,6 +92,7 @@ int run(int argc, char** argv) {
     return kWrongUsage;
   }
   apps::refuse_unknown_command(app, words);
+  apps::refuse_single_dashes(app, words);
   try {
     app.parse(std::vector<std::string>(words.rbegin(), words.rend()));  // as it takes them: the last word first
   } catch (const CLI::Success& help_or_version) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "apps/wrong_words.hpp"
 
+#include <algorithm>
 #include <optional>
 
 #include <CLI/CLI.hpp>
@@ -34,13 +35,24 @@ std::vector<std::string> long_names(const CLI::App& command) {
 
 bool is_number(const std::string& word) { return word.find_first_not_of("-0123456789.eE") == std::string::npos; }
 
+/// The option that was probably meant: one that begins with what was typed, else one that is spelled alike.
+std::string_view meant_option(const std::string& typed, const std::vector<std::string>& known) {
+  constexpr std::size_t kTelling = 4;  // two letters behind the dashes
+  for (const std::string& name : known) {
+    if (typed.size() >= kTelling && name.starts_with(typed)) {
+      return name;
+    }
+  }
+  return close_key(typed, known);
+}
+
 /// The first option that the command does not have.
 std::optional<std::string> unknown_option(const CLI::App& command) {
   const std::vector<std::string> known = long_names(command);
   for (const std::string& word : command.remaining()) {
     if (word.size() > 1 && word.starts_with('-') && !is_number(word)) {
       const std::string name = word.substr(0, word.find('='));
-      const std::string_view nearest = close_key(name, known);
+      const std::string_view nearest = meant_option(name, known);
       return fmt::format("'{}' has no option '{}'{}", command.get_name(), name,
                          nearest.empty() ? "" : fmt::format("; did you mean '{}'?", nearest));
     }
@@ -58,6 +70,23 @@ void refuse_unknown_command(const CLI::App& app, const std::vector<std::string>&
   if (std::find(known.begin(), known.end(), words.front()) == known.end()) {
     throw UsageError(fmt::format("unknown command '{}'{}; known are: {}", words.front(),
                                  did_you_mean(words.front(), known), fmt::join(known, ", ")));
+  }
+}
+
+void refuse_single_dashes(const CLI::App& app, const std::vector<std::string>& words) {
+  const std::vector<const CLI::App*> commands = app.get_subcommands(
+      [&](const CLI::App* command) { return !words.empty() && command->get_name() == words.front(); });
+  if (commands.empty()) {
+    return;
+  }
+  const CLI::App* const command = commands.front();
+  const std::vector<std::string> known = long_names(*command);
+  for (const std::string& word : words) {
+    const std::string name = "-" + word.substr(0, word.find('='));
+    if (name.starts_with("--") && std::find(known.begin(), known.end(), name) != known.end()) {
+      throw UsageError(fmt::format("'{}' has no option '{}'; did you mean '{}'?; see 'dynamic-icp {} --help'",
+                                   command->get_name(), name.substr(1), name, command->get_name()));
+    }
   }
 }
 

@@ -17,6 +17,10 @@ namespace dynamic_icp::apps {
 /// meant.
 void refuse_unknown_command(const CLI::App& app, const std::vector<std::string>& words);
 
+/// Throws UsageError for the name of an option of the command behind one dash instead of two: `-output OUT` would be
+/// read as the option `-o` with the value `utput`.
+void refuse_single_dashes(const CLI::App& app, const std::vector<std::string>& words);
+
 /// What is wrong with a command line that could not be read, and which command explains it. An unknown option comes
 /// before a missing one: mistyped, it is both.
 std::string explanation(const CLI::App& app, const CLI::ParseError& error);

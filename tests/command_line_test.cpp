@@ -75,6 +75,9 @@ TEST_F(CommandLine, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("run " + in + out + " --wrong", "--wrong");
   expect_usage_error("run " + in + " --ouput " + (folder_ / "out").string(),
                      "no option '--ouput'; did you mean '--output'");
+  expect_usage_error("run " + in + " --out x", "no option '--out'; did you mean '--output'");
+  expect_usage_error("run " + in + " -output x", "no option '-output'; did you mean '--output'");
+  expect_usage_error("help rnu", "(did you mean 'run'?)");
   expect_usage_error("run " + in + out + " --set voxel_sise_m=1", "did you mean 'preprocess.voxel.voxel_size_m'");
   expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m=-1", "0 to 100 m");
   expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m", "expected key=value");
