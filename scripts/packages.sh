@@ -3,10 +3,11 @@
 # usage: scripts/packages.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
+is_clone() { [[ -e .git ]] && command -v git >/dev/null; }  # a container may have the one without the other
 
 scripts/install_dependencies.sh pictures packages
 scripts/build.sh -DDYNAMIC_ICP_BUILD_PYTHON=ON all
-if [[ -e .git ]]; then
+if is_clone; then
   export SOURCE_DATE_EPOCH=${SOURCE_DATE_EPOCH:-$(git log -1 --format=%ct)}
 fi
 
@@ -15,7 +16,7 @@ rm -rf "$folder"
 (cd build && cpack >/dev/null)
 rm -rf "$folder/_CPack_Packages"
 
-if [[ -e .git ]]; then
+if is_clone; then
   # What is committed, and the viewer of reports, which is bundled with packages from the network.
   name=dynamic-icp-$(sed -n 's/^CMAKE_PROJECT_VERSION:STATIC=//p' build/CMakeCache.txt)
   bundle=(build/dynamic_icp/tools/report/viewer_bundle.cpp)
