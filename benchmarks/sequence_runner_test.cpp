@@ -54,6 +54,7 @@ TEST_F(SequenceRunner, MeasuresEveryCombinationAndWritesIt) {
     EXPECT_LE(row.at("p50_ms_least_of_runs"), p50);
     EXPECT_GE(row.at("p50_ms_largest_of_runs"), p50);
     EXPECT_GE(row.at("max_ms"), p50);
+    EXPECT_GT(row.at("cpu_ms"), 0.0);
     EXPECT_DOUBLE_EQ(row.at("ratio"), p50 / 12.5);
     EXPECT_GT(row.at("speed_up"), 0.0);
     EXPECT_GT(row.at("points_mean"), row.at("points_used_mean"));

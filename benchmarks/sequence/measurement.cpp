@@ -4,6 +4,7 @@
 
 #include <array>
 #include <chrono>
+#include <ctime>
 
 #include <fmt/format.h>
 #include <nlohmann/json.hpp>
@@ -52,14 +53,17 @@ Run measure(const Setup& setup) {
   restart_peak();
   run.loaded_mib = resident_mib();
   for (std::size_t i = 0; i < recording.scans.size(); ++i) {
+    const std::clock_t cpu_begin = std::clock();
     const Clock::time_point begin = Clock::now();
     const odometry::Frame frame = odometry->process(recording.scans[i]);
     const double ms = std::chrono::duration<double, std::milli>(Clock::now() - begin).count();
+    const double cpu_ms = 1000.0 * static_cast<double>(std::clock() - cpu_begin) / CLOCKS_PER_SEC;
     if (i < kWarmUpScans) {
       run.warm_up_ms.push_back(ms);
       continue;
     }
     run.ms.push_back(ms);
+    run.cpu_ms_mean += cpu_ms / counted;
     run.points_mean += static_cast<double>(frame.points) / counted;
     run.points_used_mean += static_cast<double>(frame.points_used) / counted;
     run.lost += odometry::verdict(frame.status) == "lost" ? 1 : 0;
@@ -83,6 +87,7 @@ void to_json(nlohmann::ordered_json& json, const Run& run) {
   json = {{"warm_up_ms", run.warm_up_ms},
           {"ms", run.ms},
           {"stage_p50_ms", run.stage_p50_ms},
+          {"cpu_ms_mean", run.cpu_ms_mean},
           {"points_mean", run.points_mean},
           {"points_used_mean", run.points_used_mean},
           {"lost", run.lost},
@@ -94,6 +99,7 @@ void from_json(const nlohmann::ordered_json& json, Run& run) {
   json.at("warm_up_ms").get_to(run.warm_up_ms);
   json.at("ms").get_to(run.ms);
   json.at("stage_p50_ms").get_to(run.stage_p50_ms);
+  json.at("cpu_ms_mean").get_to(run.cpu_ms_mean);
   json.at("points_mean").get_to(run.points_mean);
   json.at("points_used_mean").get_to(run.points_used_mean);
   json.at("lost").get_to(run.lost);

@@ -29,6 +29,7 @@ struct Run {
   std::vector<double> warm_up_ms;              ///< each of the first scans
   std::vector<double> ms;                      ///< each of the others, from RawScan to Frame
   std::map<std::string, double> stage_p50_ms;  ///< median of each stage over the scans that count
+  double cpu_ms_mean = 0.0;                    ///< processor time of all threads a scan, of the scans that count
   double points_mean = 0.0;                    ///< a scan as read, of the scans that count
   double points_used_mean = 0.0;               ///< after range crop and voxel grid
   std::size_t lost = 0;                        ///< scans, of those that count, with a pose that is only predicted

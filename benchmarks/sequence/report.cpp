@@ -57,6 +57,7 @@ Row summarise(const Setup& setup, const std::vector<Run>& runs) {
   row.p95_ms = over_runs(runs, [](const Run& run) { return percentiles(run.ms).p95; });
   row.p99_ms = over_runs(runs, [](const Run& run) { return percentiles(run.ms).p99; });
   row.max_ms = over_runs(runs, [](const Run& run) { return percentiles(run.ms).max; });
+  row.cpu_ms = over_runs(runs, [](const Run& run) { return run.cpu_ms_mean; });
   for (std::size_t i = 0; i < runs.front().warm_up_ms.size(); ++i) {
     row.warm_up_ms.push_back(over_runs(runs, [i](const Run& run) { return run.warm_up_ms[i]; }));
   }
@@ -177,6 +178,7 @@ nlohmann::ordered_json json_of(const std::vector<Row>& rows) {
                     {"p95_ms", row.p95_ms},
                     {"p99_ms", row.p99_ms},
                     {"max_ms", row.max_ms},
+                    {"cpu_ms", row.cpu_ms},
                     {"warm_up_ms", row.warm_up_ms},
                     {"stage_p50_ms", row.stage_p50_ms},
                     {"speed_up", number_or_null(row.speed_up)},

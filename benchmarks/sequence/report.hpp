@@ -26,6 +26,8 @@ struct Row {
   double p95_ms = 0.0;
   double p99_ms = 0.0;
   double max_ms = 0.0;
+  double cpu_ms =
+      0.0;  ///< processor time of all threads, mean of the scans: what else runs on the machine is not in it
   std::vector<double> warm_up_ms;
   std::map<std::string, double> stage_p50_ms;
   double peak_mib = 0.0;
