@@ -1,5 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <functional>
 #include <memory>
 #include <optional>
 
@@ -84,21 +85,30 @@ void check_output_file(const ConvertOptions& options, const std::vector<fs::path
   }
 }
 
+/// Each scan is read twice: one is done with every second reading, half of them when all were read once.
+std::function<void()> every_second(Progress& progress) {
+  return [&progress, readings = std::size_t{0}]() mutable {
+    if (++readings % 2 == 0) {
+      progress.advance();
+    }
+  };
+}
+
 /// Converts into a folder, or into one file.
 std::vector<std::string> write_output(const ConvertOptions& options, conversion::Target target,
                                       const datasets::Dataset& dataset, const datasets::ScanRange& selection) {
   const std::vector<fs::path> inputs = {options.input, dataset.scan_file(selection.begin), dataset.ground_truth_file()};
   if (is_file(options)) {
     check_output_file(options, inputs);
-    Progress progress("convert", 2 * selection.size(), options.quiet);
-    return conversion::convert_to_mcap(dataset, selection, options.output, [&] { progress.advance(); });
+    Progress progress("convert", selection.size(), options.quiet);
+    return conversion::convert_to_mcap(dataset, selection, options.output, every_second(progress));
   }
   const formats::ResultKind kind = conversion_result();
   formats::OutputFolder output(options.output, kind, options.force, inputs);
   std::vector<std::string> notes = output.fill([&] {
-    Progress progress("convert", 2 * selection.size(), options.quiet);
+    Progress progress("convert", selection.size(), options.quiet);
     std::vector<std::string> left_out =
-        conversion::convert(dataset, selection, target, output.path(), [&] { progress.advance(); });
+        conversion::convert(dataset, selection, target, output.path(), every_second(progress));
     formats::write_whole_file(output.path() / kind.marker, record_json(options, dataset, selection, left_out));
     return left_out;
   });

@@ -56,6 +56,7 @@ TEST_F(CommandLine, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("", "benchmark");
   expect_usage_error("fly", "unknown command 'fly'; known are: run, ");
   expect_usage_error("evalute x y", "unknown command 'evalute' (did you mean 'evaluate'?)");
+  expect_usage_error("rnu x --output y", "unknown command 'rnu' (did you mean 'run'?)");
   expect_usage_error("help evalute", "(did you mean 'evaluate'?)");
   expect_usage_error("run " + in, "see 'dynamic-icp run --help'");
   expect_usage_error("run " + in + out + " --max-frame 5",

@@ -99,6 +99,13 @@ TEST_F(Conversion, SomeScansOnly) {
   EXPECT_EQ(record["scans"], 2);
 }
 
+TEST_F(Conversion, ProgressCountsEachScanOnce) {
+  const Outcome outcome = convert(street(), "npz", "--max-frames 10");
+  ASSERT_EQ(outcome.status, 0) << outcome.text;
+  EXPECT_NE(outcome.text.find("convert: 5 of 10\n"), std::string::npos) << outcome.text;
+  EXPECT_NE(outcome.text.find("convert: 10 of 10\n"), std::string::npos) << outcome.text;
+}
+
 TEST_F(Conversion, EarlierResultsStayUnlessForced) {
   ASSERT_EQ(convert(street(), "pcd", "--max-frames 2").status, 0);
   const Outcome again = convert(street(), "pcd", "--max-frames 1");

@@ -37,8 +37,11 @@ TEST(CloseKey, IsSilentWhereAWordIsFarFromAll) {
   EXPECT_EQ(close_key("evalute", commands), "evaluate");
   EXPECT_EQ(close_key("benchmrak", commands), "benchmark");
   EXPECT_EQ(close_key("rum", commands), "run");
-  EXPECT_EQ(close_key("rnu", commands), "run");  // two letters swapped are one slip
   EXPECT_EQ(close_key("ifno", commands), "info");
+  for (const char* typed : {"rnu", "urn", "rn", "ruun"}) {
+    EXPECT_EQ(close_key(typed, commands), "run") << typed;
+  }
+  EXPECT_EQ(close_key("nur", commands), "") << "two changes of three letters";
   EXPECT_EQ(close_key("fly", commands), "");
   EXPECT_EQ(close_key("fly", {}), "");
   EXPECT_EQ(did_you_mean("evalute", commands), " (did you mean 'evaluate'?)");
