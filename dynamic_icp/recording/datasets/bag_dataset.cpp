@@ -78,6 +78,7 @@ class BagDataset final : public Dataset {
 
   [[nodiscard]] std::vector<PointColumn> columns(std::size_t index) const override {
     std::vector<PointColumn> columns;
+    PointColumn sensor{"sensor", {}, true};  // that no message has: its topic says it
     std::size_t rows = 0;
     for (std::size_t k = 0; k < topics_.size(); ++k) {
       const std::size_t message = message_of(index, k);
@@ -91,9 +92,15 @@ class BagDataset final : public Dataset {
         append_column(columns, rows, std::move(column));
       }
       rows += points;
+      sensor.values.resize(rows, static_cast<double>(k));
     }
-    // A column that one of the sensors lacks is none of the scan.
-    std::erase_if(columns, [&](const PointColumn& column) { return column.values.size() != rows; });
+    // A column that one of the sensors lacks is none of the scan; what its points call their sensor is not the rig's.
+    std::erase_if(columns, [&](const PointColumn& column) {
+      return column.values.size() != rows || (is_rig() && column.name == sensor.name);
+    });
+    if (is_rig()) {
+      columns.push_back(std::move(sensor));
+    }
     return columns;
   }
 

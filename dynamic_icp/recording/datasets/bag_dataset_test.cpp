@@ -225,6 +225,11 @@ TEST(BagDataset, SeveralTopicsAreARig) {
   EXPECT_TRUE(scan.directions[2].isApprox(T_left_right.linear() * Eigen::Vector3d(5, 1, 2).normalized()));
   EXPECT_TRUE(scan.directions[1].isZero());
   EXPECT_TRUE(scan.times.empty());
+  const std::vector<PointColumn> columns = dataset->columns(1);
+  ASSERT_EQ(columns.size(), 1U);
+  EXPECT_EQ(columns[0].name, "sensor") << "what is converted says which of them measured a point";
+  EXPECT_EQ(columns[0].values, (std::vector<double>{0, 0, 1}));
+  EXPECT_TRUE(columns[0].is_integer);
   EXPECT_EQ(dataset->scan(2).points.size(), 2U);
   expect_part(said(*dataset), "topic '/right': 1 of 4 scans have no cloud of it within half a period");
   expect_part(said(*dataset), "the mounting is that of frame 'left' on 'base_link'");
