@@ -27,13 +27,14 @@ Progress::~Progress() {
   }
 }
 
-void Progress::advance() {
-  ++done_;
+void Progress::advance(std::size_t steps) {
+  const std::size_t before = done_;
+  done_ += steps;
   if (quiet_) {
     return;
   }
   if (total_ == 0) {
-    if (done_ % kBetweenLines == 0) {
+    if (done_ / kBetweenLines != before / kBetweenLines) {
       tell("{}: {}\n", what_, done_);
     }
   } else if (terminal_) {
@@ -42,7 +43,7 @@ void Progress::advance() {
       drawn_ = now;
       draw_bar();
     }
-  } else if (done_ * 10 / total_ != (done_ - 1) * 10 / total_) {
+  } else if (done_ * 10 / total_ != before * 10 / total_) {
     tell("{}: {} of {}\n", what_, done_, total_);
   }
 }

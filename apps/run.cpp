@@ -139,6 +139,7 @@ int run(const RunOptions& options) {
   const runs::RunSettings settings = settings_of(options);
   Warnings warnings(options.quiet);
   std::optional<Progress> progress;
+  std::size_t shown = 0;
   bool reported = false;
   const StopOnSignal stopping(kStopNotice);
   runs::RunCallbacks callbacks;
@@ -148,6 +149,7 @@ int run(const RunOptions& options) {
   callbacks.warning = [&](const std::string& text) { warnings.show(text); };
   if (!options.quiet) {
     callbacks.listening = tell_where_to_watch;
+    callbacks.notice = [](const std::string& text) { tell("dynamic-icp: {}\n", text); };
   }
   if (settings.follow && !options.quiet) {
     tell("following {}; Ctrl-C ends it, with the results so far\n", options.recording.path.string());
@@ -156,8 +158,9 @@ int run(const RunOptions& options) {
     if (done == 0) {
       progress.emplace("odometry", total, options.quiet);
     } else {
-      progress->advance();
+      progress->advance(done - shown);
     }
+    shown = done;
     if (done == total && total > 0) {
       progress.reset();
     }
@@ -181,6 +184,10 @@ int run(const RunOptions& options) {
     };
   }
   const runs::RunResult result = runs::run_recording(options.recording, settings, callbacks).value();
+  if (result.was_complete) {
+    print_row("{}: the run is complete, nothing is left to do\n", settings.output.string());
+    return 0;
+  }
   if (!result.summary.failure.empty()) {
     tell("dynamic-icp: {}\n", result.summary.failure);
   }
@@ -200,7 +207,7 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
   command->footer(
       "Exit status: 0 done; 1 the data or the machine failed; 2 wrong usage; 3 most scans are lost: there are results, "
       "but the trajectory is a guess; 130 (interrupt) and 143 (terminate): stopped after a scan, with the results so "
-      "far. A second signal ends it at once, without results.");
+      "far. A second signal ends it at once, without results. --resume goes on after any of them.");
   command->add_option("-o,--output", options->settings.output, "Folder for the results; must be new or empty")
       ->required()
       ->type_name("DIR");
@@ -219,19 +226,32 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
       fmt::format("Edge of the voxels of which the map keeps the first point, {} to {} m (default {} m)",
                   runs::MapWriter::kMinVoxelSize_m, runs::MapWriter::kMaxVoxelSize_m, options->settings.map_voxel_m))
       ->needs(save_map);
-  add_option(
+  CLI::Option* mcap = add_option(
       *command, "--mcap", options->settings.mcap_file, "FILE",
       "Write FILE.mcap for Foxglove and Lichtblick: scans with Doppler and labels, poses, paths, objects, status "
       "and deviations over time; foxglove_layout.json beside it arranges them");
   add_live_options(*command, options->live);
-  command->add_flag("--follow", options->settings.follow,
-                    "Take the scans of INPUT as they come: of a folder that grows, until Ctrl-C or --max-frames");
+  CLI::Option* follow =
+      command->add_flag("--follow", options->settings.follow,
+                        "Take the scans of INPUT as they come: of a folder that grows, until Ctrl-C or --max-frames");
   add_option(*command, "--save-kitti", options->settings.kitti_file, "FILE",
              "Write the poses as KITTI has them, FILE.txt: 12 numbers a scan, T_world_sensor row by row");
   add_option(*command, "--calibration", options->settings.calibration, "FILE",
              "What was learned of this sensor in another run with --preset default: its calibration.yaml");
   command->add_flag("--report", options->report,
                     "Write report.html into the results, and the labels that it shows (--save-labels)");
+  CLI::Option* resume = command->add_flag(
+      "--resume", options->settings.resume,
+      "Go on with the run in DIR that ended early, in whatever way, from its last checkpoint, with the same INPUT and "
+      "options: ends with the bytes of an unbroken run, but for times of computation. Begins one where there is none");
+  resume->excludes(follow);
+  resume->excludes(mcap);
+  command
+      ->add_option("--checkpoint", options->settings.checkpoint_s,
+                   fmt::format("Seconds between two checkpoints; 0: after every scan (default {} s)",
+                               options->settings.checkpoint_s))
+      ->type_name("S")
+      ->check(CLI::Range(0.0, 86400.0).description(""));
   command->add_flag("--force", options->settings.replace, "Replace an earlier run in DIR, which may hold nothing else");
   command->add_flag("--quiet", options->quiet, "Print errors only");
   add_method_options(*command, options->method);

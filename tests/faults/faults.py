@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Lets the machine fail under the program, in every way that it can, and looks at what is left; see docs/robustness.md.
 
-usage: faults.py PROGRAM [--library failing_calls.so] [--parts calls,kills,disk,limits,inputs] [--commands NAME,...]
+usage: faults.py PROGRAM [--library failing_calls.so] [--parts calls,kills,resume,disk,limits,inputs] [--commands NAME,...]
                  [--places N] [--kills N] [--seed N]
 
 --places is how many calls of each kind fail in turn, spread evenly over those that a command makes (0: every one).
@@ -21,7 +21,7 @@ import time
 from collections import Counter
 from pathlib import Path
 
-from workload import Command, Workload, checksums, remove
+from workload import Command, Workload, checksums, contents, remove
 
 WITH_BYTES = [errno.EIO, errno.EINTR, 0]  # 0: one byte only
 FAULTS = {
@@ -143,6 +143,55 @@ def kills(work, command, findings, options):
         work.clear()
 
 
+def partial_folder(work, command):
+    """What a killed command left with a checkpoint in it."""
+    folders = [work.place / name for name in work.leftovers(command) if ".partial-" in name]
+    return next((folder for folder in folders if (folder / "checkpoint").exists()), None)
+
+
+def spoil(folder, chance):
+    """Damages what a run goes on from; it must notice."""
+    name = chance.choice(["checkpoint", "frames.jsonl", "objects.jsonl"])
+    file = folder / name
+    data = bytearray(file.read_bytes())
+    if name == "checkpoint" and chance.random() < 0.5:
+        data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
+    else:
+        data = data[: chance.randrange(len(data) // 2 + 1)]
+    file.write_bytes(data)
+    return name
+
+
+def resume(work, command, findings, options):
+    """Killed at random moments, again while it goes on, now and then with a damaged checkpoint, and resumed to its end:
+    the files of an unbroken run."""
+    chance = random.Random(options.seed)
+    work.clear()
+    work.run(command)
+    whole = contents(work.result(command))
+    work.clear()
+    for number in range(options.kills):
+        moments = []
+        for _ in range(chance.randint(1, 3)):
+            moments.append(chance.uniform(0.2, 1.0) * command.seconds)
+            child = subprocess.Popen(work.line(command), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+            time.sleep(moments[-1])
+            child.kill()
+            child.wait()
+        left = partial_folder(work, command)
+        spoilt = f", {spoil(left, chance)} damaged" if left and number % 4 == 3 else ""
+        outcome = work.run(command)
+        wrong = outcome.text if outcome.status else ""
+        if not wrong:
+            got = contents(work.result(command))
+            wrong = ", ".join(name for name in sorted(set(got) | set(whole)) if got.get(name) != whole.get(name))
+            wrong = wrong and f"differs: {wrong}"
+        left = work.leftovers(command)
+        what = f"after {' and '.join(f'{1000 * moment:.0f}' for moment in moments)} ms{spoilt}"
+        findings.note("resume", command.name, what, wrong or (f"left {left}" if left else ""))
+        work.clear()
+
+
 def mount(source, target, kind, flags, data=""):
     libc = ctypes.CDLL(None, use_errno=True)
     if libc.mount(source.encode(), str(target).encode(), kind.encode(), flags, data.encode()) != 0:
@@ -221,7 +270,7 @@ def inputs(work, command, findings, options):
             work.clear()
 
 
-PARTS = {"calls": calls, "kills": kills, "disk": disk, "limits": limits, "inputs": inputs}
+PARTS = {"calls": calls, "kills": kills, "resume": resume, "disk": disk, "limits": limits, "inputs": inputs}
 
 
 def main():
@@ -251,7 +300,8 @@ def main():
             parts.remove("disk")
         for part in parts:
             for command in work.commands:
-                PARTS[part](work, command, findings, options)
+                if command.resumes == (part == "resume"):
+                    PARTS[part](work, command, findings, options)
     findings.table()
     return 1 if findings.messages else 0
 

@@ -1,5 +1,6 @@
 """The commands of the program that write, each with its input, its result, and what a clean run of it gives."""
 import hashlib
+import json
 import os
 import shutil
 import subprocess
@@ -17,6 +18,7 @@ class Command:
     words: list
     result: str = "out"  # a folder or file; appears whole or not at all
     grows: bool = False  # results are put into a folder one by one, and what is done before a failure stays
+    resumes: bool = False  # goes on where it was ended; for part resume alone
     clean: dict = field(default_factory=dict)  # of a clean run: file -> checksum, of those that are always the same
     names: set = field(default_factory=set)  # all files of a clean run
     seconds: float = 0.0  # that a clean run takes
@@ -34,6 +36,26 @@ def checksums(path):
     return {str(file.relative_to(path)): hashlib.sha256(file.read_bytes()).hexdigest() for file in files}
 
 
+TIMES = ("ms", "ms_mean", "ms_median", "ms_p95", "fps")
+
+
+def without_times(value):
+    return {key: part for key, part in value.items() if key not in TIMES}
+
+
+def contents(path):
+    """Of all files in the folder of a run, without times of computation."""
+    files = {}
+    for file in sorted(file for file in path.rglob("*") if file.is_file()):
+        data = file.read_bytes()
+        if file.name == "frames.jsonl":
+            data = [without_times(json.loads(line)) for line in data.splitlines()]
+        elif file.name == "summary.json":
+            data = without_times(json.loads(data))
+        files[str(file.relative_to(path))] = data
+    return files
+
+
 def remove(path):
     if path.is_dir() and not path.is_symlink():
         shutil.rmtree(path)
@@ -49,13 +71,16 @@ class Workload:
         self.folder = Path(folder)
         self.place = self.folder / "place"
         self.place.mkdir(parents=True)
-        drive, run = self.folder / "drive", self.folder / "run"
+        drive, run, longer = self.folder / "drive", self.folder / "run", self.folder / "longer"
         size = ["--frames", "4", "--set", "lidar.columns=90", "--set", "lidar.rows=12", "--quiet"]
         self._make(["simulate", "street", *size, "--output", drive])
+        self._make(["simulate", "street", "--frames", "16", *size[2:], "--output", longer])
         self._make(["run", drive, "--quiet", "--output", run])
         self.commands = [
             Command("simulate", ["simulate", "street", *size, "--output", "{out}"]),
             Command("run", ["run", drive, "--quiet", "--threads", "1", "--save-labels", "--save-map", "{out}/map.pcd", "--report", "--output", "{out}"]),
+            Command("run-resume", ["run", longer, "--quiet", "--threads", "1", "--save-labels", "--save-map", "{out}/map.pcd", "--save-kitti",
+                                   "{out}/poses.txt", "--checkpoint", "0", "--resume", "--output", "{out}"], resumes=True),
             Command("run-mcap", ["run", drive, "--quiet", "--threads", "1", "--mcap", "{out}/run.mcap", "--output", "{out}"]),
             Command("convert-npz", ["convert", drive, "--to", "npz", "--quiet", "--output", "{out}"]),
             Command("convert-pcd", ["convert", drive, "--to", "pcd", "--quiet", "--output", "{out}"]),

@@ -227,11 +227,16 @@ void move_within(const fs::path& target, const std::string& number, const std::s
   clear_away(replaced);
 }
 
+bool has_checkpoint(const fs::path& folder, const ResultKind& kind) {
+  std::error_code fault;
+  return !kind.checkpoint.empty() && fs::is_regular_file(folder / kind.checkpoint, fault);
+}
+
 void remove_abandoned(const fs::path& folder, const ResultKind& kind) {
   for (const fs::path& left : partial_folders(folder)) {
     const PathLock lock(left);
     try {
-      if (lock.is_of(left) && !foreign_entry(left, kind)) {
+      if (lock.is_of(left) && !has_checkpoint(left, kind) && !foreign_entry(left, kind)) {
         clear_away(left);
       }
     } catch (const DataError&) {

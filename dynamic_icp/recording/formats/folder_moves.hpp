@@ -34,11 +34,14 @@ void replace_in_two_steps(const std::filesystem::path& target, const std::string
 void move_within(const std::filesystem::path& target, const std::string& number, const std::string& marker,
                  const FolderCheck& check);
 
+/// Whether a partial folder can be gone on with.
+bool has_checkpoint(const std::filesystem::path& folder, const ResultKind& kind);
+
 /// Ends what killed processes have left beside and within the folder of a result; what a running one holds stays.
 void remove_leftovers(const std::filesystem::path& target);
 
 /// Removes what killed processes have left of other results of this kind in a folder: partial folders that nobody
-/// holds and in which every file is one of such a result. Nothing else is ever removed.
+/// holds, in which every file is one of such a result, and none a checkpoint. Nothing else is ever removed.
 void remove_abandoned(const std::filesystem::path& folder, const ResultKind& kind);
 
 }  // namespace dynamic_icp::formats

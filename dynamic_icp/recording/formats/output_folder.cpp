@@ -73,19 +73,22 @@ bool lies_in(const fs::path& path, const fs::path& folder) {
 }
 
 OutputFolder::OutputFolder(const fs::path& path, const ResultKind& kind, bool replace,
-                           const std::vector<fs::path>& inputs)
+                           const std::vector<fs::path>& inputs, Leftover leftover)
     : named_(named(path)), final_(resolved(path)), kind_(kind), replace_(replace), within_(must_stay(final_)) {
+  look_for_checkpoint(leftover == Leftover::kTakeOver);
   remove_leftovers(final_);
   if (!within_) {
     remove_abandoned(final_.parent_path(), kind_);
   }
   refuse_if_within(inputs);
   check_final();
-  make_staging();
+  if (staging_.empty()) {
+    make_staging();
+  }
 }
 
 OutputFolder::~OutputFolder() {
-  if (lock_) {  // not after commit(): the name may be another one's by now
+  if (lock_ && !is_kept_) {  // not after commit(): the name may be another one's by now
     std::error_code ignored;
     fs::remove_all(staging_, ignored);
   }
@@ -147,6 +150,45 @@ void OutputFolder::refuse_if_within(const std::vector<fs::path>& inputs) const {
   if (!fault && working != final_ && lies_in(working, final_)) {
     throw UsageError(
         fmt::format("{}: cannot be replaced from {}, which lies in it", named_.string(), working.string()));
+  }
+}
+
+void OutputFolder::keep() {
+  is_kept_ = true;
+  unfinished_.reset();
+}
+
+void OutputFolder::drop() {
+  if (is_kept_) {
+    is_kept_ = false;
+    unfinished_ = std::make_unique<Unfinished>(staging_);
+  }
+}
+
+/// Takes over a partial result at the same place that has one.
+void OutputFolder::look_for_checkpoint(bool take_over) {
+  const StagedNames names = within_ ? StagedNames::within(final_) : StagedNames::beside(final_);
+  for (const StagedNames::Found& left : names.found()) {
+    std::error_code ignored;
+    if (left.state != Staged::kPartial || !has_checkpoint(left.path, kind_) ||
+        fs::exists(names.path(Staged::kReplaced, left.number), ignored)) {  // was about to come into place
+      continue;
+    }
+    auto lock = std::make_unique<PathLock>(left.path);
+    if (lock->taken() && take_over) {
+      throw DataError(fmt::format("{}: another process is writing this result", named_.string()));
+    }
+    if (!lock->is_of(left.path)) {
+      continue;
+    }
+    had_checkpoint_ = true;
+    if (take_over) {
+      number_ = left.number;
+      staging_ = left.path;
+      lock_ = std::move(lock);
+      is_kept_ = true;
+      return;
+    }
   }
 }
 

@@ -31,20 +31,34 @@ class EarlierResult : public DataError {
 /// other one can be renamed to (a mount point, the working directory) is staged within: its files come into place one
 /// by one then, the marker last. What a killed process left behind is removed by the next one that writes to the same
 /// place, or brought to its end when it was about to come into place; of another place in the same folder it is removed
-/// when it is of the same kind.
+/// when it is of the same kind. With a checkpoint in it (ResultKind) it can be taken over instead, and stays for that
+/// until a result comes to the same place.
 class OutputFolder {
  public:
+  /// What is done with a partial result that was left with a checkpoint at the same place.
+  enum class Leftover { kRemove, kTakeOver };
+
   /// A link is followed. An existing folder that is not empty is refused with a DataError, EarlierResult where
   /// `replace` would help: with it a result of the same kind in it is replaced at commit. Nothing else is ever removed:
   /// a folder with any other file in it is refused, and one that holds one of the `inputs` or the working directory.
+  ///
+  /// Where a partial result is to be taken over and another process still writes it, that is a DataError.
   OutputFolder(const std::filesystem::path& path, const ResultKind& kind, bool replace,
-               const std::vector<std::filesystem::path>& inputs = {});
+               const std::vector<std::filesystem::path>& inputs = {}, Leftover leftover = Leftover::kRemove);
   ~OutputFolder();
   OutputFolder(const OutputFolder&) = delete;
   OutputFolder& operator=(const OutputFolder&) = delete;
 
   /// Where to write until commit().
   [[nodiscard]] const std::filesystem::path& path() const { return staging_; }
+
+  /// Whether there was a checkpoint that was taken over with the files beside it, or to be removed.
+  [[nodiscard]] bool had_checkpoint() const { return had_checkpoint_; }
+
+  /// From now on what is staged is left for another one to take over, however this process ends without commit(). Until
+  /// `drop`.
+  void keep();
+  void drop();
 
   /// Puts the staged files into their final place. Throws DataError; an earlier result is kept then. The signals that
   /// ask a program to end wait for it.
@@ -68,6 +82,7 @@ class OutputFolder {
   void check_replaceable(const std::filesystem::path& folder) const;
   void refuse_if_within(const std::vector<std::filesystem::path>& inputs) const;
   void make_staging();
+  void look_for_checkpoint(bool take_over);
 
   std::filesystem::path named_;  ///< as the user gave it
   std::filesystem::path final_;  ///< absolute, without links
@@ -78,6 +93,8 @@ class OutputFolder {
   std::filesystem::path staging_;
   std::unique_ptr<PathLock> lock_;  ///< on the staging folder, so that others can tell it from one left behind
   std::unique_ptr<Unfinished> unfinished_;
+  bool had_checkpoint_ = false;
+  bool is_kept_ = false;
 };
 
 }  // namespace dynamic_icp::formats

@@ -158,6 +158,83 @@ TEST_F(OutputFolderTest, RemovesWhatKilledProcessesLeftOfOtherResultsBesideIt) {
   EXPECT_EQ(entries(), 6u) << "second, the three of the user, running, out";
 }
 
+/// A kind whose partial results can be gone on with.
+ResultKind with_checkpoint() {
+  ResultKind kind = kRun;
+  kind.files = [](const fs::path&) { return std::vector<std::string>{"run.json", "checkpoint"}; };
+  kind.checkpoint = "checkpoint";
+  return kind;
+}
+
+using Leftover = OutputFolder::Leftover;
+
+TEST_F(OutputFolderTest, APartialResultWithACheckpointIsTakenOver) {
+  const fs::path place = parent_ / "place";
+  const ResultKind kind = with_checkpoint();
+  for (const bool is_written : {false, true}) {
+    {
+      OutputFolder first(place, kind, false);
+      EXPECT_FALSE(first.had_checkpoint());
+      if (is_written) {
+        write(first.path() / "checkpoint", "half");
+        first.keep();
+      }
+    }
+    EXPECT_EQ(entries(), is_written ? 1U : 0U) << "what is not to be kept is removed";
+  }
+  {
+    OutputFolder second(place, kind, false, {}, Leftover::kTakeOver);
+    EXPECT_TRUE(second.had_checkpoint());
+    EXPECT_EQ(read(second.path() / "checkpoint"), "half");
+    EXPECT_EQ(message<DataError>([&] { OutputFolder(place, kind, false, {}, Leftover::kTakeOver); }),
+              place.string() + ": another process is writing this result");
+  }
+  EXPECT_EQ(entries(), 1U) << "and stays for the next one";
+  OutputFolder(parent_ / "other", kind, false);
+  EXPECT_EQ(entries(), 1U) << "whatever others write beside it";
+  OutputFolder third(place, kind, false, {}, Leftover::kTakeOver);
+  fs::remove(third.path() / "checkpoint");
+  write(third.path() / "run.json", "whole");
+  third.commit();
+  EXPECT_EQ(read(place / "run.json"), "whole");
+  EXPECT_EQ(entries(), 1U);
+}
+
+TEST_F(OutputFolderTest, APartialResultWithACheckpointMakesRoomForANewOne) {
+  const fs::path place = parent_ / "place";
+  const ResultKind kind = with_checkpoint();
+  {
+    OutputFolder first(place, kind, false);
+    write(first.path() / "checkpoint", "half");
+    first.keep();
+  }
+  OutputFolder second(place, kind, false);
+  EXPECT_TRUE(second.had_checkpoint());
+  EXPECT_TRUE(fs::is_empty(second.path()));
+  EXPECT_EQ(entries(), 1U);
+  second.keep();
+  second.drop();
+}
+
+TEST_F(OutputFolderTest, APartialResultWithinAFolderThatStaysIsTakenOverToo) {
+  const fs::path place = parent_ / "place";
+  fs::create_directories(place);
+  fs::current_path(place);
+  const ResultKind kind = with_checkpoint();
+  {
+    OutputFolder first(place, kind, false);
+    write(first.path() / "checkpoint", "half");
+    first.keep();
+  }
+  OutputFolder second(place, kind, false, {}, Leftover::kTakeOver);
+  EXPECT_TRUE(second.had_checkpoint());
+  EXPECT_EQ(read(second.path() / "checkpoint"), "half");
+  fs::remove(second.path() / "checkpoint");
+  write(second.path() / "run.json", "whole");
+  second.commit();
+  EXPECT_EQ(read(place / "run.json"), "whole");
+}
+
 TEST_F(OutputFolderTest, AFolderThatCannotBeCreatedIsAnError) {
   write(parent_ / "file", "");
   EXPECT_THROW(OutputFolder(parent_ / "file" / "out", kRun, false), DataError);

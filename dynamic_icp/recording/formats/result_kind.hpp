@@ -18,6 +18,8 @@ struct ResultKind {
   /// The files that a result in this folder may hold, relative to it, '#' standing for one digit or more:
   /// "labels/#.bin". What only the result itself can tell is read from it.
   std::function<std::vector<std::string>(const std::filesystem::path& folder)> files;
+  /// The file from which the writing of a partial result can go on; empty where none is written.
+  std::string checkpoint = {};
 };
 
 /// Whether a file name is one of the pattern's. What a killed process left of such a file ("run.json.partial-123") is.

@@ -98,11 +98,33 @@ Descriptor open_to_read(const std::filesystem::path& path) {
 OutputFile::OutputFile(const std::filesystem::path& path) : OutputFile(path, path) {}
 
 OutputFile::OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name)
-    : final_name_(final_name), descriptor_(::open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666)) {
+    : OutputFile(path, final_name, O_CREAT | O_TRUNC) {}
+
+OutputFile::OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name, int flags)
+    : final_name_(final_name), descriptor_(::open(path.c_str(), O_WRONLY | O_CLOEXEC | flags, 0666)) {
   if (descriptor_ < 0) {
-    fail("create");
+    fail((flags & O_CREAT) != 0 ? "create" : "open");
   }
 }
+
+OutputFile OutputFile::goes_on(const std::filesystem::path& path, std::uintmax_t length) {
+  OutputFile file(path, path, 0);
+  const off_t there = ::lseek(file.descriptor_, 0, SEEK_END);
+  if (there < 0) {
+    file.fail("read");
+  }
+  if (static_cast<std::uintmax_t>(there) < length) {
+    throw DataError(fmt::format("{}: has {} bytes, expected at least {}", path.string(), there, length));
+  }
+  const auto end = static_cast<off_t>(length);
+  if (::ftruncate(file.descriptor_, end) != 0 || ::lseek(file.descriptor_, end, SEEK_SET) != end) {
+    file.fail("write");
+  }
+  return file;
+}
+
+OutputFile::OutputFile(OutputFile&& other) noexcept
+    : final_name_(std::move(other.final_name_)), descriptor_(std::exchange(other.descriptor_, -1)) {}
 
 OutputFile::~OutputFile() {
   if (descriptor_ >= 0) {
@@ -123,6 +145,14 @@ void OutputFile::write(std::string_view bytes) {
     }
     bytes.remove_prefix(static_cast<std::size_t>(written));
   }
+}
+
+std::uintmax_t OutputFile::synchronise() {
+  const off_t length = ::lseek(descriptor_, 0, SEEK_CUR);
+  if (::fsync(descriptor_) != 0 || length < 0) {
+    fail("write");
+  }
+  return static_cast<std::uintmax_t>(length);
 }
 
 void OutputFile::close() {

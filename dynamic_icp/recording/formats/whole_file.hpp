@@ -22,16 +22,23 @@ class OutputFile {
   explicit OutputFile(const std::filesystem::path& path);
   /// A file that is to be renamed: messages name the one that it will be.
   OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name);
+  /// Goes on with a file after its first `length` bytes and cuts off the rest. DataError where it is shorter.
+  static OutputFile goes_on(const std::filesystem::path& path, std::uintmax_t length);
   ~OutputFile();
+  OutputFile(OutputFile&& other) noexcept;
   OutputFile(const OutputFile&) = delete;
   OutputFile& operator=(const OutputFile&) = delete;
 
   void write(std::string_view bytes);
 
-  /// Waits until the bytes are on the device, so that a file that was renamed into place is whole.
+  /// Waits until the bytes are on the device. How many there are in the file.
+  std::uintmax_t synchronise();
+
+  /// The same before it closes the file, so that one that was renamed into place is whole.
   void close();
 
  private:
+  OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name, int flags);
   [[noreturn]] void fail(const char* action) const;
 
   std::filesystem::path final_name_;

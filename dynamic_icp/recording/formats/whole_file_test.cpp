@@ -100,6 +100,26 @@ TEST_F(WholeFile, WhatAKilledWriterLeftIsWrittenOver) {
   EXPECT_EQ(entries(), 2U);
 }
 
+TEST_F(WholeFile, AFileGoesOnAfterAGivenLength) {
+  {
+    OutputFile file(folder_ / "a");
+    file.write("0123456789");
+    EXPECT_EQ(file.synchronise(), 10U);
+  }
+  {
+    OutputFile file = OutputFile::goes_on(folder_ / "a", 4);
+    file.write("ab");
+    EXPECT_EQ(file.synchronise(), 6U);
+    file.close();
+  }
+  EXPECT_EQ(read_whole_file(folder_ / "a"), "0123ab");
+  expect_refusal([&] { OutputFile::goes_on(folder_ / "a", 7); }, "has 6 bytes, expected at least 7");
+  EXPECT_EQ(read_whole_file(folder_ / "a"), "0123ab");
+  fs::remove(folder_ / "a");
+  expect_refusal([&] { OutputFile::goes_on(folder_ / "a", 0); }, "cannot open");
+  EXPECT_EQ(entries(), 0U);
+}
+
 TEST_F(WholeFile, TwoWritersDoNotMeet) {
   StagedFile slow(folder_ / "a");
   slow.write("slow");

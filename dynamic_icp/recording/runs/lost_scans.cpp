@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -90,5 +91,12 @@ std::optional<std::string> LostScans::failure() const {
       std::ranges::max_element(reasons_, {}, [](const auto& reason) { return reason.second.points.size(); });
   return fmt::format("ODOMETRY FAILED on {} of {} scans: {}", lost_, scans_, cause(most->first, most->second));
 }
+
+void LostScans::Reason::state(StateArchive& archive) {
+  archive(points, points_used, intervals_s, dropped.non_finite, dropped.implausible, dropped.zero_range,
+          dropped.out_of_range, dropped.flagged);
+}
+
+void LostScans::state(StateArchive& archive) { archive(scans_, lost_, last_, reasons_); }
 
 }  // namespace dynamic_icp::runs

@@ -10,6 +10,10 @@
 
 #include "dynamic_icp/method/odometry/frame.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::runs {
 
 /// The exit status of the program where a run failed so: its results are there, but the trajectory is a guess.
@@ -24,6 +28,8 @@ class LostScans {
   /// the trajectory is a guess then. Nothing otherwise. The cause is that of most of the lost scans.
   [[nodiscard]] std::optional<std::string> failure() const;
 
+  void state(StateArchive& archive);
+
  private:
   /// What is known of the scans that were lost for one reason.
   struct Reason {
@@ -31,6 +37,8 @@ class LostScans {
     std::vector<double> points_used;  ///< of those
     std::vector<double> intervals_s;  ///< since the scan before
     Scan::Dropped dropped;
+
+    void state(StateArchive& archive);
   };
 
   [[nodiscard]] static std::string cause(odometry::FrameStatus status, const Reason& reason);

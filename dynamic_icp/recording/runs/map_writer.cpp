@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
@@ -153,5 +154,7 @@ void MapWriter::write(const fs::path& path) const {
   const std::vector<formats::NamedArray> table = formats::point_table(points());
   formats::write_whole_file(path, path.extension() == ".ply" ? formats::ply_bytes(table) : formats::pcd_bytes(table));
 }
+
+void MapWriter::state(StateArchive& archive) { archive(voxels_, regions_, is_ghost_, ghosts_); }
 
 }  // namespace dynamic_icp::runs

@@ -13,6 +13,10 @@
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/spatial/voxel_hash_map.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::runs {
 
 /// Throws UsageError unless the file's name ends in .ply or .pcd: a map is written as one of them.
@@ -49,6 +53,8 @@ class MapWriter {
   /// Writes one point cloud of float32 x, y, z (m), by the age of the points, as the ending of the file says: whole or
   /// not at all. Throws as `check_map_file` does, and DataError naming file and reason when the machine fails.
   void write(const std::filesystem::path& path) const;
+
+  void state(StateArchive& archive);
 
  private:
   void take_out(const tracking::TrackedObject& object, const Eigen::Isometry3d& T_world_sensor);

@@ -8,6 +8,7 @@
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/runs/checkpoint.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -51,8 +52,8 @@ std::vector<std::string> files_asked_for(const fs::path& run_json) {
 }
 
 std::vector<std::string> run_files(const fs::path& folder) {
-  std::vector<std::string> files = {"run.json",      "summary.json", "trajectory.tum", "frames.jsonl",
-                                    "objects.jsonl", "labels/#.bin", "report.html",    "calibration.yaml"};
+  std::vector<std::string> files = {kCheckpointFile, "run.json",     "summary.json", "trajectory.tum",  "frames.jsonl",
+                                    "objects.jsonl", "labels/#.bin", "report.html",  "calibration.yaml"};
   for (const std::string picture : kPictures) {
     files.push_back("plots/" + picture + ".svg");
     files.push_back("plots/" + picture + ".png");
@@ -135,6 +136,6 @@ std::optional<std::vector<std::int32_t>> read_labels(const RunFiles& run, std::s
   return read_labels(run.folder, run.frames[frame].index, points);
 }
 
-formats::ResultKind run_result() { return {"run.json", run_files}; }
+formats::ResultKind run_result() { return {"run.json", run_files, kCheckpointFile}; }
 
 }  // namespace dynamic_icp::runs

@@ -85,7 +85,34 @@ Json configuration_json(odometry::Config config) {
   return json;
 }
 
+Json path_json(const std::optional<fs::path>& path) {
+  return path ? Json(fs::absolute(*path).string()) : Json(nullptr);
+}
+
 }  // namespace
+
+std::string run_identity(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
+                         const fs::path& ground_truth) {
+  const Json json = {{"version", version()},
+                     {"input",
+                      {{"path", fs::absolute(recording.path).string()},
+                       {"format", dataset.format()},
+                       {"options", input_json(recording.settings)},
+                       {"scans", dataset.size()}}},
+                     {"method", settings.method},
+                     {"preset", settings.preset},
+                     {"ablation", settings.ablation},
+                     {"start", settings.start},
+                     {"max_frames", settings.max_frames ? Json(*settings.max_frames) : Json(nullptr)},
+                     {"calibration", path_json(settings.calibration)},
+                     {"ground_truth", ground_truth.empty() ? Json(nullptr) : path_json(ground_truth)},
+                     {"save_labels", settings.save_labels},
+                     {"save_map", path_json(settings.map_file)},
+                     {"map_voxel_m", settings.map_voxel_m},
+                     {"save_kitti", path_json(settings.kitti_file)},
+                     {"configuration", configuration_json(settings.config)}};
+  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+}
 
 std::string run_json(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
                      const fs::path& ground_truth, const RunResult& result, const FilesInRun& in_run) {

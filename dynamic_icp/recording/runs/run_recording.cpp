@@ -11,6 +11,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
 #include "dynamic_icp/recording/datasets/followed_dataset.hpp"
@@ -20,6 +21,8 @@
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
+#include "dynamic_icp/recording/runs/checkpoint.hpp"
+#include "dynamic_icp/recording/runs/continuation.hpp"
 #include "dynamic_icp/recording/runs/latency.hpp"
 #include "dynamic_icp/recording/runs/live_view.hpp"
 #include "dynamic_icp/recording/runs/map_writer.hpp"
@@ -108,6 +111,11 @@ class Run {
     if (check_.sweep && check_.sweep->found_sweep()) {
       diagnosis::declare(*check_.sweep, *sweep_config(settings_.config));
     }
+    if (settings.resume && !can_go_on()) {
+      throw UsageError(settings.follow ? "a run that follows a recording while it grows cannot be resumed"
+                                       : "a run that writes an MCAP file cannot be resumed");
+    }
+    identity_ = run_identity(recording, settings_, *dataset_, truth_.file);
   }
 
   /// Whether it came to its end.
@@ -118,9 +126,20 @@ class Run {
     }
     inputs.insert(inputs.end(), settings_.inputs.begin(), settings_.inputs.end());
     refuse_inputs(inputs);
-    formats::OutputFolder output(settings_.output, run_result(), settings_.replace, inputs);
-    if (!output.fill([&] { return write_files(output); })) {
+    using Leftover = formats::OutputFolder::Leftover;
+    formats::OutputFolder output(settings_.output, run_result(), settings_.replace || settings_.resume, inputs,
+                                 settings_.resume ? Leftover::kTakeOver : Leftover::kRemove);
+    if (!take_up(output)) {
+      return true;
+    }
+    if (!fill(output)) {
+      output.drop();
       return false;
+    }
+    if (!stopped_) {
+      output.drop();
+      std::error_code ignored;
+      fs::remove(output.path() / kCheckpointFile, ignored);
     }
     output.commit();
     return true;
@@ -151,6 +170,45 @@ class Run {
     }
   }
 
+  /// Writes the files of the run; false when cancelled.
+  bool fill(formats::OutputFolder& output) {
+    try {
+      return output.fill([&] { return write_files(output); });
+    } catch (const DataError& error) {
+      if (saved_ == 0) {
+        throw;
+      }
+      throw DataError(fmt::format("{} (--resume goes on after {} of {} scans)", error.what(), saved_, scans_.size()));
+    }
+  }
+
+  void tell(const std::string& text) const {
+    if (callbacks_.notice) {
+      callbacks_.notice(text);
+    }
+  }
+
+  /// Scans that come when they come are no stream to go on with, and MCAP files are written from one end to the other.
+  [[nodiscard]] bool can_go_on() const { return !settings_.follow && !settings_.mcap_file; }
+
+  /// Looks for where to go on; false when nothing is left to do.
+  bool take_up(const formats::OutputFolder& output) {
+    if (!settings_.resume) {
+      if (output.had_checkpoint()) {
+        tell("a run that was ended early was here, with a checkpoint: removed, as it was not to be resumed");
+      }
+      return true;
+    }
+    Continuation found = continuation(output, settings_.output, identity_, settings_.replace,
+                                      [this](const std::string& text) { tell(text); });
+    from_ = std::move(found.from);
+    result_.was_complete = found.is_complete;
+    if (!from_ && !found.is_complete) {
+      tell("no checkpoint to go on from: the run begins with its first scan");
+    }
+    return !found.is_complete;
+  }
+
   /// The caller tells it at the end.
   void fail(const std::string& text) {
     result_.failures.push_back(text);
@@ -176,7 +234,7 @@ class Run {
   }
 
   /// All files of the run into the folder where it is put together; false when cancelled.
-  bool write_files(const formats::OutputFolder& output) {
+  bool write_files(formats::OutputFolder& output) {
     const fs::path map_file = map_ ? destination(settings_.map_file, output, "map") : fs::path();
     const fs::path mcap_file = destination(settings_.mcap_file, output, "MCAP file");
     const fs::path kitti_file = destination(settings_.kitti_file, output, "file of KITTI poses");
@@ -187,8 +245,7 @@ class Run {
                            .mcap = in_run(mcap_file),
                            .layout = in_run(layout_beside(mcap_file)),
                            .kitti = in_run(kitti_file)};
-    const std::unique_ptr<odometry::Odometry> odometry = odometry::make_odometry(
-        settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind(), calibration_}, settings_.threads);
+    std::unique_ptr<odometry::Odometry> odometry = make_odometry();
     std::vector<std::string> assumptions = dataset_->assumptions();
     for (const std::string& assumption : odometry->assumptions()) {
       assumptions.push_back(assumption);
@@ -204,12 +261,16 @@ class Run {
     if (!truth_.warning.empty()) {
       warn(truth_.warning);
     }
-    RunWriter writer(output.path(), settings_.save_labels);
+    std::unique_ptr<RunWriter> going_on = go_on(odometry, output);
+    if (!going_on) {
+      going_on = std::make_unique<RunWriter>(output.path(), settings_.save_labels);
+    }
+    RunWriter& writer = *going_on;
     if (!mcap_file.empty()) {  // a path that cannot be written to is an error before the first scan
       recorder_.emplace(mcap_file, truth_.trajectory, messages_settings());
     }
     open_live_view();
-    if (!process_scans(*odometry, writer)) {
+    if (!process_scans(*odometry, writer, output)) {
       return false;
     }
     end_live_view();
@@ -243,16 +304,91 @@ class Run {
     return true;
   }
 
-  bool process_scans(odometry::Odometry& odometry, RunWriter& writer) {
+  [[nodiscard]] std::unique_ptr<odometry::Odometry> make_odometry() const {
+    return odometry::make_odometry(
+        settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind(), calibration_}, settings_.threads);
+  }
+
+  /// What was found and counted beside the odometry and the files of the run.
+  void results_state(StateArchive& archive) {
+    archive(usable_, result_.sweep, result_.warnings, result_.failures);
+    bool has_map = map_.has_value();
+    archive(has_map);
+    if (has_map && map_) {
+      archive(*map_);
+    } else {
+      map_.reset();
+    }
+  }
+
+  /// Brings everything to where it was at the checkpoint, from which the odometry and the files go on. Null without
+  /// one, and where that cannot be done: then everything is as it was, to begin anew.
+  std::unique_ptr<RunWriter> go_on(std::unique_ptr<odometry::Odometry>& odometry, const formats::OutputFolder& output) {
+    if (!from_) {
+      return nullptr;
+    }
+    if (checksum(dataset_->scan(from_->next - 1)) != from_->last_scan) {
+      throw DataError(fmt::format("{}: cannot go on with the run: {} is not what it was", settings_.output.string(),
+                                  dataset_->scan_file(from_->next - 1).string()));
+    }
+    const RunResult before = result_;
+    std::string fault;
+    try {
+      odometry->load(from_->odometry);
+      StateArchive results(from_->results);
+      auto writer = std::make_unique<RunWriter>(output.path(), settings_.save_labels, from_->next, results);
+      results_state(results);
+      results.end();
+      settings_.command = from_->command;
+      saved_ = from_->next - scans_.begin;
+      tell(fmt::format("going on after {} of {} scans", from_->next - scans_.begin, scans_.size()));
+      return writer;
+    } catch (const DataError& error) {
+      fault = output.in_final_names(error.what());
+    } catch (const fs::filesystem_error& error) {
+      fault = output.in_final_names(error.what());
+    }
+    tell(fmt::format("{}; the run begins anew", fault));
+    from_.reset();
+    remove_files_of_run(output.path());
+    odometry = make_odometry();
+    result_ = before;
+    map_ = make_map(settings_);
+    usable_ = {};
+    return nullptr;
+  }
+
+  /// A checkpoint that cannot be written is no reason to lose the run: the one before serves as well.
+  void save_checkpoint(odometry::Odometry& odometry, RunWriter& writer, const RawScan& scan, std::size_t next,
+                       formats::OutputFolder& output) {
+    timer_.time([&] {
+      StateArchive results;
+      writer.save(results);
+      results_state(results);
+      Checkpoint checkpoint{identity_, settings_.command, next, checksum(scan), odometry.save(), results.take()};
+      try {
+        write_checkpoint(output.path(), checkpoint);
+        output.keep();
+        saved_ = next - scans_.begin;
+      } catch (const DataError& error) {
+        tell(fmt::format("no checkpoint: {}", output.in_final_names(error.what())));
+      }
+    });
+  }
+
+  bool process_scans(odometry::Odometry& odometry, RunWriter& writer, formats::OutputFolder& output) {
+    const std::size_t first = from_ ? from_->next : scans_.begin;
     std::optional<datasets::ReadAhead> reader;
     if (followed_ != nullptr) {
-      reader.emplace(*followed_, scans_.begin, scans_.end);
+      reader.emplace(*followed_, first, scans_.end);
     } else {
-      reader.emplace(*dataset_, scans_.begin, scans_.end);
+      reader.emplace(*dataset_, first, scans_.end);
     }
-    UsablePoints usable;
     report_progress(0);
-    for (std::size_t i = scans_.begin; has_next(*reader); ++i) {
+    if (first > scans_.begin) {
+      report_progress(first - scans_.begin);
+    }
+    for (std::size_t i = first; has_next(*reader); ++i) {
       if (callbacks_.cancelled && callbacks_.cancelled()) {
         return false;
       }
@@ -262,7 +398,7 @@ class Run {
       }
       odometry::Frame frame = odometry.process(scan);
       writer.add(i, frame);
-      usable.add(frame);
+      usable_.add(frame);
       result_.sweep.add(frame, scan);
       add_to_map(frame);
       const double latency_ms = latencies_.add(reader->arrival());
@@ -270,17 +406,20 @@ class Run {
       if (callbacks_.frame) {
         callbacks_.frame(i, frame);
       }
+      report_progress(i + 1 - scans_.begin);
+      stopped_ = i + 1 < scans_.end && callbacks_.stop && callbacks_.stop();
+      if (can_go_on() && i + 1 < scans_.end && (stopped_ || timer_.is_due())) {
+        save_checkpoint(odometry, writer, scan, i + 1, output);
+      }
       if (live_) {
         live_->add(std::move(scan), std::move(frame), latency_ms);
       }
-      report_progress(i + 1 - scans_.begin);
-      stopped_ = i + 1 < scans_.end && callbacks_.stop && callbacks_.stop();
     }
     if (followed_ != nullptr) {
-      result_.scans_selected = usable.scans();
+      result_.scans_selected = usable_.scans();
       result_.latency = latencies_.summary();
     }
-    usable.refuse_none(recording_.path);
+    usable_.refuse_none(recording_.path);
     return true;
   }
 
@@ -426,6 +565,11 @@ class Run {
   std::optional<McapRecorder> recorder_;
   std::optional<LiveView> live_;
   Latencies latencies_;
+  UsablePoints usable_;
+  std::string identity_;
+  std::optional<Checkpoint> from_;  ///< where the run goes on
+  std::size_t saved_ = 0;           ///< scans in the last checkpoint
+  CheckpointTimer timer_{settings_.checkpoint_s};
   bool stopped_ = false;
   RunResult result_;
 };

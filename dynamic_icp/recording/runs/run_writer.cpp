@@ -5,7 +5,11 @@
 #include <algorithm>
 #include <numeric>
 
+#include <fmt/format.h>
+
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/parse_number.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/recording/evaluation/statistics.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
@@ -42,6 +46,58 @@ RunWriter::RunWriter(const std::filesystem::path& folder, bool save_labels)
   if (save_labels_) {
     formats::make_folder(folder_ / "labels");
   }
+}
+
+RunWriter::RunWriter(const std::filesystem::path& folder, bool save_labels, Lengths lengths)
+    : folder_(folder),
+      save_labels_(save_labels),
+      frames_file_(formats::OutputFile::goes_on(folder / "frames.jsonl", lengths.frames)),
+      objects_file_(formats::OutputFile::goes_on(folder / "objects.jsonl", lengths.objects)) {}
+
+RunWriter::RunWriter(const std::filesystem::path& folder, bool save_labels, std::size_t next, StateArchive& state)
+    : RunWriter(folder, save_labels, lengths_in(state)) {
+  counts_state(state);
+  if (save_labels_) {
+    check_labels(next);
+  }
+}
+
+RunWriter::Lengths RunWriter::lengths_in(StateArchive& archive) {
+  Lengths lengths;
+  archive(lengths.frames, lengths.objects);
+  return lengths;
+}
+
+/// Those of the scans that are done are there, and no others.
+void RunWriter::check_labels(std::size_t next) const {
+  for (std::size_t index = next - trajectory_.size(); index < next; ++index) {
+    if (!std::filesystem::exists(labels_file(folder_, index))) {
+      throw DataError(fmt::format("{}: no such file", labels_file(folder_, index).string()));
+    }
+  }
+  std::vector<std::filesystem::path> later;
+  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "labels")) {
+    const auto number = parse_number<std::size_t>(entry.path().stem().string());
+    if (!number || *number > next) {
+      later.push_back(entry.path());
+    }
+  }
+  for (const std::filesystem::path& file : later) {
+    std::filesystem::remove(file);
+  }
+}
+
+void RunWriter::save(StateArchive& archive) {
+  Lengths lengths{frames_file_.synchronise(), objects_file_.synchronise()};
+  archive(lengths.frames, lengths.objects);
+  counts_state(archive);
+}
+
+void RunWriter::counts_state(StateArchive& archive) {
+  archive.each(trajectory_, [&](formats::StampedPose& pose) { archive(pose.stamp, pose.T_world_sensor); });
+  archive.each(stated_, [&](evaluation::StatedMotion& one) { archive(one.covariance, one.ok, one.skipped); });
+  archive(total_ms_, iterations_, dynamic_ratio_, clustered_ratio_, refined_ratio_, pairs_, converged_, verdicts_,
+          reasons_, lost_);
 }
 
 void RunWriter::add(std::size_t index, const odometry::Frame& frame) {

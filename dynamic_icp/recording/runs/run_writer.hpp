@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -14,6 +15,10 @@
 #include "dynamic_icp/recording/runs/lost_scans.hpp"
 #include "dynamic_icp/recording/runs/run_summary.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::runs {
 
 /// Writes the files of a run while it continues, in bounded memory: trajectory.tum, frames.jsonl, objects.jsonl,
@@ -23,10 +28,17 @@ class RunWriter {
  public:
   RunWriter(const std::filesystem::path& folder, bool save_labels);
 
+  /// Goes on with the files in the folder where another one was when it wrote `state`; `next` is the scan after those
+  /// in it. What was written later is cut off or removed. Throws DataError when something of the files is missing.
+  RunWriter(const std::filesystem::path& folder, bool save_labels, std::size_t next, StateArchive& state);
+
   void add(std::size_t index, const odometry::Frame& frame);
 
   /// One pose for each scan until now.
   [[nodiscard]] const formats::Trajectory& trajectory() const { return trajectory_; }
+
+  /// For another one to go on; what is written so far is on the device after it.
+  void save(StateArchive& archive);
 
   /// Writes what is left. `ground_truth` may be empty, and may not fit: then there is no accuracy, and the summary says
   /// why. `stopped`: before the last scan, because someone asked to.
@@ -34,6 +46,15 @@ class RunWriter {
                     const std::vector<std::string>& assumptions, bool stopped = false);
 
  private:
+  struct Lengths {
+    std::uint64_t frames = 0;
+    std::uint64_t objects = 0;
+  };
+  RunWriter(const std::filesystem::path& folder, bool save_labels, Lengths lengths);
+  static Lengths lengths_in(StateArchive& archive);
+  void counts_state(StateArchive& archive);
+  void check_labels(std::size_t next) const;
+
   std::filesystem::path folder_;
   bool save_labels_;
   formats::OutputFile frames_file_;

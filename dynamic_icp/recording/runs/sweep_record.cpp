@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/runs/sweep_record.hpp"
 
+#include "dynamic_icp/method/base/state_archive.hpp"
+
 namespace dynamic_icp::runs {
 
 void SweepRecord::add(const odometry::Frame& frame, const RawScan& scan) {
@@ -27,6 +29,14 @@ std::string SweepRecord::times() const {
       break;
   }
   return "none";
+}
+
+void SweepRecord::state(StateArchive& archive) {
+  bool is_there = first.has_value();
+  archive(is_there);
+  motion::SweepReport report = first.value_or(motion::SweepReport{});
+  archive(report.times, report.duration_s, report.deskewed, same_times, all_deskewed);
+  first = is_there ? std::optional(report) : std::nullopt;
 }
 
 }  // namespace dynamic_icp::runs

@@ -5,6 +5,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::runs {
 
@@ -26,6 +27,11 @@ void UsablePoints::refuse_none(const std::filesystem::path& recording) const {
                   "as unusable by the sensor, {} remain after thinning. The diagnosis of the recording says more",
                   recording.string(), scans_, points_, dropped_.non_finite, dropped_.implausible, dropped_.zero_range,
                   dropped_.out_of_range, dropped_.flagged, points_used_));
+}
+
+void UsablePoints::state(StateArchive& archive) {
+  archive(scans_, unusable_, points_, points_used_, dropped_.non_finite, dropped_.implausible, dropped_.zero_range,
+          dropped_.out_of_range, dropped_.flagged);
 }
 
 }  // namespace dynamic_icp::runs

@@ -7,6 +7,10 @@
 
 #include "dynamic_icp/method/odometry/frame.hpp"
 
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
 namespace dynamic_icp::runs {
 
 /// What became of the points of a run, to tell why nothing came of it.
@@ -19,6 +23,8 @@ class UsablePoints {
   /// A trajectory of poses that nobody saw is no result. Throws DataError naming the recording when not one scan could
   /// be used.
   void refuse_none(const std::filesystem::path& recording) const;
+
+  void state(StateArchive& archive);
 
  private:
   std::size_t scans_ = 0;

@@ -1,0 +1,122 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/recording/runs/continuation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <vector>
+
+#include <fmt/format.h>
+#include <nlohmann/json.hpp>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+
+namespace dynamic_icp::runs {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// What a run writes scan by scan, and last the checkpoint that tells how far it came: without it a copy counts
+/// nothing.
+constexpr std::array<std::string_view, 4> kWrittenAlong = {"frames.jsonl", "objects.jsonl", "labels", kCheckpointFile};
+
+/// Removes what lies in a folder, but for these entries.
+template <class Keep>
+void remove_all_but(const fs::path& folder, const Keep& keep) {
+  std::vector<fs::path> others;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+    if (std::find(keep.begin(), keep.end(), entry.path().filename().string()) == keep.end()) {
+      others.push_back(entry.path());
+    }
+  }
+  for (const fs::path& other : others) {
+    fs::remove_all(other);
+  }
+}
+
+/// The checkpoint in a folder; nothing where there is none, or a damaged one, which is told.
+std::optional<Checkpoint> checkpoint_in(const fs::path& folder,
+                                        const std::function<void(const std::string& text)>& notice) {
+  std::error_code fault;
+  if (!fs::exists(folder / kCheckpointFile, fault)) {
+    return std::nullopt;
+  }
+  try {
+    return read_checkpoint(folder);
+  } catch (const DataError& error) {
+    notice(fmt::format("{}; the run begins anew", error.what()));
+    return std::nullopt;
+  }
+}
+
+void refuse_difference(const fs::path& folder, const std::optional<std::string>& different) {
+  if (different) {
+    throw DataError(fmt::format("{}: cannot go on with the run: {}", folder.string(), *different));
+  }
+}
+
+Continuation after_killed(const formats::OutputFolder& output, const fs::path& final, const std::string& identity,
+                          const std::function<void(const std::string& text)>& notice) {
+  Continuation result;
+  result.from = checkpoint_in(output.path(), notice);
+  if (result.from) {
+    refuse_difference(final, difference(result.from->identity, identity));
+  }
+  remove_all_but(output.path(), kWrittenAlong);
+  return result;
+}
+
+Continuation after_written(const formats::OutputFolder& output, const fs::path& final, const std::string& identity,
+                           bool replace, const std::function<void(const std::string& text)>& notice) {
+  const std::string about = formats::read_text_file(final / "run.json");
+  const nlohmann::json json = nlohmann::json::parse(about, nullptr, false);
+  if (!json.is_object()) {
+    throw DataError(fmt::format("{}: is no JSON object", (final / "run.json").string()));
+  }
+  Continuation result;
+  const std::optional<std::string> different = difference(about, identity);
+  if (different && replace) {
+    return result;
+  }
+  refuse_difference(final, different);
+  result.is_complete = !json.value("stopped", false);
+  if (result.is_complete) {
+    return result;
+  }
+  result.from = checkpoint_in(final, notice);
+  if (result.from) {
+    refuse_difference(final, difference(result.from->identity, identity));
+    for (const std::string_view name : kWrittenAlong) {
+      if (fs::exists(final / name)) {
+        fs::copy(final / name, output.path() / name, fs::copy_options::recursive);
+      }
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+Continuation continuation(const formats::OutputFolder& output, const fs::path& final, const std::string& identity,
+                          bool replace, const std::function<void(const std::string& text)>& notice) {
+  try {
+    if (output.had_checkpoint()) {
+      return after_killed(output, final, identity, notice);
+    }
+    std::error_code fault;
+    return fs::exists(final / "run.json", fault) ? after_written(output, final, identity, replace, notice)
+                                                 : Continuation{};
+  } catch (const fs::filesystem_error& error) {
+    throw DataError(fmt::format("{}: cannot go on with the run: {}", final.string(), error.code().message()));
+  }
+}
+
+void remove_files_of_run(const fs::path& staging) {
+  for (const std::string_view name : kWrittenAlong) {
+    fs::remove_all(staging / name);
+  }
+}
+
+}  // namespace dynamic_icp::runs

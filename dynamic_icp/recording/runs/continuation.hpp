@@ -1,0 +1,34 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "dynamic_icp/recording/formats/output_folder.hpp"
+#include "dynamic_icp/recording/runs/checkpoint.hpp"
+
+namespace dynamic_icp::runs {
+
+/// What is left to do of a run that is to go on.
+struct Continuation {
+  bool is_complete = false;        ///< nothing: an earlier run in the folder is whole
+  std::optional<Checkpoint> from;  ///< where it goes on; empty: begins anew
+};
+
+/// Looks for the checkpoint of a run that was killed, taken over in `output`, or of one that was stopped, in `final`:
+/// its files are copied into the staging folder then. What a run may have written after its last checkpoint is
+/// removed. A damaged checkpoint is told by `notice`, and the run begins anew.
+///
+/// Throws DataError naming the setting where the earlier run is another one than that of `identity` (run_identity); one
+/// that is whole may be replaced with `replace`.
+Continuation continuation(const formats::OutputFolder& output, const std::filesystem::path& final,
+                          const std::string& identity, bool replace,
+                          const std::function<void(const std::string& text)>& notice);
+
+/// Removes what a run wrote scan by scan into its staging folder.
+void remove_files_of_run(const std::filesystem::path& staging);
+
+}  // namespace dynamic_icp::runs

@@ -1,0 +1,293 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+//
+// A run that ended early goes on and leaves the files of an unbroken one.
+#include <fstream>
+#include <map>
+#include <sstream>
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/runs/checkpoint.hpp"
+#include "dynamic_icp/recording/runs/run_recording.hpp"
+
+#include "testing/wall_drive.hpp"
+
+namespace dynamic_icp::runs {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+/// What ends a run here and now, as an error of no known kind does.
+struct Ended {};
+
+/// JSON without times of computation.
+json without_times(json value) {
+  for (const char* const key : {"ms", "ms_mean", "ms_median", "ms_p95", "fps"}) {
+    value.erase(key);
+  }
+  return value;
+}
+
+/// All files in a folder.
+std::map<std::string, std::string> files_in(const fs::path& folder) {
+  std::map<std::string, std::string> files;
+  for (const fs::directory_entry& entry : fs::recursive_directory_iterator(folder)) {
+    if (!entry.is_regular_file()) {
+      continue;
+    }
+    const std::string name = entry.path().lexically_relative(folder).string();
+    std::string text = formats::read_whole_file(entry.path());
+    if (name == "frames.jsonl") {
+      std::istringstream lines(text);
+      text.clear();
+      for (std::string line; std::getline(lines, line);) {
+        text += without_times(json::parse(line)).dump() + "\n";
+      }
+    } else if (name == "summary.json") {
+      text = without_times(json::parse(text)).dump();
+    }
+    files[name] = text;
+  }
+  return files;
+}
+
+class ResumedRun : public ::testing::Test {
+ protected:
+  ResumedRun() {
+    report::WallDrive().write(folder_);
+    fs::remove_all(folder_.path() / "run");  // of the hand-made run nothing is wanted
+    settings_.output = folder_.path() / "out";
+    settings_.threads = 1;
+    settings_.save_labels = true;
+    settings_.map_file = settings_.output / "maps" / "map.ply";
+    settings_.kitti_file = settings_.output / "poses.txt";
+    settings_.checkpoint_s = 0.0;
+    settings_.command = "run";
+    callbacks_.notice = [this](const std::string& text) { notices_.push_back(text); };
+  }
+
+  [[nodiscard]] Recording recording() const { return {folder_.path() / "drive", {}}; }
+
+  [[nodiscard]] std::optional<RunResult> run() { return run_recording(recording(), settings_, callbacks_); }
+
+  /// Begins, or goes on, and ends before anything is done with the result of scan `last`.
+  void run_until(std::size_t last) {
+    RunCallbacks callbacks = callbacks_;
+    callbacks.frame = [&](std::size_t index, const odometry::Frame&) {
+      if (index == last) {
+        throw Ended();
+      }
+    };
+    EXPECT_THROW((void)run_recording(recording(), settings_, callbacks), Ended);
+    EXPECT_FALSE(fs::exists(settings_.output));
+  }
+
+  std::map<std::string, std::string> unbroken() {
+    (void)run();
+    auto files = files_in(settings_.output);
+    fs::remove_all(settings_.output);
+    return files;
+  }
+
+  /// The folder that an ended run has left.
+  [[nodiscard]] fs::path left() const {
+    for (const fs::directory_entry& entry : fs::directory_iterator(folder_.path())) {
+      if (entry.path().filename().string().starts_with(".out.partial-")) {
+        return entry.path();
+      }
+    }
+    return {};
+  }
+
+  std::string refusal() {
+    try {
+      (void)run();
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "";
+  }
+
+  [[nodiscard]] bool was_told(const std::string& words) const {
+    return std::any_of(notices_.begin(), notices_.end(),
+                       [&](const std::string& text) { return text.find(words) != std::string::npos; });
+  }
+
+  TestFolder folder_;
+  RunSettings settings_;
+  RunCallbacks callbacks_;
+  std::vector<std::string> notices_;
+};
+
+TEST_F(ResumedRun, EndsWithTheFilesOfAnUnbrokenOne) {
+  const auto whole = unbroken();
+  ASSERT_EQ(whole.count("labels/00006.bin"), 1U);
+  ASSERT_EQ(whole.count("maps/map.ply"), 1U);
+  EXPECT_EQ(whole.count(kCheckpointFile), 0U);
+  settings_.resume = true;
+  for (std::size_t last = 0; last < 6; ++last) {
+    run_until(last);
+    settings_.command = "another";  // the run is the one that was begun
+    settings_.threads = 1;
+    ASSERT_TRUE(run()) << last;
+    EXPECT_TRUE(last == 0 || was_told("going on after " + std::to_string(last) + " of 6 scans"));
+    settings_.command = "run";
+    if (last > 0) {
+      EXPECT_EQ(files_in(settings_.output), whole) << last;
+    }
+    EXPECT_TRUE(left().empty());
+    fs::remove_all(settings_.output);
+  }
+}
+
+TEST_F(ResumedRun, GoesOnAgainAndAgain) {
+  const auto whole = unbroken();
+  settings_.resume = true;
+  for (const std::size_t last : {1U, 2U, 2U, 5U}) {
+    run_until(last);
+  }
+  ASSERT_TRUE(run());
+  EXPECT_EQ(files_in(settings_.output), whole);
+}
+
+TEST_F(ResumedRun, OfAnyMethodAndAPartOfTheScans) {
+  settings_.map_file.reset();
+  settings_.start = 1;
+  settings_.max_frames = 4;
+  for (const char* const method : {"kiss-icp", "point-to-plane"}) {
+    settings_.method = method;
+    settings_.config = odometry::configuration(method);
+    settings_.resume = false;
+    const auto whole = unbroken();
+    settings_.resume = true;
+    run_until(3);
+    ASSERT_TRUE(run());
+    EXPECT_EQ(files_in(settings_.output), whole) << method;
+    fs::remove_all(settings_.output);
+  }
+}
+
+TEST_F(ResumedRun, AfterAStopThatKeptTheResultsSoFar) {
+  const auto whole = unbroken();
+  settings_.resume = true;
+  settings_.checkpoint_s = 1000.0;
+  std::size_t scans = 0;
+  callbacks_.stop = [&] { return ++scans == 3; };
+  const std::optional<RunResult> stopped = run();
+  ASSERT_TRUE(stopped);
+  EXPECT_TRUE(stopped->summary.stopped);
+  EXPECT_EQ(stopped->summary.frames, 3U);
+  ASSERT_TRUE(run());
+  EXPECT_TRUE(was_told("going on after 3 of 6 scans"));
+  EXPECT_EQ(files_in(settings_.output), whole);
+}
+
+TEST_F(ResumedRun, WhereItIsCompleteNothingIsDone) {
+  const auto whole = unbroken();
+  settings_.resume = true;
+  ASSERT_TRUE(run());
+  const auto written = fs::last_write_time(settings_.output / "run.json");
+  const std::optional<RunResult> again = run();
+  ASSERT_TRUE(again);
+  EXPECT_TRUE(again->was_complete);
+  EXPECT_EQ(fs::last_write_time(settings_.output / "run.json"), written);
+  EXPECT_EQ(files_in(settings_.output), whole);
+  settings_.config = odometry::PaperConfig{};
+  EXPECT_NE(refusal().find("cannot go on with the run"), std::string::npos) << "of other settings";
+  settings_.replace = true;
+  EXPECT_FALSE(run().value().was_complete);
+}
+
+TEST_F(ResumedRun, OtherSettingsAndAnotherRecordingAreRefusedByName) {
+  run_until(3);
+  settings_.resume = true;
+  odometry::WindowOdometryConfig config;
+  config.window.knot_spacing_s = 0.02;
+  settings_.config = config;
+  EXPECT_NE(refusal().find("window.knot_spacing_s was 0.0125 and is 0.02 now"), std::string::npos) << refusal();
+  settings_.config = odometry::Config{};
+  settings_.max_frames = 5;
+  EXPECT_NE(refusal().find("max_frames was null and is 5 now"), std::string::npos) << refusal();
+  settings_.max_frames.reset();
+  EXPECT_FALSE(left().empty()) << "what was done stays";
+  // The last scan that was done.
+  const fs::path scan = folder_.path() / "drive" / "point_clouds" / "00003.bin";
+  ASSERT_TRUE(fs::exists(scan)) << "of six";
+  std::string bytes = formats::read_whole_file(scan);
+  bytes[0] = static_cast<char>(bytes[0] ^ 1);
+  std::ofstream(scan, std::ios::binary) << bytes;
+  EXPECT_NE(refusal().find("00003.bin is not what it was"), std::string::npos) << refusal();
+}
+
+TEST_F(ResumedRun, ADamagedCheckpointAndFilesThatAreTooShortBeginAnew) {
+  const auto whole = unbroken();
+  settings_.resume = true;
+  const auto damage = [](const fs::path& file, std::size_t length) { fs::resize_file(file, length); };
+  for (const char* const name : {kCheckpointFile, "frames.jsonl", "objects.jsonl", "labels/00002.bin"}) {
+    run_until(3);
+    const fs::path file = left() / name;
+    ASSERT_TRUE(fs::exists(file)) << name;
+    if (std::string_view(name).starts_with("labels")) {
+      fs::remove(file);
+    } else {
+      damage(file, fs::file_size(file) / 2);
+    }
+    notices_.clear();
+    ASSERT_TRUE(run()) << name;
+    EXPECT_TRUE(was_told("the run begins anew")) << name;
+    EXPECT_EQ(files_in(settings_.output), whole) << name;
+    fs::remove_all(settings_.output);
+  }
+  run_until(3);
+  for (std::size_t at = 0; at < fs::file_size(left() / kCheckpointFile);
+       at += fs::file_size(left() / kCheckpointFile) / 7) {
+    std::string bytes = formats::read_whole_file(left() / kCheckpointFile);
+    bytes[at] = static_cast<char>(bytes[at] ^ 16);
+    const fs::path kept = folder_.path() / "kept";
+    fs::copy(left(), kept, fs::copy_options::recursive);
+    std::ofstream(left() / kCheckpointFile, std::ios::binary) << bytes;
+    ASSERT_TRUE(run()) << at;
+    EXPECT_EQ(files_in(settings_.output), whole) << at;
+    fs::remove_all(settings_.output);
+    fs::rename(kept, folder_.path() / ".out.partial-1");
+  }
+}
+
+TEST_F(ResumedRun, WithoutItTheRunBeginsAnewAndSaysSo) {
+  const auto whole = unbroken();
+  run_until(3);
+  ASSERT_TRUE(run());
+  EXPECT_TRUE(was_told("removed"));
+  EXPECT_EQ(files_in(settings_.output), whole);
+  EXPECT_TRUE(left().empty());
+}
+
+TEST_F(ResumedRun, AnErrorNamesWhereItGoesOn) {
+  callbacks_.frame = [&](std::size_t index, const odometry::Frame&) {
+    if (index == 4) {
+      throw DataError("the disk is full");
+    }
+  };
+  EXPECT_EQ(refusal(), "the disk is full (--resume goes on after 4 of 6 scans)");
+}
+
+TEST_F(ResumedRun, CancelledLeavesNothing) {
+  std::size_t asked = 0;
+  callbacks_.cancelled = [&] { return ++asked == 4; };
+  EXPECT_FALSE(run());
+  EXPECT_TRUE(left().empty());
+}
+
+TEST_F(ResumedRun, WhatCannotBeResumedIsWrongUsage) {
+  settings_.resume = true;
+  settings_.mcap_file = settings_.output / "run.mcap";
+  EXPECT_THROW((void)run(), UsageError);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::runs
