@@ -1,6 +1,7 @@
 // One plot: a canvas that is drawn when its data, size or colours change, and a cursor over it that moves by itself.
 import { element } from '../dom.js';
 import { shortNumber } from '../format.js';
+import { drawnByProcessor } from '../processor.js';
 import { closest } from '../runs.js';
 import { cssColour } from '../theme.js';
 import { tracePolyline } from './polyline.js';
@@ -198,7 +199,7 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
     const ratio = Math.min(2, window.devicePixelRatio || 1);
     canvas.width = Math.round(width * ratio);
     canvas.height = Math.round(height * ratio);
-    const pen = canvas.getContext('2d', { willReadFrequently: true });
+    const pen = canvas.getContext('2d', { willReadFrequently: drawnByProcessor() }); // such a canvas stays in memory, where the page shows it at no cost
     pen.scale(ratio, ratio);
     x = createScale({ ...plot.x, ...(span ? { low: span[0], high: span[1] } : {}), from: EDGE.left, to: width - EDGE.right });
     y = createScale({

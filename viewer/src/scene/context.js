@@ -1,5 +1,6 @@
 // What everything in 3D begins with.
 import { LinearSRGBColorSpace, Matrix4, Quaternion, Vector3, WebGLRenderer } from 'three';
+import { setDrawnByProcessor } from '../processor.js';
 
 const MOST_PIXELS_PER_POINT = 2;
 
@@ -23,6 +24,7 @@ function openContext(canvas) {
 export function createRenderer(canvas) {
   const context = openContext(canvas);
   if (!context) return null;
+  setDrawnByProcessor(context.software);
   const renderer = new WebGLRenderer({ canvas, context: context.gl });
   renderer.outputColorSpace = LinearSRGBColorSpace; // colours go to the screen as they are
   renderer.setPixelRatio(context.software ? 1 : Math.min(window.devicePixelRatio, MOST_PIXELS_PER_POINT));
