@@ -7,6 +7,7 @@ from __future__ import annotations
 import decimal
 import fractions
 import math
+import numbers
 import operator
 import os
 from typing import Any, Mapping, Optional, Union
@@ -36,6 +37,8 @@ def stamp_to_ns(stamp: Optional[Stamp], stamp_ns: Optional[int]) -> int:
         ns = int(stamp.astype("datetime64[ns]").astype(np.int64))
     elif isinstance(stamp, (int, decimal.Decimal, fractions.Fraction)):
         ns = round(fractions.Fraction(stamp) * 10**9)
+    elif not isinstance(stamp, numbers.Real):
+        raise _core.UsageError(f"stamp is {stamp!r} of type {type(stamp).__name__}, expected a time in seconds")
     else:
         if not math.isfinite(stamp):
             raise _core.UsageError(f"stamp is {stamp}, expected a time in seconds")

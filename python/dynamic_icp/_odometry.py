@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import copy
+import difflib
+import inspect
 import os
-from typing import Any, Mapping, Optional, Union
+from typing import Any, Callable, Mapping, Optional, Union
 
 from numpy.typing import ArrayLike
 
@@ -15,10 +17,20 @@ from ._scan import Scan
 
 
 def method_settings(
-    method: str, preset: str, settings: Optional[Mapping[str, Any]], more: Mapping[str, Any]
+    method: str,
+    preset: str,
+    settings: Optional[Mapping[str, Any]],
+    more: Mapping[str, Any],
+    function: Callable[..., Any],
 ) -> list[tuple[str, str]]:
-    """Configuration keys of a method with their values, as text."""
+    """Configuration keys of a method with their values, as text. A name that is no key but nearly an argument of the
+    function is refused with that."""
     known = [key for key, *_ in _core.configuration_keys(method, preset)]
+    arguments = list(inspect.signature(function).parameters)
+    for name in more:
+        meant = difflib.get_close_matches(name, arguments, n=1, cutoff=0.8)
+        if meant and not any(key == name or key.endswith("." + name) for key in known):
+            raise _core.UsageError(f"unknown argument '{name}'; did you mean '{meant[0]}'?")
     return setting_texts(settings, more, known)
 
 
@@ -95,7 +107,7 @@ class Odometry:
             method=method,
             preset=preset,
             ablation=ablation,
-            settings=method_settings(method, preset, settings, more),
+            settings=method_settings(method, preset, settings, more, Odometry),
             threads=threads,
             T_vehicle_sensor=None if T_vehicle_sensor is None else as_array("T_vehicle_sensor", T_vehicle_sensor),
             doppler_kind=doppler_kind,

@@ -196,7 +196,7 @@ def run(
         "method": method,
         "preset": preset,
         "ablation": ablation,
-        "settings": method_settings(method, preset, settings, more),
+        "settings": method_settings(method, preset, settings, more, run),
         "output": folder,
         "ground_truth": _text(ground_truth),
         "replace": replace,

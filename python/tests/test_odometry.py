@@ -161,6 +161,10 @@ def test_messages_are_those_of_the_program(folder, tmp_path):
         assert str(error.value).split("; did you mean")[0] in stderr  # the program knows more keys to mean
     with pytest.raises(ValueError, match="unknown method 'icp'|icp"):
         dynamic_icp.Odometry(method="icp")
+    with pytest.raises(dynamic_icp.UsageError, match="unknown argument 'thread'; did you mean 'threads'"):
+        dynamic_icp.Odometry(thread=2)
+    with pytest.raises(dynamic_icp.UsageError, match="unknown argument 'save_label'; did you mean 'save_labels'"):
+        dynamic_icp.run(folder, tmp_path / "none", save_label=True)
     with pytest.raises(ValueError, match="may be any of"):
         dynamic_icp.Odometry("paper", max_iterations=5)
 

@@ -47,6 +47,7 @@ def test_no_number_makes_a_scan_fail(rows, dtype):
         ({"stamp": 1, "stamp_ns": 1}, r"both stamp \(s\) and stamp_ns \(ns\) are given"),
         ({"stamp": float("nan")}, "stamp is nan, expected a time in seconds"),
         ({"stamp": 1.7e18}, "is it in seconds"),
+        ({"stamp": "1"}, "stamp is '1' of type str, expected a time in seconds"),
         ({"stamp_ns": 2**63}, "expected at most"),
     ],
 )

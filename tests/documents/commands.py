@@ -81,7 +81,7 @@ class Sandbox:
         done = subprocess.run(
             ["bash", "-euo", "pipefail", "-c", block],
             cwd=self.folder, env=self.environment, text=True, stdin=subprocess.DEVNULL,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, timeout=300,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT, check=False, timeout=900,
         )
         return "" if done.returncode == 0 else f"status {done.returncode}\n{done.stdout[-3000:]}"
 
