@@ -2,10 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/datasets/dataset.hpp"
 
+#include <algorithm>
+#include <iterator>
+
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/nearest_key.hpp"
+#include "dynamic_icp/recording/datasets/folder_search.hpp"
 #include "dynamic_icp/recording/datasets/layouts.hpp"
 #include "dynamic_icp/recording/datasets/not_a_recording.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
@@ -155,6 +159,29 @@ Match match_named(const fs::path& input, const std::string& format) {
       fmt::format("unknown format '{}'{}; known are: auto{}", format, did_you_mean(format, known), looked_for()));
 }
 
+/// The folder of an input, or of the file that it is.
+fs::path folder_of(const fs::path& input) {
+  const fs::path whole = named_path(input);
+  std::error_code fault;
+  return fs::is_directory(whole, fault) ? whole : whole.parent_path();
+}
+
+bool is_times_folder(const fs::path& input) { return same_name(folder_of(input), "times"); }
+
+/// Throws NotARecording for what is no recording itself, but lies in a folder of one with folders of its own: the times
+/// of points, labels, poses.
+void refuse_part_of_recording(const fs::path& input) {
+  constexpr std::string_view kWithFolders[] = {"dicp", "hercules", "helipr", "boreas", "aevascenes"};
+  const fs::path folder = folder_of(input).parent_path();
+  for (const Layout& layout : kLayouts) {
+    if (std::ranges::find(kWithFolders, layout.name) != std::end(kWithFolders) &&
+        find_or_nothing(layout, folder, false) == folder) {
+      throw NotARecording(fmt::format("{}: is a part of the recording {} ({}), not one itself: name that folder",
+                                      input.string(), folder.string(), layout.name));
+    }
+  }
+}
+
 /// The layout of the input and what to open. Throws NotARecording where it is of none.
 Match match_of(const fs::path& input, const OpenOptions& options) {
   std::error_code fault;
@@ -173,6 +200,7 @@ Match match_of(const fs::path& input, const OpenOptions& options) {
   if (const std::string obstacle = known_obstacle(input); !obstacle.empty()) {
     throw NotARecording(obstacle);
   }
+  refuse_part_of_recording(input);
   throw NotARecording(fmt::format("{}: not a recording of a known layout{}. Looked for:{}", input.string(),
                                   what_is_there(input), looked_for()));
 }
@@ -186,7 +214,18 @@ FoundDataset find_dataset(const fs::path& input, const OpenOptions& options) {
 
 std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& options) {
   const Match match = match_of(input, options);
-  return open_as(*match.layout, match.folder, options);
+  const bool is_guessed = match.layout->name == "bin" && options.format == "auto" && options.columns.empty();
+  if (is_guessed && is_times_folder(input)) {
+    refuse_part_of_recording(input);  // times of points look like records of anything
+  }
+  try {
+    return open_as(*match.layout, match.folder, options);
+  } catch (const DataError&) {
+    if (is_guessed) {
+      refuse_part_of_recording(input);
+    }
+    throw;
+  }
 }
 
 std::vector<std::string> known_formats() {

@@ -67,6 +67,37 @@ TEST_F(OpenDataset, RecordingsOfSeveralLayoutsSideBySideAreRefused) {
   EXPECT_EQ(open_dataset(folder_, {.format = "hercules"})->format(), "hercules");
 }
 
+TEST_F(OpenDataset, AFolderInARecordingIsNoRecording) {
+  const auto write_numbers = [&](const fs::path& path, const std::vector<float>& numbers) {
+    fs::create_directories((folder_ / path).parent_path());
+    std::ofstream(folder_ / path, std::ios::binary)
+        .write(reinterpret_cast<const char*>(numbers.data()), static_cast<std::streamsize>(4 * numbers.size()));
+  };
+  std::vector<float> times;
+  for (int i = 0; i < 4000; ++i) {
+    times.push_back(2.5e-5F * static_cast<float>(i));
+  }
+  write_numbers("drive/point_clouds/00001.bin", {10, 2, 1, -3});
+  write_numbers("drive/times/00001.bin", times);
+  std::ofstream(folder_ / "drive/poses.dat") << "none";
+  fs::create_directories(folder_ / "drive/notes");
+  std::ofstream(folder_ / "drive/notes/a.dat") << "none";
+  for (const char* part : {"drive/times", "drive/times/", "drive/times/00001.bin", "drive/notes"}) {
+    try {
+      open_dataset(folder_ / part);
+      ADD_FAILURE() << part << " must be refused";
+    } catch (const NotARecording& error) {
+      EXPECT_NE(std::string(error.what())
+                    .find("is a part of the recording " + (folder_ / "drive").string() + " (dicp), not one itself"),
+                std::string::npos)
+          << error.what();
+    }
+  }
+  EXPECT_EQ(open_dataset(folder_ / "drive/point_clouds")->format(), "dicp");
+  fs::rename(folder_ / "drive/times", folder_ / "times");
+  EXPECT_NO_THROW((void)open_dataset(folder_ / "times")) << "four of these numbers are as good as any others";
+}
+
 TEST_F(OpenDataset, ChoicesThatALayoutDoesNotHaveAreRefused) {
   fs::create_directories(folder_ / "point_clouds");
   std::ofstream(folder_ / "point_clouds" / "1.bin", std::ios::binary) << std::string(16, '\0');
