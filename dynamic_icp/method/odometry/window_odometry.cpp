@@ -223,10 +223,13 @@ void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
   const window::TrajectoryPoint last = estimator_.trajectory().at_end();
   const double dt_s = now.stamp_s - estimator_.stamp_s();
   const bool is_second = estimator_.scans() == 1;
-  const window::WindowMotion motion = estimator_.update(now, first_points_, map_, start, workers_);
-  const bool is_lost = motion.diverged || match(motion) < std::max(kMinMatch, config_.lost_match * usual_match_) ||
-                       motion.planes.matched < kMinAgreement * static_cast<double>(motion.planes.on_planes);
-  if (is_lost || !is_plausible_motion(motion.T_target_source, dt_s)) {
+  const auto is_believed = [&](const window::WindowMotion& found) {
+    return match(found) >= std::max(kMinMatch, config_.lost_match * usual_match_) &&
+           found.planes.matched >= kMinAgreement * static_cast<double>(found.planes.on_planes) &&
+           is_plausible_motion(found.T_target_source, dt_s);
+  };
+  const window::WindowMotion motion = estimator_.update(now, first_points_, map_, start, is_believed, workers_);
+  if (motion.diverged || !is_believed(motion)) {
     const Eigen::Isometry3d predicted = motion::motion_of(last.omega, ego_.velocity_sensor, -dt_s);
     set_motion(frame, FrameStatus::kLost, T_world_sensor_, predicted);
     frame.alignment.covariance = Matrix6d(Vector6d::Constant(dt_s * dt_s).asDiagonal());

@@ -136,7 +136,9 @@ bool WindowEstimator::settle_first(const WindowScan& scan, double omega_sigma_ra
 }
 
 WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_points, mapping::PlaneMap& map,
-                                     const std::optional<Eigen::Isometry3d>& start, const Workers& workers) {
+                                     const std::optional<Eigen::Isometry3d>& start, const IsBelieved& is_believed,
+                                     const Workers& workers) {
+  const Learned before = learned();
   WindowMotion motion;
   motion.points = scan.static_points->size();
   const double last_s = stamp_s();
@@ -150,6 +152,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   for (int round = 0; round < kNoiseRounds; ++round) {
     iterate(scan, first_points, first_new, map, planes, motion, workers);
     if (motion.diverged) {
+      forget_scan(before);
       return motion;
     }
     learn_pointing(*planes);
@@ -170,6 +173,11 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
         compare_with_planes(*scan.static_points, false, *planes);
         motion.planes = planes->quality();
       });
+  motion.T_target_source = trajectory_.pose(stamp_s()).inverse() * trajectory_.pose(last_s);
+  if (!is_believed(motion)) {
+    forget_scan(before);
+    return motion;
+  }
   join(scan_terms(planes, first_new), workers);
   if (!elimination_.is_solvable() || !rest_factor_.is_solvable()) {
     motion.diverged = true;
@@ -184,6 +192,20 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
   walk_field(motion.T_target_source.translation().norm());
   quadratic_->drop_coefficients(trajectory_.drop_before(stamp_s() + std::min(0.0, begin_s_)));
   return motion;
+}
+
+WindowEstimator::Learned WindowEstimator::learned() const {
+  return {motion_prior_, pointing_variance_, stamp_variance_, period_variance_, scan_error_variance_};
+}
+
+/// Of a scan that has not joined the past. What was learned from planes that do not fit is an error of no sensor.
+void WindowEstimator::forget_scan(const Learned& before) {
+  motion_prior_ = before.motion;
+  pointing_variance_ = before.pointing;
+  stamp_variance_ = before.stamps;
+  period_variance_ = before.periods;
+  scan_error_variance_ = before.scan_errors;
+  theta_ = theta_0_;
 }
 
 void WindowEstimator::take(const WindowScan& scan) {

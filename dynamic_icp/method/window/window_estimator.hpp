@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -55,6 +56,9 @@ struct WindowMotion {
   bool diverged = false;  ///< a step or the covariance is not finite, or a step beyond the reach of any scan
 };
 
+/// Whether a motion is believed, by its transform and what the planes say of it.
+using IsBelieved = std::function<bool(const WindowMotion& motion)>;
+
 /// What is known of the angular velocity of the first scan in a map.
 struct StartOmega {
   Eigen::Vector3d omega = Eigen::Vector3d::Zero();  ///< rad/s, sensor axes
@@ -87,9 +91,11 @@ class WindowEstimator {
              const StartOmega& start, const Workers& workers);
 
   /// The next scan. `start` is its pose where it is known better than by going on evenly (the second scan in a map).
-  /// The second scan shows how the first one turned: `map` is laid anew then.
+  /// The second scan shows how the first one turned: `map` is laid anew then. A motion that has diverged or is not
+  /// believed teaches nothing of the sensor, and `begin` must follow.
   WindowMotion update(const WindowScan& scan, const Scan& first_points, mapping::PlaneMap& map,
-                      const std::optional<Eigen::Isometry3d>& start, const Workers& workers);
+                      const std::optional<Eigen::Isometry3d>& start, const IsBelieved& is_believed,
+                      const Workers& workers);
 
   /// Adds the static points of the scan at hand to a map.
   std::vector<Eigen::Vector3d> add_to_map(const WindowScan& scan, mapping::PlaneMap& map, const Workers& workers);
@@ -125,6 +131,17 @@ class WindowEstimator {
     Eigen::VectorXd g;
   };
 
+  /// What a scan changes of what is known of the sensor, before it joins the past.
+  struct Learned {
+    MotionPrior motion;
+    LearnedVariance pointing;
+    LearnedVariance stamps;
+    LearnedVariance periods;
+    LearnedVariance scan_errors;
+  };
+
+  [[nodiscard]] Learned learned() const;
+  void forget_scan(const Learned& before);
   static LearnedVariance::Prior stamp_prior(double sigma_s);
   static LearnedVariance::Prior period_prior(double sigma_s, double counts);
   static LearnedVariance::Prior scan_error_prior(double sigma_mps);

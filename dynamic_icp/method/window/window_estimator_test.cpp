@@ -152,7 +152,10 @@ DriveRun drive(const Drive& drive, int scans, const WindowConfig& config = {}, i
                           {Vector3d::Zero(), WindowConfig{}.start_omega_rad_s}, workers);
     } else {
       run.steps.push_back(
-          step_of(drive, run.estimator.update(now, first_points, map, std::nullopt, workers), run.estimator, k));
+          step_of(drive,
+                  run.estimator.update(
+                      now, first_points, map, std::nullopt, [](const WindowMotion&) { return true; }, workers),
+                  run.estimator, k));
     }
     now.stamp_s = run.estimator.stamp_s();
     run.estimator.add_to_map(now, map, workers);
