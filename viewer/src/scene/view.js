@@ -9,8 +9,9 @@ import { readMap, readScan } from '../page_data.js';
 import { facingOf, headingInSensor, keptScan, objectOf, originOf, poseOf } from '../runs.js';
 import { createScanCache } from '../scan_cache.js';
 import { groupAt, runAt, runsShown, sameScan } from '../session.js';
-import { headingInWorld, nearestOf, objectAt, tracksOf, yawOf } from '../tracks.js';
+import { objectAt } from '../tracks.js';
 import { cssColour, groundOf } from '../theme.js';
+import { objectAnchor, sensorAnchor } from './anchors.js';
 import { boundsOf } from './bounds.js';
 import { createCameraRig } from './camera_rig.js';
 import { createRenderer, onNextFrame, poseMatrix } from './context.js';
@@ -183,24 +184,6 @@ export function createView(report, store) {
     return headings.get(runIndex);
   }
 
-  function sensorAnchor(matrix, heading) {
-    const [x, y] = matrix.elements; // the sensor's x axis in the world
-    return { place: matrix.elements.slice(12, 15), yaw: Math.atan2(y, x) + heading };
-  }
-
-  /** What the camera goes with when it follows an object: the object, or where it was last; else null. */
-  function chased(run, frame) {
-    const { chase, object } = store.state;
-    const track = chase && object !== null ? tracksOf(run).get(object) : null;
-    if (!track) return null;
-    const nearest = nearestOf(run, track, frame);
-    const pose = poseOf(run.frames.poses, nearest.frame);
-    if (!pose) return null;
-    const centre = new Vector3(...nearest.centre).applyMatrix4(poseMatrix(pose, origin));
-    const heading = headingInWorld(run, nearest.frame, nearest);
-    return { place: centre.toArray(), yaw: heading === null ? yawOf(pose) + nearest.yaw : (heading * Math.PI) / 180 };
-  }
-
   async function showFrame() {
     const ticket = ++tickets;
     const { run: runIndex, frame, playing } = store.state;
@@ -233,7 +216,8 @@ export function createView(report, store) {
     for (const object of atFrame) object.matrix.copy(matrix);
     drawObjects();
     paths.drive((other) => sameScan(run, frame, other));
-    const anchor = chased(run, frame) ?? (pose && sensorAnchor(matrix, heading));
+    const { chase, object } = store.state;
+    const anchor = (chase ? objectAnchor(run, frame, object, origin) : null) ?? (pose && sensorAnchor(matrix, heading));
     if (anchor && !(several && rig.seenFromAbove())) rig.moveAnchor(anchor);
     store.set({ shown: { frame, place, scanFrame: place === null ? null : run.scans.frames[place], trouble } });
     draw();
