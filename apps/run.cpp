@@ -8,6 +8,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/followed_dataset.hpp"
 #include "dynamic_icp/recording/runs/map_writer.hpp"
 #include "dynamic_icp/recording/runs/mcap_recorder.hpp"
 #include "dynamic_icp/recording/runs/run_recording.hpp"
@@ -135,8 +136,13 @@ int tell_failures(const runs::RunResult& result, const fs::path& output) {
   return status;
 }
 
+bool is_stream(const RunOptions& options) { return options.recording.path == datasets::kStandardInput; }
+
 int run(const RunOptions& options) {
   const runs::RunSettings settings = settings_of(options);
+  if (is_stream(options) && options.report) {
+    throw UsageError("--report reads the scans again, which standard input does not allow");
+  }
   Warnings warnings(options.quiet);
   std::optional<Progress> progress;
   std::size_t shown = 0;
@@ -152,7 +158,8 @@ int run(const RunOptions& options) {
     callbacks.notice = [](const std::string& text) { tell("dynamic-icp: {}\n", text); };
   }
   if (settings.follow && !options.quiet) {
-    tell("following {}; Ctrl-C ends it, with the results so far\n", options.recording.path.string());
+    tell("following {}; Ctrl-C ends it, with the results so far\n",
+         is_stream(options) ? "standard input" : options.recording.path.string());
   }
   callbacks.progress = [&](std::size_t done, std::size_t total) {
     if (done == 0) {
@@ -203,7 +210,9 @@ int run(const RunOptions& options) {
 void add_run_command(CLI::App& app, std::function<int()>& selected) {
   const auto options = std::make_shared<RunOptions>();
   CLI::App* command = app.add_subcommand("run", "Odometry over a recording: trajectory, objects, statistics");
-  command->add_option("INPUT", options->recording.path, "Folder of the recording")->required();
+  command
+      ->add_option("INPUT", options->recording.path, "Folder or file of the recording; - with --follow: standard input")
+      ->required();
   command->footer(
       "Exit status: 0 done; 1 the data or the machine failed; 2 wrong usage; 3 most scans are lost: there are results, "
       "but the trajectory is a guess; 130 (interrupt) and 143 (terminate): stopped after a scan, with the results so "
@@ -233,7 +242,12 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
   add_live_options(*command, options->live);
   CLI::Option* follow =
       command->add_flag("--follow", options->settings.follow,
-                        "Take the scans of INPUT as they come: of a folder that grows, until Ctrl-C or --max-frames");
+                        "Take the scans of INPUT as they come: of a folder or an MCAP file that grows, or of MCAP on "
+                        "standard input (INPUT is -), until file or stream ends, Ctrl-C or --max-frames");
+  add_option(*command, "--follow-timeout", options->settings.follow_timeout_s, "S",
+             "End as if the recording had, once no scan has come for S seconds (default: wait on)")
+      ->needs(follow)
+      ->check(CLI::PositiveNumber);
   add_option(*command, "--save-kitti", options->settings.kitti_file, "FILE",
              "Write the poses as KITTI has them, FILE.txt: 12 numbers a scan, T_world_sensor row by row");
   add_option(*command, "--calibration", options->settings.calibration, "FILE",

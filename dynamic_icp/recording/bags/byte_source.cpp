@@ -14,37 +14,52 @@
 #include "dynamic_icp/recording/formats/memory_error.hpp"
 
 namespace dynamic_icp::bags {
+namespace {
+
+DataError cannot_read(const std::filesystem::path& path) {
+  return DataError(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
+}
+
+}  // namespace
 
 Damage::Damage(const std::filesystem::path& file, std::uint64_t byte, const std::string& what)
     : DataError(fmt::format("{}: byte {}: {}", file.string(), byte, what)), byte_(byte), what_(what) {}
 
 ReadableFile::ReadableFile(const std::filesystem::path& path, const std::filesystem::path& name)
-    : path_(name.empty() ? path : name) {
-  const auto fail = [&] { return DataError(fmt::format("{}: cannot read: {}", path_.string(), std::strerror(errno))); };
+    : ReadableBytes(name.empty() ? path : name) {
   formats::refuse_irregular(path);
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
   if (descriptor_ < 0) {
-    throw fail();
+    throw cannot_read(this->path());
   }
-  struct stat status {};
-  if (::fstat(descriptor_, &status) != 0) {
-    const DataError error = fail();
+  try {
+    static_cast<void>(look_again());
+  } catch (const DataError&) {
     ::close(descriptor_);
-    throw error;
+    throw;
+  }
+}
+
+struct ::stat ReadableFile::look_again() {
+  struct ::stat status {};
+  if (::fstat(descriptor_, &status) != 0) {
+    throw cannot_read(path());
   }
   size_ = static_cast<std::uint64_t>(status.st_size);
+  return status;
 }
 
 ReadableFile::~ReadableFile() { ::close(descriptor_); }
 
 std::string ReadableFile::read(std::uint64_t at, std::uint64_t bytes) const {
   const auto ends = [&](std::uint64_t end) {
-    return Damage(path_, at, fmt::format("the file ends at byte {}, expected {} more bytes", end, bytes));
+    return Damage(path(), at, fmt::format("the file ends at byte {}, expected {} more bytes", end, bytes));
   };
-  if (at > size_ || bytes > size_ - at) {
-    throw ends(size_);
+  const std::uint64_t size = size_;
+  if (at > size || bytes > size - at) {
+    throw ends(size);
   }
-  std::string content = formats::with_memory_for(path_, [&] { return std::string(bytes, '\0'); });
+  std::string content = formats::with_memory_for(path(), [&] { return std::string(bytes, '\0'); });
   for (std::size_t done = 0; done < content.size();) {
     const ssize_t got =
         ::pread(descriptor_, content.data() + done, content.size() - done, static_cast<off_t>(at + done));
@@ -52,7 +67,7 @@ std::string ReadableFile::read(std::uint64_t at, std::uint64_t bytes) const {
       continue;
     }
     if (got < 0) {
-      throw DataError(fmt::format("{}: cannot read at byte {}: {}", path_.string(), at + done, std::strerror(errno)));
+      throw DataError(fmt::format("{}: cannot read at byte {}: {}", path().string(), at + done, std::strerror(errno)));
     }
     if (got == 0) {  // the file became shorter
       throw ends(at + done);

@@ -2,12 +2,16 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
 #include <filesystem>
 #include <string>
 #include <string_view>
+#include <utility>
+
+#include <sys/stat.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 
@@ -30,24 +34,44 @@ class Damage : public DataError {
 /// No message and no chunk may be longer: a length beyond that is damage, or would not fit into memory anyway.
 constexpr std::uint64_t kMaxPieceBytes = std::uint64_t{1} << 30U;
 
-/// A regular file that is read at any place. Thread-safe.
-class ReadableFile {
+/// Bytes that are read at any place, of a file or of what was kept of a stream. Thread-safe.
+class ReadableBytes {
+ public:
+  ReadableBytes(const ReadableBytes&) = delete;
+  ReadableBytes& operator=(const ReadableBytes&) = delete;
+  virtual ~ReadableBytes() = default;
+
+  /// As messages name it.
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+
+  /// As far as is known.
+  [[nodiscard]] virtual std::uint64_t size() const = 0;
+
+  /// Exactly so many bytes. Throws Damage where they are not there, and before anything is allocated.
+  [[nodiscard]] virtual std::string read(std::uint64_t at, std::uint64_t bytes) const = 0;
+
+ protected:
+  explicit ReadableBytes(std::filesystem::path path) : path_(std::move(path)) {}
+
+ private:
+  std::filesystem::path path_;
+};
+
+/// A regular file.
+class ReadableFile final : public ReadableBytes {
  public:
   /// Throws DataError naming file and reason. `name`: how messages name it; as `path` where empty.
   explicit ReadableFile(const std::filesystem::path& path, const std::filesystem::path& name = {});
-  ~ReadableFile();
-  ReadableFile(const ReadableFile&) = delete;
-  ReadableFile& operator=(const ReadableFile&) = delete;
+  ~ReadableFile() override;
 
-  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
-  [[nodiscard]] std::uint64_t size() const { return size_; }
+  [[nodiscard]] std::uint64_t size() const override { return size_; }
+  [[nodiscard]] std::string read(std::uint64_t at, std::uint64_t bytes) const override;
 
-  /// Exactly so many bytes. Throws Damage where the file ends before, and before anything is allocated.
-  [[nodiscard]] std::string read(std::uint64_t at, std::uint64_t bytes) const;
+  /// The file as it is now: of one that others write to its size is looked up again. Throws DataError where that fails.
+  [[nodiscard]] struct ::stat look_again();
 
  private:
-  std::filesystem::path path_;  // as messages name it
-  std::uint64_t size_ = 0;
+  std::atomic<std::uint64_t> size_ = 0;
   int descriptor_ = -1;
 };
 
@@ -79,8 +103,8 @@ class ByteSource {
 /// passed over.
 class FileBytes final : public ByteSource {
  public:
-  explicit FileBytes(const ReadableFile& file, std::size_t window = kWindow) : FileBytes(file, file.size(), window) {}
-  FileBytes(const ReadableFile& file, std::uint64_t end, std::size_t window)
+  explicit FileBytes(const ReadableBytes& file, std::size_t window = kWindow) : FileBytes(file, file.size(), window) {}
+  FileBytes(const ReadableBytes& file, std::uint64_t end, std::size_t window)
       : ByteSource(end), file_(file), window_(window) {}
 
   [[nodiscard]] Damage damage(std::uint64_t at, const std::string& what) const override;
@@ -91,7 +115,7 @@ class FileBytes final : public ByteSource {
  private:
   std::string_view bytes_within(std::uint64_t at, std::uint64_t count) override;
 
-  const ReadableFile& file_;
+  const ReadableBytes& file_;
   std::size_t window_;
   std::uint64_t begin_ = 0;
   std::string held_;
@@ -100,7 +124,7 @@ class FileBytes final : public ByteSource {
 /// The unpacked content of a chunk of a file.
 class ChunkBytes final : public ByteSource {
  public:
-  ChunkBytes(std::string_view content, const ReadableFile& file, std::uint64_t chunk)
+  ChunkBytes(std::string_view content, const ReadableBytes& file, std::uint64_t chunk)
       : ByteSource(content.size()), content_(content), file_(file), chunk_(chunk) {}
 
   [[nodiscard]] Damage damage(std::uint64_t at, const std::string& what) const override;
@@ -109,7 +133,7 @@ class ChunkBytes final : public ByteSource {
   std::string_view bytes_within(std::uint64_t at, std::uint64_t count) override;
 
   std::string_view content_;
-  const ReadableFile& file_;
+  const ReadableBytes& file_;
   std::uint64_t chunk_;
 };
 

@@ -8,12 +8,11 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/recording/bags/byte_source.hpp"
-#include "dynamic_icp/recording/bags/chunk_cache.hpp"
-#include "dynamic_icp/recording/bags/compression.hpp"
 #include "dynamic_icp/recording/bags/crc32.hpp"
 #include "dynamic_icp/recording/bags/file_bag.hpp"
+#include "dynamic_icp/recording/bags/mcap_pieces.hpp"
 #include "dynamic_icp/recording/bags/mcap_records.hpp"
-#include "dynamic_icp/recording/formats/memory_error.hpp"
+#include "dynamic_icp/recording/bags/mcap_scan.hpp"
 
 namespace dynamic_icp::bags {
 namespace {
@@ -27,7 +26,7 @@ class NoMcapIndex : public DataError {
 class McapFile final : public FileBag {
  public:
   McapFile(const std::filesystem::path& path, const std::filesystem::path& name)
-      : FileBag("mcap", name), file_(path, name) {
+      : FileBag("mcap", name), pieces_(std::make_shared<ReadableFile>(path, name)), file_(pieces_.file()) {
     open();
   }
 
@@ -47,19 +46,7 @@ class McapFile final : public FileBag {
   [[nodiscard]] std::string read(const MessageEntry& entry) const override { return read_front(entry, kMaxPieceBytes); }
 
   [[nodiscard]] std::string read_front(const MessageEntry& entry, std::size_t bytes) const override {
-    FileBytes source(file_, FileBytes::kOneRecord);
-    const McapRecord outer = mcap_record(source, entry.place);
-    if (outer.op == McapOp::kMessage) {  // outside of any chunk
-      const McapMessage message = checked_message(source, outer, entry);
-      return file_.read(message.data_at, std::min<std::uint64_t>(message.data_size, bytes));
-    }
-    if (outer.op != McapOp::kChunk) {
-      throw source.damage(outer.at, "expected a chunk");
-    }
-    const ChunkCache::Content content = cache_.get(entry.place, [&] { return unpacked(source, outer); });
-    ChunkBytes inner(*content, file_, entry.place);
-    const McapMessage message = checked_message(inner, mcap_record(inner, entry.offset), entry);
-    return std::string(inner.bytes(message.data_at, message.data_size).substr(0, bytes));
+    return pieces_.message(entry, topic_of_, topics_[entry.topic].name, bytes);
   }
 
  private:
@@ -81,10 +68,9 @@ class McapFile final : public FileBag {
       reason = fmt::format("damaged at byte {}: {}", damage.byte(), damage.reason());
     }
     chunks_.clear();
-    channels_ = {};
     span_.reset();
     notes_.push_back(fmt::format("{}: no index ({}): all of it is looked through", path().string(), reason));
-    scan(source);
+    look_through();
   }
 
   void read_summary(FileBytes& source) {
@@ -234,39 +220,23 @@ class McapFile final : public FileBag {
   }
 
   /// Looks through all records up to the damage.
-  void scan(FileBytes& source) {
-    std::uint64_t at = kMcapMagic.size();
+  void look_through() {
+    McapScan scan(pieces_);
     try {
-      while (at < file_.size()) {
-        const McapRecord record = mcap_record(source, at);
-        if (record.op == McapOp::kDataEnd || record.op == McapOp::kFooter) {
-          break;
-        }
-        if (record.op == McapOp::kChunk) {
-          const std::string content = unpacked(source, record);
-          ChunkBytes inner(content, file_, at);
-          McapRecord within;
-          for (std::uint64_t offset = 0; offset < inner.size(); offset = within.end()) {
-            within = mcap_record(inner, offset);
-            scan_record(inner, within, at, offset);
-          }
-        } else {
-          scan_record(source, record, at, 0);
-        }
-        at = record.end();
-        if (at > file_.size()) {
-          throw source.damage(record.at, fmt::format("a record of {} bytes, of which {} are there", record.size,
-                                                     file_.size() - record.content_at));
-        }
-      }
+      scan.advance();
+      scan.take_cut();
     } catch (const Damage& damage) {
+      seen_ = entries_of(scan.take_seen());
       if (seen_.empty()) {
         throw;
       }
       notes_.push_back(fmt::format("{}: damaged from byte {} on ({}): the {} messages before it are left",
                                    path().string(), damage.byte(), damage.reason(), seen_.size()));
     }
-    TopicTable table = table_of(channels_.channels());
+    if (seen_.empty()) {
+      seen_ = entries_of(scan.take_seen());
+    }
+    TopicTable table = table_of(scan.channels().channels());
     topics_ = std::move(table.topics);
     topic_of_ = std::move(table.topic_of);
     for (MessageEntry& entry : seen_) {
@@ -275,47 +245,13 @@ class McapFile final : public FileBag {
     }
   }
 
-  void scan_record(ByteSource& source, const McapRecord& record, std::uint64_t place, std::uint64_t offset) {
-    if (record.op == McapOp::kSchema) {
-      channels_.add_schema(mcap_content(source, record));
-    } else if (record.op == McapOp::kChannel) {
-      channels_.add_channel(mcap_content(source, record));
-    } else if (record.op == McapOp::kMessage) {
-      const McapMessage message = mcap_message(source, record);
-      if (!channels_.has(message.channel)) {
-        throw source.damage(record.at, fmt::format("a message of channel {}, which does not exist", message.channel));
-      }
-      channels_.count(message.channel, 1);
-      seen_.push_back({message.log_time_ns, place, static_cast<std::uint32_t>(offset), message.channel, 0});
+  static std::vector<MessageEntry> entries_of(const std::vector<McapScan::Seen>& seen) {
+    std::vector<MessageEntry> entries;
+    entries.reserve(seen.size());
+    for (const McapScan::Seen& one : seen) {
+      entries.push_back(one.entry);
     }
-  }
-
-  /// The content of a chunk; of one that the end of the file cuts, what is there.
-  [[nodiscard]] std::string unpacked(FileBytes& source, const McapRecord& record) const {
-    const McapChunkHeader chunk = mcap_chunk(source, record);
-    const std::optional<Compression> compression = compression_of(chunk.compression);
-    if (!compression) {
-      throw source.damage(record.at, "a chunk whose compression is neither none, lz4 nor zstd");
-    }
-    if (chunk.size > kMaxPieceBytes || chunk.data_size > kMaxPieceBytes) {
-      throw source.damage(record.at, fmt::format("a chunk of {} bytes, expected at most {}",
-                                                 std::max(chunk.size, chunk.data_size), kMaxPieceBytes));
-    }
-    const std::uint64_t left = file_.size() - chunk.data_at;
-    const bool is_cut = chunk.data_size > left;
-    Unpacked content = formats::with_memory_for(path(), [&] {
-      return unpack(*compression, file_.read(chunk.data_at, std::min(chunk.data_size, left)), chunk.size);
-    });
-    if (is_cut && content.is_cut) {
-      return std::move(content.bytes);
-    }
-    if (!content.fault.empty()) {
-      throw source.damage(record.at, "chunk: " + content.fault);
-    }
-    if (chunk.crc != 0 && chunk.crc != crc32(content.bytes)) {
-      throw source.damage(record.at, "the chunk does not have the checksum that is stored of it");
-    }
-    return std::move(content.bytes);
+    return entries;
   }
 
   /// By the message indices that follow the chunk; where there are none or they are damaged by the chunk itself.
@@ -361,10 +297,7 @@ class McapFile final : public FileBag {
   void append_content(FileBytes& source, const McapChunkIndex& chunk, const std::vector<bool>& is_wanted,
                       std::vector<MessageEntry>& entries) const {
     const McapRecord outer = mcap_record(source, chunk.at);
-    if (outer.op != McapOp::kChunk) {
-      throw source.damage(chunk.at, "expected a chunk");
-    }
-    const ChunkCache::Content content = cache_.get(chunk.at, [&] { return unpacked(source, outer); });
+    const ChunkCache::Content content = pieces_.chunk(outer);
     ChunkBytes inner(*content, file_, chunk.at);
     McapRecord record;
     for (std::uint64_t at = 0; at < inner.size(); at = record.end()) {
@@ -380,29 +313,13 @@ class McapFile final : public FileBag {
     }
   }
 
-  McapMessage checked_message(ByteSource& source, const McapRecord& record, const MessageEntry& entry) const {
-    if (record.op == McapOp::kMessage) {
-      const McapMessage message = mcap_message(source, record);
-      if (message.data_size > kMaxPieceBytes) {
-        throw source.damage(
-            record.at, fmt::format("a message of {} bytes, expected at most {}", message.data_size, kMaxPieceBytes));
-      }
-      const auto topic = topic_of_.find(message.channel);
-      if (topic != topic_of_.end() && topic->second == entry.topic && message.log_time_ns == entry.recorded_ns) {
-        return message;
-      }
-    }
-    throw source.damage(record.at, fmt::format("expected a message of {}, recorded at {} ns", topics_[entry.topic].name,
-                                               entry.recorded_ns));
-  }
-
-  ReadableFile file_;
+  McapPieces pieces_;
+  const ReadableBytes& file_;
   std::vector<McapChunkIndex> chunks_;  // in the order of the file
-  std::vector<MessageEntry> seen_;      // of a file without index; while it is looked through their topics are channels
+  std::vector<MessageEntry> seen_;      // of a file without index
   McapChannels channels_;
   std::map<std::uint64_t, std::uint32_t> topic_of_;  // by channel
   std::optional<TimeSpan> span_;
-  mutable ChunkCache cache_;
 };
 
 }  // namespace

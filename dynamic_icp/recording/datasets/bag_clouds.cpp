@@ -77,6 +77,8 @@ void find_clouds(const bags::Bag& bag, const fs::path& path, std::vector<CloudTo
       chosen[k] = recorded_stamps(headers[k].recorded_ns, topic.name);
     }
     assumptions.insert(assumptions.end(), chosen[k].assumptions.begin(), chosen[k].assumptions.end());
+    topic.messages = topic.entries.size();
+    topic.are_recorded = chosen[k].are_recorded;
     std::vector<bags::MessageEntry> kept;
     for (const std::size_t message : chosen[k].kept) {
       kept.push_back(topic.entries[message]);
@@ -85,6 +87,25 @@ void find_clouds(const bags::Bag& bag, const fs::path& path, std::vector<CloudTo
     topic.numbers = std::move(chosen[k].kept);
     topic.stamps = std::move(chosen[k].stamps);
   }
+}
+
+std::string add_cloud(const bags::Bag& bag, CloudTopic& topic, const bags::MessageEntry& entry) {
+  const std::size_t number = topic.messages++;
+  const Stamp stamp = topic.are_recorded ? Stamp{entry.recorded_ns} : header_of(bag, entry, number).stamp;
+  const auto left_out = [&](const std::string& why) {
+    return fmt::format("{}: is left out: its timestamp, {} s, {}", message_origin(bag, entry, number),
+                       format_seconds(stamp), why);
+  };
+  if (!topic.are_recorded && !is_sane(stamp, entry.recorded_ns)) {
+    return left_out("is over an hour away from the time of recording");
+  }
+  if (!topic.stamps.empty() && stamp <= topic.stamps.back()) {
+    return left_out(fmt::format("is not after that of the scan before it, {} s", format_seconds(topic.stamps.back())));
+  }
+  topic.entries.push_back(entry);
+  topic.numbers.push_back(number);
+  topic.stamps.push_back(stamp);
+  return {};
 }
 
 double period_of(const CloudTopic& topic, double otherwise_s) {

@@ -20,6 +20,8 @@ struct CloudTopic {
   std::vector<bags::MessageEntry> entries;
   std::vector<std::size_t> numbers;  ///< of the messages among all of the topic
   std::vector<Stamp> stamps;
+  std::size_t messages = 0;   ///< of the topic, kept or not
+  bool are_recorded = false;  ///< stamps are the times of recording
   std::string frame_id;
   Eigen::Isometry3d T_frame_cloud = Eigen::Isometry3d::Identity();
   Eigen::Isometry3d T_scan_sensor = Eigen::Isometry3d::Identity();
@@ -32,6 +34,11 @@ struct CloudTopic {
 /// names the bag.
 void find_clouds(const bags::Bag& bag, const std::filesystem::path& path, std::vector<CloudTopic>& topics,
                  std::vector<std::string>& assumptions);
+
+/// Takes over a message that comes behind all others of a topic, in a bag that grows. Why it is left out: its stamp is
+/// not after that of the cloud before it, or not sane (bag_stamps.hpp); empty where it is kept. Throws DataError where
+/// it is damaged.
+std::string add_cloud(const bags::Bag& bag, CloudTopic& topic, const bags::MessageEntry& entry);
 
 /// From one cloud to the next, median; `otherwise_s` of fewer than two.
 double period_of(const CloudTopic& topic, double otherwise_s);

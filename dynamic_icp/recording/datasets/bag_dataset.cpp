@@ -28,9 +28,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class BagDataset final : public Dataset {
+constexpr std::size_t kClockWentBack = 10;  // messages in a row from before the last scan
+constexpr std::size_t kLateSensor = 3;      // scans after which a sensor of a rig is not waited for
+
+class BagDataset final : public GrowingBagDataset {
  public:
-  BagDataset(std::shared_ptr<const bags::Bag> bag, const fs::path& path, const OpenOptions& options)
+  BagDataset(std::shared_ptr<const bags::Bag> bag, const fs::path& path, const OpenOptions& options, bool grows)
       : bag_(std::move(bag)), path_(path), assumptions_(bag_->notes()) {
     if (!options.sensors.empty()) {
       throw UsageError(
@@ -47,12 +50,65 @@ class BagDataset final : public Dataset {
     const StaticFrames frames = read_frames();
     place_sensors(frames);
     take_calibration();
-    group_scans();
+    has_times_ = std::any_of(topics_.begin(), topics_.end(),
+                             [](const CloudTopic& topic) { return topic.meaning.fields.time.has_value(); });
+    half_period_s_ = 0.5 * period_of(topics_.front(), std::numeric_limits<double>::infinity());
+    find_doppler_kind();
+    if (grows) {
+      return;
+    }
+    settle(true);
+    tell_absent();
     const CloudTopic& first = topics_.front();
     truth_ =
         bag_truth(*bag_, options.truth_topic, frames, {first.frame_id, first.T_frame_cloud, stamps_}, assumptions_);
-    find_doppler_kind();
   }
+
+  void add(const bags::MessageEntry& message) override {
+    const std::string& name = bag_->topics()[message.topic].name;
+    const auto topic =
+        std::find_if(topics_.begin(), topics_.end(), [&](const CloudTopic& one) { return one.name == name; });
+    if (topic == topics_.end() || !messages::is_cloud(bag_->topics()[message.topic])) {
+      return;
+    }
+    const std::string left_out = add_cloud(*bag_, *topic, message);
+    if (left_out.empty()) {
+      left_out_in_a_row_ = 0;
+    } else if (notes_.push_back(left_out); ++left_out_in_a_row_ > kClockWentBack) {
+      throw DataError(fmt::format("{}: the clock of '{}' went back", left_out, name));
+    }
+  }
+
+  void settle(bool is_over) override {
+    const CloudTopic& first = topics_.front();
+    while (stamps_.size() < first.stamps.size() && (is_over || has_others(stamps_.size()))) {
+      if (is_rig()) {
+        groups_.push_back(group_of(stamps_.size()));
+      }
+      stamps_.push_back(first.stamps[stamps_.size()]);
+    }
+  }
+
+  [[nodiscard]] std::optional<bags::MessageEntry> first_needed(std::size_t index) const override {
+    const CloudTopic& first = topics_.front();
+    if (index >= first.entries.size()) {
+      return std::nullopt;
+    }
+    bags::MessageEntry needed = first.entries[index];
+    for (const CloudTopic& topic : topics_) {
+      const std::size_t before = last_before(topic.stamps, first.stamps[index]);
+      if (before < topic.entries.size() && topic.entries[before].place < needed.place) {
+        needed = topic.entries[before];
+      }
+    }
+    return needed;
+  }
+
+  [[nodiscard]] const bags::MessageEntry& message(std::size_t index) const override {
+    return topics_.front().entries.at(index);
+  }
+
+  std::vector<std::string> take_notes() override { return std::exchange(notes_, {}); }
 
   [[nodiscard]] std::string_view format() const override { return bag_->container(); }
   [[nodiscard]] std::size_t size() const override { return stamps_.size(); }
@@ -231,18 +287,44 @@ class BagDataset final : public Dataset {
     raw.mountings = mountings_;
   }
 
-  /// For each cloud of the first topic the nearest of the others.
-  void group_scans() {
-    stamps_ = topics_.front().stamps;
-    if (!is_rig()) {
-      return;
-    }
-    std::vector<std::vector<Stamp>> others;
+  /// The last of some stamps that is before another one, or the first; their number where there are none.
+  static std::size_t last_before(const std::vector<Stamp>& stamps, Stamp stamp) {
+    const auto at = std::lower_bound(stamps.begin(), stamps.end(), stamp);
+    return static_cast<std::size_t>((at == stamps.begin() ? at : std::prev(at)) - stamps.begin());
+  }
+
+  /// Whether nothing that may still come changes which clouds of the others go with one of the first topic.
+  [[nodiscard]] bool has_others(std::size_t index) const {
+    const std::vector<Stamp>& stamps = topics_.front().stamps;
+    return std::all_of(topics_.begin(), topics_.end(), [&](const CloudTopic& topic) {
+      return &topic == &topics_.front() ? !is_rig() || index + 1 < stamps.size()
+                                        : (!topic.stamps.empty() && topic.stamps.back() >= stamps[index]) ||
+                                              index + kLateSensor < stamps.size();
+    });
+  }
+
+  /// For a cloud of the first topic the nearest of each of the others.
+  [[nodiscard]] std::vector<std::size_t> group_of(std::size_t index) const {
+    const std::vector<Stamp>& stamps = topics_.front().stamps;
+    const auto begin = stamps.begin() + static_cast<std::ptrdiff_t>(index);
+    const std::vector<Stamp> this_and_next(begin, begin + std::min<std::ptrdiff_t>(2, stamps.end() - begin));
+    std::vector<std::size_t> before;
+    std::vector<std::vector<Stamp>> near;
     for (std::size_t k = 1; k < topics_.size(); ++k) {
-      others.push_back(topics_[k].stamps);
+      const std::vector<Stamp>& others = topics_[k].stamps;
+      before.push_back(last_before(others, stamps[index]));
+      const std::size_t end = std::min(others.size(), before.back() + 3);
+      near.emplace_back(others.begin() + static_cast<std::ptrdiff_t>(before.back()),
+                        others.begin() + static_cast<std::ptrdiff_t>(end));
     }
-    groups_ =
-        nearest_in_time(stamps_, others, 0.5 * period_of(topics_.front(), std::numeric_limits<double>::infinity()));
+    std::vector<std::size_t> group = nearest_in_time(this_and_next, near, half_period_s_).front();
+    for (std::size_t k = 0; k < group.size(); ++k) {
+      group[k] = group[k] == kAbsent ? kAbsent : group[k] + before[k];
+    }
+    return group;
+  }
+
+  void tell_absent() {
     for (std::size_t k = 1; k < topics_.size(); ++k) {
       const auto without =
           std::count_if(groups_.begin(), groups_.end(), [&](const auto& group) { return group[k - 1] == kAbsent; });
@@ -251,8 +333,6 @@ class BagDataset final : public Dataset {
                                            topics_[k].name, without, stamps_.size()));
       }
     }
-    has_times_ = std::any_of(topics_.begin(), topics_.end(),
-                             [](const CloudTopic& topic) { return topic.meaning.fields.time.has_value(); });
   }
 
   void find_doppler_kind() {
@@ -289,20 +369,28 @@ class BagDataset final : public Dataset {
   fs::path path_;
   std::vector<std::string> assumptions_;
   std::vector<CloudTopic> topics_;
-  std::vector<Stamp> stamps_;                     ///< of the scans
+  std::vector<Stamp> stamps_;                     ///< of the scans, as far as they are settled
   std::vector<std::vector<std::size_t>> groups_;  ///< of a rig: the clouds of each scan, by topic behind the first
   bool has_times_ = false;                        ///< a rig with times of points
   std::optional<Eigen::Isometry3d> T_vehicle_sensor_;
   std::vector<Eigen::Isometry3d> mountings_;  ///< of one topic whose points name their sensors
   DopplerKind doppler_kind_ = DopplerKind::kRelative;
   Truth truth_;
+  double half_period_s_ = 0.0;
+  std::size_t left_out_in_a_row_ = 0;
+  std::vector<std::string> notes_;
 };
 
 }  // namespace
 
 std::unique_ptr<Dataset> open_bag_dataset(std::shared_ptr<const bags::Bag> bag, const fs::path& path,
                                           const OpenOptions& options) {
-  return std::make_unique<BagDataset>(std::move(bag), path, options);
+  return std::make_unique<BagDataset>(std::move(bag), path, options, false);
+}
+
+std::unique_ptr<GrowingBagDataset> open_growing_bag(std::shared_ptr<const bags::Bag> bag, const fs::path& path,
+                                                    const OpenOptions& options) {
+  return std::make_unique<BagDataset>(std::move(bag), path, options, true);
 }
 
 fs::path find_rosbag(const fs::path& input) { return bags::find_bag(input, "rosbag"); }

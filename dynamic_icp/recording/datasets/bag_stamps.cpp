@@ -19,8 +19,6 @@ double distance_s(Stamp header, std::int64_t recorded_ns) {
   return 1e-9 * (static_cast<double>(header.ns) - static_cast<double>(recorded_ns));
 }
 
-bool is_sane(Stamp header, std::int64_t recorded_ns) { return std::abs(distance_s(header, recorded_ns)) <= kFar_s; }
-
 /// Of messages with some stamps, those in order.
 ChosenStamps in_order(std::vector<std::size_t> messages, const std::vector<Stamp>& stamps, const std::string& topic) {
   ChosenStamps chosen;
@@ -61,6 +59,8 @@ std::string what_is_wrong(std::span<const std::int64_t> recorded_ns, std::span<c
 }
 
 }  // namespace
+
+bool is_sane(Stamp header, std::int64_t recorded_ns) { return std::abs(distance_s(header, recorded_ns)) <= kFar_s; }
 
 std::vector<std::size_t> longest_increasing(std::span<const Stamp> stamps) {
   std::vector<std::size_t> ends;  // the stamp with which the best sequence of each length ends

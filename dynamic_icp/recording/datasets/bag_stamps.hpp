@@ -20,6 +20,9 @@ struct ChosenStamps {
   std::vector<std::string> assumptions;  ///< sentences for the user
 };
 
+/// Whether a header is at most an hour away from the time of recording.
+bool is_sane(Stamp header, std::int64_t recorded_ns);
+
 /// Decides between the stamps in the headers of messages and the times at which they were recorded. `headers` and
 /// `recorded_ns` are as long as each other, in the order of recording; `topic` is named in sentences.
 ///

@@ -77,7 +77,8 @@ class CorrectedDataset final : public Dataset {
 
   [[nodiscard]] std::string_view format() const override { return dataset_->format(); }
   [[nodiscard]] std::size_t size() const override { return dataset_->size(); }
-  [[nodiscard]] Stamp stamp(std::size_t index) const override { return stamps_.at(dataset_->stamp(index)); }
+  /// Not looked up: a recording that grows gets more.
+  [[nodiscard]] Stamp stamp(std::size_t index) const override { return scaled(dataset_->stamp(index), index); }
   [[nodiscard]] fs::path scan_file(std::size_t index) const override { return dataset_->scan_file(index); }
 
   [[nodiscard]] RawScan scan(std::size_t index) const override {
@@ -133,7 +134,7 @@ class CorrectedDataset final : public Dataset {
   std::unique_ptr<Dataset> dataset_;
   Correction correction_;
   double time_scale_;
-  std::map<Stamp, Stamp> stamps_;  ///< of the scans, by those of the recording
+  std::map<Stamp, Stamp> stamps_;  ///< of the scans that were there when it was opened, by those of the recording
   formats::Trajectory ground_truth_;
 };
 

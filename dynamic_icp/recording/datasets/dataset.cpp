@@ -70,7 +70,7 @@ std::string looked_for() {
   return text;
 }
 
-std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& folder, const OpenOptions& options) {
+void check_options_of(const Layout& layout, const OpenOptions& options) {
   if ((layout.takes & kTakesFields) == 0 && !(options.fields.empty() && options.sensors.empty())) {
     throw UsageError(
         fmt::format("{} has neither columns with names nor several sensors to choose from; '{}' was asked for",
@@ -88,7 +88,6 @@ std::unique_ptr<Dataset> open_as(const Layout& layout, const fs::path& folder, c
                     "order, not name others, and there is no type to choose",
                     layout.name));
   }
-  return layout.open(folder, options);
 }
 
 /// Whether a path is the other one or lies in it.
@@ -186,6 +185,9 @@ void refuse_part_of_recording(const fs::path& input) {
 Match match_of(const fs::path& input, const OpenOptions& options) {
   std::error_code fault;
   const fs::file_status status = fs::status(input, fault);
+  if (input == "-") {
+    throw DataError("standard input cannot be read twice: it can only be followed");
+  }
   if (status.type() == fs::file_type::not_found) {
     throw DataError(fmt::format("{}: no such file or folder", input.string()));
   }
@@ -214,17 +216,26 @@ FoundDataset find_dataset(const fs::path& input, const OpenOptions& options) {
 
 std::unique_ptr<Dataset> open_dataset(const fs::path& input, const OpenOptions& options) {
   const Match match = match_of(input, options);
+  check_options_of(*match.layout, options);
   const bool is_guessed = match.layout->name == "bin" && options.format == "auto" && options.columns.empty();
   if (is_guessed && is_times_folder(input)) {
     refuse_part_of_recording(input);  // times of points look like records of anything
   }
   try {
-    return open_as(*match.layout, match.folder, options);
+    return match.layout->open(match.folder, options);
   } catch (const DataError&) {
     if (is_guessed) {
       refuse_part_of_recording(input);
     }
     throw;
+  }
+}
+
+void check_options(std::string_view format, const OpenOptions& options) {
+  for (const Layout& layout : kLayouts) {
+    if (layout.name == format) {
+      check_options_of(layout, options);
+    }
   }
 }
 

@@ -84,6 +84,9 @@ class Dataset {
 /// several recordings; UsageError for an unknown format or options that the format does not have.
 std::unique_ptr<Dataset> open_dataset(const std::filesystem::path& input, const OpenOptions& options = {});
 
+/// Throws UsageError where the options are not those of a layout, by its name.
+void check_options(std::string_view format, const OpenOptions& options);
+
 /// Where a recording was found, and of which layout it is.
 struct FoundDataset {
   std::string format;  ///< as `--format` takes it

@@ -8,6 +8,8 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "dynamic_icp/recording/datasets/dataset.hpp"
 #include "dynamic_icp/recording/datasets/input_settings.hpp"
@@ -27,13 +29,34 @@ class FollowedDataset : public Dataset {
 
   /// When the last byte of a scan came; nothing where it was there before it was followed.
   [[nodiscard]] virtual std::optional<Arrival> arrival(std::size_t index) const = 0;
+
+  /// Scans before that one are not asked for again, and need not be kept.
+  virtual void release_before(std::size_t /*index*/) {}
+
+  /// What was noticed since it was asked last, such as where the recording was cut short: sentences for the user.
+  virtual std::vector<std::string> take_notes() { return {}; }
+
+  /// No more is waited for: the ground truth becomes that of all that has come, where the recording has some.
+  virtual void finish() {}
 };
 
-/// Opens a recording that grows, once `scans` of its scans are there or no more will come: a folder of files, one for
-/// each scan, whose names are in the order of time. Nothing where `stop` said so before.
+/// What stands for standard input where a recording is named.
+constexpr const char* kStandardInput = "-";
+
+/// Which scans are to be there before a recording that grows is worked with, and how long to wait for each.
+struct FirstScans {
+  std::size_t begin = 0;
+  std::size_t count = 1;
+  std::optional<std::chrono::duration<double>> longest_silence = {};  ///< nothing: without end
+};
+
+/// Opens a recording that grows, once some of its scans are there or no more will come: a folder of files, one for
+/// each scan, whose names are in the order of time; an MCAP file that another program writes; or, by the name "-", an
+/// MCAP file that comes through standard input. Nothing where `stop` said so before.
 ///
-/// Throws as `open_input` does where that does not go away while one waits; a folder without scans may get some.
+/// Throws as `open_input` does where that does not go away while one waits; a folder or file without scans may get
+/// some. Throws UsageError for what cannot be followed: other bags.
 std::unique_ptr<FollowedDataset> follow_input(const std::filesystem::path& input, const InputSettings& settings,
-                                              std::size_t scans, const std::function<bool()>& stop);
+                                              const FirstScans& first, const std::function<bool()>& stop);
 
 }  // namespace dynamic_icp::datasets

@@ -164,15 +164,4 @@ std::unique_ptr<FollowedDataset> follow_folder(const fs::path& folder, const Inp
   return std::make_unique<FollowedFolder>(folder, settings);
 }
 
-std::unique_ptr<FollowedDataset> follow_input(const fs::path& input, const InputSettings& settings, std::size_t scans,
-                                              const std::function<bool()>& stop) {
-  if (fs::exists(input) && !fs::is_directory(input)) {
-    throw UsageError(
-        fmt::format("'{}' cannot be followed: expected a folder that files of scans are put into", input.string()));
-  }
-  std::unique_ptr<FollowedDataset> followed = follow_folder(input, settings);
-  static_cast<void>(followed->wait_for(scans - 1, stop));
-  return followed->size() > 0 && !stop() ? std::move(followed) : nullptr;
-}
-
 }  // namespace dynamic_icp::datasets

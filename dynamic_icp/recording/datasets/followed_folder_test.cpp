@@ -83,7 +83,7 @@ TEST_F(FollowedFolderTest, WaitingEndsWhenItIsToStop) {
   EXPECT_FALSE(reader.wait(std::chrono::milliseconds(50)));
   reader.stop();
   EXPECT_TRUE(reader.done());
-  EXPECT_EQ(follow_input(folder_, {}, 9, [] { return true; }), nullptr);
+  EXPECT_EQ(follow_input(folder_, {}, {.count = 9}, [] { return true; }), nullptr);
 }
 
 TEST_F(FollowedFolderTest, ScansThatWereReadMustStay) {
@@ -98,7 +98,7 @@ TEST_F(FollowedFolderTest, ScansThatWereReadMustStay) {
 TEST_F(FollowedFolderTest, AFolderThatIsNotThereIsAnErrorAtOnce) {
   EXPECT_THROW(follow_folder(folder_ / "missing", {}), DataError);
   write_scan(1);
-  EXPECT_THROW(follow_input(scan_file(1), {}, 1, never), UsageError);
+  EXPECT_THROW(follow_input(scan_file(1), {}, {}, never), UsageError);
   InputSettings settings;
   settings.open.format = "nonsense";
   EXPECT_THROW(follow_folder(folder_, settings), UsageError);

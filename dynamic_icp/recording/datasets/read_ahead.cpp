@@ -31,6 +31,7 @@ bool ReadAhead::wait(std::chrono::milliseconds longest) const {
 RawScan ReadAhead::next() {
   Read read = reading_.get();
   arrival_ = read.arrival;
+  notes_ = std::move(read.notes);
   ++next_;
   start_reading();
   return std::move(read.scan);
@@ -44,13 +45,14 @@ void ReadAhead::start_reading() {
 
 ReadAhead::Read ReadAhead::read(std::size_t index) {
   if (followed_ == nullptr) {
-    return {dataset_.scan(index), std::nullopt};
+    return {dataset_.scan(index), std::nullopt, {}};
   }
+  followed_->release_before(index);
   if (!followed_->wait_for(index, [this] { return is_stopped_.load(); })) {
     is_at_end_ = true;
     return {};
   }
-  return {dataset_.scan(index), followed_->arrival(index)};
+  return {dataset_.scan(index), followed_->arrival(index), followed_->take_notes()};
 }
 
 }  // namespace dynamic_icp::datasets

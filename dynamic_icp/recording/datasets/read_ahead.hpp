@@ -7,6 +7,8 @@
 #include <cstddef>
 #include <future>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "dynamic_icp/recording/datasets/dataset.hpp"
 #include "dynamic_icp/recording/datasets/followed_dataset.hpp"
@@ -41,6 +43,9 @@ class ReadAhead {
   /// When the scan that was handed out last was there (FollowedDataset::arrival).
   [[nodiscard]] std::optional<Arrival> arrival() const { return arrival_; }
 
+  /// What was noticed of a recording that grows while that scan was waited for (FollowedDataset::take_notes).
+  [[nodiscard]] const std::vector<std::string>& notes() const { return notes_; }
+
   /// No more scans of a recording that grows are waited for.
   void stop() { is_stopped_ = true; }
 
@@ -48,6 +53,7 @@ class ReadAhead {
   struct Read {
     RawScan scan;
     std::optional<Arrival> arrival;
+    std::vector<std::string> notes;
   };
 
   void start_reading();
@@ -60,6 +66,7 @@ class ReadAhead {
   std::atomic<bool> is_stopped_ = false;
   std::atomic<bool> is_at_end_ = false;  ///< of a recording that grew
   std::optional<Arrival> arrival_;
+  std::vector<std::string> notes_;
   std::future<Read> reading_;  // the first to go: it uses the others
 };
 

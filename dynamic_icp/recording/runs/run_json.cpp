@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/version.hpp"
+#include "dynamic_icp/recording/datasets/followed_dataset.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -119,7 +120,8 @@ std::string run_json(const Recording& recording, const RunSettings& settings, co
   Json json = {{"version", version()},
                {"command", settings.command},
                {"input",
-                {{"path", fs::absolute(recording.path).string()},
+                {{"path", recording.path == datasets::kStandardInput ? recording.path.string()
+                                                                     : fs::absolute(recording.path).string()},
                  {"format", dataset.format()},
                  {"options", input_json(recording.settings)},
                  {"scans", dataset.size()}}},

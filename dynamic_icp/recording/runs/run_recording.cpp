@@ -82,7 +82,10 @@ Needs needs_of(const RunSettings& settings) {
 
 /// What those who watch a run are told that it is.
 std::string live_name(const fs::path& recording) {
-  return fmt::format("dynamic-icp {}: {}", version(), fs::absolute(recording).lexically_normal().filename().string());
+  return fmt::format("dynamic-icp {}: {}", version(),
+                     recording == datasets::kStandardInput
+                         ? "standard input"
+                         : fs::absolute(recording).lexically_normal().filename().string());
 }
 
 /// A run while it continues.
@@ -95,7 +98,7 @@ class Run {
         map_(make_map(settings)),
         calibration_(calibration_of(settings)),
         dataset_(open()),
-        scans_(datasets::select_scans(*dataset_, settings.start, settings.max_frames)),
+        scans_(datasets::select_scans(*dataset_, settings.start, scans_to_check())),
         truth_(truth_for_run(*dataset_, scans_, settings.ground_truth)),
         check_(check_recording(*dataset_, recording.settings, {scans_.begin, scans_.end, settings.threads},
                                needs_of(settings), callbacks.fix_in_words)) {
@@ -104,7 +107,7 @@ class Run {
     result_.period_s = check_.period_s;
     result_.doppler = check_.doppler;
     result_.scans_selected = scans_.size();
-    if (followed_ != nullptr) {  // what is checked is there; what comes is not known
+    if (followed_ != nullptr) {  // what was checked is there; what comes is not known
       scans_.end = settings.max_frames ? scans_.begin + *settings.max_frames : std::numeric_limits<std::size_t>::max();
     }
     result_.sweep.search = check_.sweep;
@@ -148,16 +151,26 @@ class Run {
   RunResult take_result() { return std::move(result_); }
 
  private:
+  /// The most, before the first is processed; of a recording that grows as many whenever it is looked at.
+  [[nodiscard]] std::optional<std::size_t> scans_to_check() const {
+    return settings_.follow ? std::min(kScansToCheck, settings_.max_frames.value_or(kScansToCheck))
+                            : settings_.max_frames;
+  }
+
   std::unique_ptr<datasets::Dataset> open() {
     if (!settings_.follow) {
       return datasets::open_input(recording_.path, recording_.settings);
     }
-    const std::size_t scans = settings_.start + std::min(kScansToCheck, settings_.max_frames.value_or(kScansToCheck));
+    datasets::FirstScans first{.begin = settings_.start, .count = *scans_to_check()};
+    if (settings_.follow_timeout_s) {
+      first.longest_silence = std::chrono::duration<double>(*settings_.follow_timeout_s);
+    }
     const auto stop = [this] { return callbacks_.stop && callbacks_.stop(); };
     std::unique_ptr<datasets::FollowedDataset> followed =
-        datasets::follow_input(recording_.path, recording_.settings, scans, stop);
+        datasets::follow_input(recording_.path, recording_.settings, first, stop);
     if (!followed) {
-      throw DataError(fmt::format("{}: stopped before its first {} scans had come", recording_.path.string(), scans));
+      throw DataError(fmt::format("{}: stopped before its first {} scans had come", recording_.path.string(),
+                                  first.begin + first.count));
     }
     followed_ = followed.get();
     return followed;
@@ -274,6 +287,7 @@ class Run {
       return false;
     }
     end_live_view();
+    find_truth_of_followed();
     if (const std::optional<window::SensorCalibration> learned = odometry->calibration()) {
       formats::write_whole_file(output.path() / "calibration.yaml", calibration_text(*learned));
     }
@@ -392,12 +406,17 @@ class Run {
       if (callbacks_.cancelled && callbacks_.cancelled()) {
         return false;
       }
-      RawScan scan = reader->next();
+      std::optional<RawScan> next = next_of(*reader);
+      if (!next) {
+        break;
+      }
+      RawScan scan = std::move(*next);
       if (!scan.warning.empty()) {
         warn(scan.warning);
       }
       odometry::Frame frame = odometry.process(scan);
       writer.add(i, frame);
+      is_begun_ = true;
       usable_.add(frame);
       result_.sweep.add(frame, scan);
       add_to_map(frame);
@@ -423,15 +442,62 @@ class Run {
     return true;
   }
 
+  /// The next scan. Where a recording that grows fails after its first, that ends the run, with the results so far:
+  /// they cannot be made again. Then nothing.
+  std::optional<RawScan> next_of(datasets::ReadAhead& reader) {
+    try {
+      RawScan scan = reader.next();
+      for (const std::string& note : reader.notes()) {
+        warn(note);
+      }
+      return scan;
+    } catch (const DataError& error) {
+      if (followed_ == nullptr || !is_begun_) {
+        throw;
+      }
+      fail(fmt::format("it ended early: {}", error.what()));
+      return std::nullopt;
+    }
+  }
+
   /// Whether another scan is there; of a recording that grows once it is, unless the run is to stop before.
   bool has_next(datasets::ReadAhead& reader) {
+    using Clock = std::chrono::steady_clock;
+    using Seconds = std::chrono::duration<double>;
+    const Clock::time_point begun = Clock::now();
     while (followed_ != nullptr && !stopped_ && !reader.wait(kAskAgain)) {
       if (callbacks_.stop && callbacks_.stop()) {
         reader.stop();
         stopped_ = true;
+      } else if (settings_.follow_timeout_s && Clock::now() - begun > Seconds(*settings_.follow_timeout_s)) {
+        reader.stop();
+        warn(fmt::format("no scan came for {} s: the run ends", *settings_.follow_timeout_s));
+        break;
       }
     }
     return !stopped_ && !reader.done();
+  }
+
+  /// Of all that came: at the beginning there was less of it.
+  void find_truth_of_followed() {
+    if (followed_ == nullptr) {
+      return;
+    }
+    const std::string known = truth_.warning;
+    try {
+      followed_->finish();
+      if (settings_.ground_truth.empty()) {
+        truth_ = truth_for_run(*dataset_, {scans_.begin, scans_.begin + result_.scans_selected}, {});
+      }
+    } catch (const DataError& error) {
+      warn(fmt::format("no ground truth: {}", error.what()));
+    }
+    for (const std::string& note : followed_->take_notes()) {
+      warn(note);
+    }
+    if (truth_.warning != known) {
+      warn(truth_.warning);
+    }
   }
 
   void report_progress(std::size_t done) const {
@@ -570,6 +636,7 @@ class Run {
   std::optional<Checkpoint> from_;  ///< where the run goes on
   std::size_t saved_ = 0;           ///< scans in the last checkpoint
   CheckpointTimer timer_{settings_.checkpoint_s};
+  bool is_begun_ = false;  ///< there is a result
   bool stopped_ = false;
   RunResult result_;
 };

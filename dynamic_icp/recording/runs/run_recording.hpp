@@ -48,7 +48,8 @@ struct RunSettings {
   std::optional<std::filesystem::path> calibration;  ///< calibration.yaml of another run with this sensor
   std::vector<std::filesystem::path> inputs;         ///< further files that were read and must not be replaced
   bool follow = false;  ///< the recording grows: scans are taken as they come (datasets/followed_dataset.hpp)
-  std::string command;  ///< how the run was asked for, for run.json
+  std::optional<double> follow_timeout_s;  ///< without a scan after which it has ended; empty: none
+  std::string command;                     ///< how the run was asked for, for run.json
 };
 
 /// What the caller of a run may want to hear and do while it continues. All are called by the calling thread; each may
