@@ -162,33 +162,63 @@ def spoil(folder, chance):
     return name
 
 
+def resumed(work, command, whole):
+    """What is wrong with the run when it has gone on to its end: the files of an unbroken one are expected."""
+    outcome = work.run(command)
+    if outcome.status:
+        return outcome.text
+    got = contents(work.result(command))
+    wrong = [name for name in sorted(set(got) | set(whole)) if got.get(name) != whole.get(name)]
+    left = work.leftovers(command)
+    return f"other bytes in {wrong}" if wrong else f"left {left}" if left else ""
+
+
+def end(child, chance):
+    """Kills a run, or asks it to end: once, which keeps the results so far, or twice."""
+    how = chance.choice(["kill", "kill", "kill", "term", "term twice"])
+    child.send_signal(signal.SIGKILL if how == "kill" else signal.SIGTERM)
+    if how == "term twice":
+        time.sleep(0.01)
+        child.send_signal(signal.SIGTERM)
+    child.wait()
+    return how
+
+
 def resume(work, command, findings, options):
-    """Killed at random moments, again while it goes on, now and then with a damaged checkpoint, and resumed to its end:
-    the files of an unbroken run."""
+    """Ended at random moments, again while it goes on, now and then with a damaged checkpoint, and resumed to its end.
+    With the library also by calls that fail from the n-th on."""
     chance = random.Random(options.seed)
     work.clear()
     work.run(command)
     whole = contents(work.result(command))
     work.clear()
+    for call in ("open", "write", "fsync", "rename") if options.library else ():
+        resume_after_failing(work, command, findings, options, call, whole)
     for number in range(options.kills):
         moments = []
         for _ in range(chance.randint(1, 3)):
-            moments.append(chance.uniform(0.2, 1.0) * command.seconds)
+            moment = chance.uniform(0.2, 1.0) * command.seconds
             child = subprocess.Popen(work.line(command), stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-            time.sleep(moments[-1])
-            child.kill()
-            child.wait()
+            time.sleep(moment)
+            moments.append(f"{end(child, chance)} after {1000 * moment:.0f} ms")
         left = partial_folder(work, command)
         spoilt = f", {spoil(left, chance)} damaged" if left and number % 4 == 3 else ""
-        outcome = work.run(command)
-        wrong = outcome.text if outcome.status else ""
-        if not wrong:
-            got = contents(work.result(command))
-            wrong = ", ".join(name for name in sorted(set(got) | set(whole)) if got.get(name) != whole.get(name))
-            wrong = wrong and f"differs: {wrong}"
-        left = work.leftovers(command)
-        what = f"after {' and '.join(f'{1000 * moment:.0f}' for moment in moments)} ms{spoilt}"
-        findings.note("resume", command.name, what, wrong or (f"left {left}" if left else ""))
+        findings.note("resume", command.name, ", ".join(moments) + spoilt, resumed(work, command, whole))
+        work.clear()
+
+
+def resume_after_failing(work, command, findings, options, call, whole):
+    """The n-th call and all that follow find no room: the run ends or does without, and goes on when there is room."""
+    report = work.folder / "report"
+    report.unlink(missing_ok=True)
+    common = {"LD_PRELOAD": str(options.library), "FAULT_REPORT": str(report), "FAULT_CALL": call, "FAULT_UNDER": str(work.folder)}
+    work.run(command, common | {"FAULT_NUMBER": "0"})
+    work.clear()
+    count = max(map(int, report.read_text().split()), default=0)
+    for number in range(1, count + 1, max(1, count // options.places) if options.places else 1):
+        outcome = work.run(command, common | {"FAULT_NUMBER": str(number), "FAULT_ERROR": str(errno.ENOSPC), "FAULT_LASTS": "1"})
+        wrong = "" if outcome.status in (0, 1) else f"status {outcome.status}"
+        findings.note(f"resume, {call}", command.name, f"{call} {number} of {count}", wrong or resumed(work, command, whole))
         work.clear()
 
 

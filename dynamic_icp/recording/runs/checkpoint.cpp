@@ -67,18 +67,19 @@ Checkpoint read_checkpoint(const fs::path& folder) {
 }
 
 std::optional<std::string> difference(const std::string& identity_then, const std::string& identity_now) {
-  const nlohmann::json whole_then = nlohmann::json::parse(identity_then);
-  const nlohmann::json whole_now = nlohmann::json::parse(identity_now);
+  using Json = nlohmann::ordered_json;
+  const Json whole_then = Json::parse(identity_then);
+  const Json whole_now = Json::parse(identity_now);
   for (const auto& [name, part] : whole_now.items()) {
     if (!whole_then.contains(name)) {
       continue;
     }
-    const nlohmann::json then = nlohmann::json{{name, whole_then[name]}}.flatten();
-    const nlohmann::json now = nlohmann::json{{name, part}}.flatten();
-    for (const nlohmann::json* settings : {&now, &then}) {
+    const Json then = Json{{name, whole_then[name]}}.flatten();
+    const Json now = Json{{name, part}}.flatten();
+    for (const Json* settings : {&now, &then}) {
       for (const auto& [setting, value] : settings->items()) {
-        const std::string text_then = then.value(setting, nlohmann::json()).dump();
-        const std::string text_now = now.value(setting, nlohmann::json()).dump();
+        const std::string text_then = then.value(setting, Json()).dump();
+        const std::string text_now = now.value(setting, Json()).dump();
         if (text_then != text_now) {
           return fmt::format("{} was {} and is {} now", setting_name(setting), text_then, text_now);
         }

@@ -37,6 +37,9 @@ TEST(Checkpoint, DifferencesAreNamed) {
       R"({"method":"gicp","input":{"path":"/a","options":{}},"configuration":{"a.b":0.5,"c":true}})";
   EXPECT_EQ(difference(one, one), std::nullopt);
   EXPECT_EQ(difference(one, R"({"method":"kiss-icp"})"), R"(method was "gicp" and is "kiss-icp" now)");
+  EXPECT_EQ(difference(one, R"({"method":"kiss-icp","configuration":{"other":1}})"),
+            R"(method was "gicp" and is "kiss-icp" now)")
+      << "the first as written";
   EXPECT_EQ(difference(one, R"({"input":{"path":"/b","options":{}}})"), R"(input.path was "/a" and is "/b" now)");
   EXPECT_EQ(difference(one, R"({"configuration":{"a.b":0.25,"c":true}})"), "a.b was 0.5 and is 0.25 now");
   EXPECT_EQ(difference(one, R"({"input":{"path":"/a","options":{"topic":"x"}}})"),

@@ -57,6 +57,15 @@ void refuse_difference(const fs::path& folder, const std::optional<std::string>&
   }
 }
 
+/// Whether nothing of what was asked for is missing. A checkpoint stays with what was stopped or could not be made.
+bool is_complete(const fs::path& folder, const nlohmann::json& about, const nlohmann::json& identity) {
+  const auto is_missing = [&](const char* asked, const char* made) {
+    return !identity.value(asked, nlohmann::json()).is_null() && about.value(made, nlohmann::json()).is_null();
+  };
+  return !about.value("stopped", false) && !fs::exists(folder / kCheckpointFile) && !is_missing("save_map", "map") &&
+         !is_missing("save_kitti", "kitti") && (!identity.value("save_labels", false) || fs::exists(folder / "labels"));
+}
+
 Continuation after_killed(const formats::OutputFolder& output, const fs::path& final, const std::string& identity,
                           const std::function<void(const std::string& text)>& notice) {
   Continuation result;
@@ -81,7 +90,7 @@ Continuation after_written(const formats::OutputFolder& output, const fs::path& 
     return result;
   }
   refuse_difference(final, different);
-  result.is_complete = !json.value("stopped", false);
+  result.is_complete = is_complete(final, json, nlohmann::json::parse(identity));
   if (result.is_complete) {
     return result;
   }

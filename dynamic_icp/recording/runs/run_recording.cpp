@@ -17,16 +17,14 @@
 #include "dynamic_icp/recording/datasets/followed_dataset.hpp"
 #include "dynamic_icp/recording/datasets/read_ahead.hpp"
 #include "dynamic_icp/recording/datasets/scan_range.hpp"
-#include "dynamic_icp/recording/formats/kitti_write.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
 #include "dynamic_icp/recording/runs/checkpoint.hpp"
 #include "dynamic_icp/recording/runs/continuation.hpp"
+#include "dynamic_icp/recording/runs/files_beside.hpp"
 #include "dynamic_icp/recording/runs/latency.hpp"
 #include "dynamic_icp/recording/runs/live_view.hpp"
-#include "dynamic_icp/recording/runs/map_writer.hpp"
-#include "dynamic_icp/recording/runs/mcap_recorder.hpp"
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 #include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/recording/runs/run_json.hpp"
@@ -41,27 +39,6 @@ namespace fs = std::filesystem;
 
 constexpr std::size_t kScansToCheck = 10;            // of a recording that grows, before the first is processed
 constexpr std::chrono::milliseconds kAskAgain{100};  // whether to stop, while scans are waited for
-
-/// The map to be made, if one is asked for. What cannot be is refused before anything is computed.
-std::optional<MapWriter> make_map(const RunSettings& settings) {
-  if (!settings.map_file) {
-    return std::nullopt;
-  }
-  check_map_file(*settings.map_file);
-  if (settings.method != "dynamic-icp") {
-    throw UsageError(fmt::format("only dynamic-icp separates static from moving points, {} does not: it makes no map",
-                                 settings.method));
-  }
-  return MapWriter(settings.map_voxel_m);
-}
-
-/// Files of other kinds would be taken for what they are not, and must not have the name of a result.
-void check_ending(const std::optional<fs::path>& file, const char* ending, const char* what) {
-  if (file && file->extension() != ending) {
-    throw UsageError(
-        fmt::format("'{}' cannot be {}: expected a file name that ends in {}", file->string(), what, ending));
-  }
-}
 
 std::optional<window::SensorCalibration> calibration_of(const RunSettings& settings) {
   return settings.calibration ? std::optional(read_calibration(*settings.calibration)) : std::nullopt;
@@ -95,15 +72,13 @@ class Run {
       : recording_(recording),
         settings_(settings),
         callbacks_(callbacks),
-        map_(make_map(settings)),
+        beside_(settings, [this](const std::string& text) { fail(text); }),
         calibration_(calibration_of(settings)),
         dataset_(open()),
         scans_(datasets::select_scans(*dataset_, settings.start, scans_to_check())),
         truth_(truth_for_run(*dataset_, scans_, settings.ground_truth)),
         check_(check_recording(*dataset_, recording.settings, {scans_.begin, scans_.end, settings.threads},
                                needs_of(settings), callbacks.fix_in_words)) {
-    check_ending(settings.mcap_file, ".mcap", "an MCAP file");
-    check_ending(settings.kitti_file, ".txt", "a file of KITTI poses");
     result_.period_s = check_.period_s;
     result_.doppler = check_.doppler;
     result_.scans_selected = scans_.size();
@@ -139,7 +114,7 @@ class Run {
       output.drop();
       return false;
     }
-    if (!stopped_) {
+    if (!stopped_ && result_.failures.empty()) {
       output.drop();
       std::error_code ignored;
       fs::remove(output.path() / kCheckpointFile, ignored);
@@ -240,24 +215,10 @@ class Run {
     }
   }
 
-  /// Where to put a file that is asked for beside the results; empty when it is not.
-  [[nodiscard]] fs::path destination(const std::optional<fs::path>& file, const formats::OutputFolder& output,
-                                     const char* what) const {
-    return file ? map_destination(*file, settings_.output, output.path(), what) : fs::path();
-  }
-
   /// All files of the run into the folder where it is put together; false when cancelled.
   bool write_files(formats::OutputFolder& output) {
-    const fs::path map_file = map_ ? destination(settings_.map_file, output, "map") : fs::path();
-    const fs::path mcap_file = destination(settings_.mcap_file, output, "MCAP file");
-    const fs::path kitti_file = destination(settings_.kitti_file, output, "file of KITTI poses");
-    const auto in_run = [&](const fs::path& file) {
-      return formats::lies_in(file, output.path()) ? file.lexically_relative(output.path()) : fs::path();
-    };
-    const FilesInRun files{.map = in_run(map_file),
-                           .mcap = in_run(mcap_file),
-                           .layout = in_run(layout_beside(mcap_file)),
-                           .kitti = in_run(kitti_file)};
+    beside_.place(output);
+    const FilesInRun files = beside_.in_run(output);
     std::unique_ptr<odometry::Odometry> odometry = make_odometry();
     std::vector<std::string> assumptions = dataset_->assumptions();
     for (const std::string& assumption : odometry->assumptions()) {
@@ -279,9 +240,7 @@ class Run {
       going_on = std::make_unique<RunWriter>(output.path(), settings_.save_labels);
     }
     RunWriter& writer = *going_on;
-    if (!mcap_file.empty()) {  // a path that cannot be written to is an error before the first scan
-      recorder_.emplace(mcap_file, truth_.trajectory, messages_settings());
-    }
+    beside_.open(truth_.trajectory, messages_settings());
     open_live_view();
     if (!process_scans(*odometry, writer, output)) {
       return false;
@@ -291,7 +250,6 @@ class Run {
     if (const std::optional<window::SensorCalibration> learned = odometry->calibration()) {
       formats::write_whole_file(output.path() / "calibration.yaml", calibration_text(*learned));
     }
-    result_.map_points = map_ ? std::optional(map_->size()) : std::nullopt;
     result_.summary = writer.finish(settings_.method, truth_.trajectory, assumptions, stopped_);
     if (!result_.summary.failure.empty()) {  // the caller tells it at the end
       result_.warnings.insert(result_.warnings.begin(), result_.summary.failure);
@@ -303,14 +261,10 @@ class Run {
       formats::write_whole_file(output.path() / "run.json",
                                 run_json(recording_, settings_, *dataset_, truth_.file, result_, files));
     };
-    result_.has_mcap = recorder_.has_value();
-    result_.has_kitti = !kitti_file.empty();
+    beside_.describe(result_);
     write_run_json();
-    // Last, for an earlier file is only replaced by that of a run that is whole.
     const std::size_t failures = result_.failures.size();
-    try_to_write_map(map_file, output);
-    try_to_write_mcap(mcap_file, output);
-    try_to_write_kitti(kitti_file, writer.trajectory(), output);
+    beside_.write(writer.trajectory(), output, result_);
     if (result_.failures.size() > failures) {
       write_run_json();
     }
@@ -325,14 +279,7 @@ class Run {
 
   /// What was found and counted beside the odometry and the files of the run.
   void results_state(StateArchive& archive) {
-    archive(usable_, result_.sweep, result_.warnings, result_.failures);
-    bool has_map = map_.has_value();
-    archive(has_map);
-    if (has_map && map_) {
-      archive(*map_);
-    } else {
-      map_.reset();
-    }
+    archive(usable_, result_.sweep, result_.warnings, result_.failures, beside_);
   }
 
   /// Brings everything to where it was at the checkpoint, from which the odometry and the files go on. Null without
@@ -367,7 +314,7 @@ class Run {
     remove_files_of_run(output.path());
     odometry = make_odometry();
     result_ = before;
-    map_ = make_map(settings_);
+    beside_.begin_anew();
     usable_ = {};
     return nullptr;
   }
@@ -419,9 +366,8 @@ class Run {
       is_begun_ = true;
       usable_.add(frame);
       result_.sweep.add(frame, scan);
-      add_to_map(frame);
       const double latency_ms = latencies_.add(reader->arrival());
-      record(scan, frame, latency_ms);
+      beside_.add(scan, frame, latency_ms);
       if (callbacks_.frame) {
         callbacks_.frame(i, frame);
       }
@@ -506,26 +452,6 @@ class Run {
     }
   }
 
-  /// A map that cannot be is no reason to lose the run.
-  void add_to_map(const odometry::Frame& frame) {
-    if (!map_) {
-      return;
-    }
-    try {
-      map_->add(frame);
-    } catch (const std::exception& error) {
-      fail(fmt::format("no map: {}", error.what()));
-      map_.reset();
-    }
-  }
-
-  /// The layout that goes with an MCAP file, unless there is one, which its owner may have changed.
-  static fs::path layout_beside(const fs::path& mcap_file) {
-    const fs::path layout = mcap_file.parent_path() / kFoxgloveLayoutFile;
-    std::error_code ignored;
-    return mcap_file.empty() || fs::exists(layout, ignored) ? fs::path() : layout;
-  }
-
   [[nodiscard]] RunMessagesSettings messages_settings() {
     const motion::SweepConfig* sweep = sweep_config(settings_.config);
     RunMessagesSettings messages;
@@ -556,57 +482,6 @@ class Run {
     }
   }
 
-  /// A file for a viewer that cannot be is no reason to lose the run.
-  void record(const RawScan& scan, const odometry::Frame& frame, double latency_ms) {
-    if (!recorder_) {
-      return;
-    }
-    try {
-      recorder_->add(scan, frame, latency_ms);
-    } catch (const std::exception& error) {
-      fail(fmt::format("no MCAP file: {}", error.what()));
-      recorder_.reset();
-    }
-  }
-
-  void try_to_write_map(const fs::path& path, const formats::OutputFolder& output) {
-    try {
-      if (map_) {
-        map_->write(path);
-      }
-    } catch (const std::exception& error) {
-      fail("no map: " + output.in_final_names(error.what()));
-      result_.map_points.reset();
-    }
-  }
-
-  void try_to_write_mcap(const fs::path& path, const formats::OutputFolder& output) {
-    try {
-      if (recorder_) {
-        recorder_->commit();
-        if (const fs::path layout = layout_beside(path); !layout.empty()) {
-          formats::write_whole_file(layout, foxglove_layout());
-        }
-      }
-    } catch (const std::exception& error) {
-      fail("no MCAP file: " + output.in_final_names(error.what()));
-      result_.has_mcap = false;
-    }
-    recorder_.reset();
-  }
-
-  void try_to_write_kitti(const fs::path& path, const formats::Trajectory& trajectory,
-                          const formats::OutputFolder& output) {
-    try {
-      if (!path.empty()) {
-        formats::write_kitti(path, trajectory);
-      }
-    } catch (const std::exception& error) {
-      fail("no KITTI poses: " + output.in_final_names(error.what()));
-      result_.has_kitti = false;
-    }
-  }
-
   /// What belongs beside the files of a run and cannot be made is no reason to lose the run.
   void try_to_add_files(const formats::OutputFolder& output) {
     try {
@@ -621,14 +496,13 @@ class Run {
   const Recording& recording_;
   RunSettings settings_;  ///< with the sweep that was found
   const RunCallbacks& callbacks_;
-  std::optional<MapWriter> map_;
+  FilesBeside beside_;
   std::optional<window::SensorCalibration> calibration_;
   datasets::FollowedDataset* followed_ = nullptr;  ///< the same as dataset_, where it grows
   std::unique_ptr<datasets::Dataset> dataset_;
   datasets::ScanRange scans_;
   RunTruth truth_;
   RecordingCheck check_;
-  std::optional<McapRecorder> recorder_;
   std::optional<LiveView> live_;
   Latencies latencies_;
   UsablePoints usable_;
