@@ -190,10 +190,12 @@ TEST(SavedState, CompensatedDoppler) {
       scan.doppler[i] += scan.points[i].normalized().dot(velocity_sensor(drive.path, time_s));
     }
   }
+  SensorContext context;
+  context.doppler_kind = DopplerKind::kCompensated;
   PaperConfig published;
   published.published_compensated = true;
   for (const Config& config : {Config{}, Config{PaperConfig{}}, Config{published}}) {
-    expect_same_bits(config, scans, {1, 2, 4}, {.doppler_kind = DopplerKind::kCompensated});
+    expect_same_bits(config, scans, {1, 2, 4}, context);
   }
 }
 
@@ -203,7 +205,9 @@ TEST(SavedState, ACalibrationIsPartOfIt) {
   for (const RawScan& scan : scans) {
     teacher->process(scan);
   }
-  expect_same_bits({}, scans, {0, 1, 3}, {.calibration = teacher->calibration()});
+  SensorContext context;
+  context.calibration = teacher->calibration();
+  expect_same_bits({}, scans, {0, 1, 3}, context);
 }
 
 std::string refusal_of(Odometry& odometry, std::string_view state) {
