@@ -7,6 +7,8 @@
 namespace dynamic_icp::spatial {
 
 void CellOrder::sort() {
+  cell.reserve(keys.capacity());  // where that grows in good time, so do these
+  rank.reserve(keys.capacity());
   cell.resize(keys.size());
   rank.resize(keys.size());
   numbers.clear();

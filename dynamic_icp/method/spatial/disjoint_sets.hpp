@@ -2,6 +2,9 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 #include <utility>
@@ -16,9 +19,12 @@ class DisjointSets {
 
   /// The numbers [0, n), each alone, in the memory of those before.
   void reset(std::size_t n) {
+    parent_.reserve(std::bit_ceil(n));  // with room for a few more the next time
+    size_.reserve(std::bit_ceil(n));
     parent_.resize(n);
+    size_.resize(n);
     std::iota(parent_.begin(), parent_.end(), std::uint32_t{0});
-    size_.assign(n, 1);
+    std::fill(size_.begin(), size_.end(), 1u);
     count_ = n;
   }
 

@@ -16,6 +16,11 @@ TEST(DisjointSets, StartAlone) {
   EXPECT_NE(sets.find(0), sets.find(1));
   EXPECT_NE(sets.find(1), sets.find(2));
   EXPECT_EQ(DisjointSets(0).count(), 0u);
+  sets.unite(0, 2);
+  sets.reset(4);
+  EXPECT_EQ(sets.count(), 4u);
+  EXPECT_NE(sets.find(0), sets.find(2));
+  EXPECT_EQ(sets.size(sets.find(3)), 1u);
 }
 
 TEST(DisjointSets, AgreeWithRelabellingEveryMember) {

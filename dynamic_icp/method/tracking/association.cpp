@@ -5,14 +5,16 @@
 #include <algorithm>
 #include <cstddef>
 
+#include "dynamic_icp/method/tracking/memory.hpp"
+
 namespace dynamic_icp::tracking {
 namespace {
 
 /// Gives each cell to the expectation whose box and velocity fit it best.
 void assign(const TrackingInput& input, std::span<const Expectation> expectations, CellOwners& result) {
   std::vector<std::int32_t>& owner = result.owner;
-  owner.assign(input.moving.cells.size(), kNobody);
-  result.best_ratio.assign(owner.size(), 1.0);
+  refill(owner, input.moving.cells.size(), kNobody);
+  refill(result.best_ratio, owner.size(), 1.0);
   for (std::size_t k = 0; k < expectations.size(); ++k) {
     const Expectation& expected = expectations[k];
     const double reach =
@@ -37,8 +39,8 @@ void assign(const TrackingInput& input, std::span<const Expectation> expectation
 /// Links each group to the owners of its cells.
 void link_owners(std::span<const std::uint32_t> groups, CellOwners& result) {
   const std::size_t count = groups.empty() ? 0 : *std::max_element(groups.begin(), groups.end()) + std::size_t{1};
-  result.first_link.assign(count, kNobody);
-  result.last_link.assign(count, kNobody);
+  refill(result.first_link, count, kNobody);
+  refill(result.last_link, count, kNobody);
   result.links.clear();
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const std::int32_t owner = result.owner[i];

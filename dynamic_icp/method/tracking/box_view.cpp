@@ -4,6 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <memory_resource>
+#include <vector>
+
+#include "dynamic_icp/method/tracking/memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -62,14 +67,20 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, c
 
 AxisView view_along(const Vector3d& direction, const Vector3d& reference, std::span<const Vector3d> points) {
   AxisView view;
-  view.seen = span_along(points, reference, direction, kViewTrim);
+  StackMemory<kMaxDetectionPoints * sizeof(double)> memory;
+  std::pmr::vector<double> along(memory.resource());
+  along.reserve(points.size());
+  for (const Vector3d& point : points) {
+    along.push_back((point - reference).dot(direction));
+  }
+  view.seen = span_of(along, kViewTrim);
   const auto look_at = [&](EndView& end, auto&& inwards) {  // how far inwards of the end a point lies
     double count = 0.0;
     end.gap = kMaxGap_m;
-    for (const Vector3d& point : points) {
-      const double depth = inwards((point - reference).dot(direction));
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      const double depth = inwards(along[i]);
       if (depth <= kEndDepth_m) {
-        end.middle += point;
+        end.middle += points[i];
         count += 1.0;
       }
       if (depth > kSamePlace_m) {

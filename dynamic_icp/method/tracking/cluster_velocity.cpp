@@ -12,7 +12,7 @@
 
 #include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/estimation/robust_kernel.hpp"
-#include "dynamic_icp/method/tracking/stack_memory.hpp"
+#include "dynamic_icp/method/tracking/memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -57,13 +57,28 @@ ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions
     }
     sorted = magnitudes;
     const double scale = std::max(sigma_mps, kSigmaPerMad * quantile_among(sorted, 0.5));
-    Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
-    Eigen::Vector3d b = Eigen::Vector3d::Zero();
+    // Single numbers and half of the matrix: sums that stay in registers.
+    double xx = 0.0, yx = 0.0, yy = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
+    double bx = 0.0, by = 0.0, bz = 0.0;
     for (std::size_t i = 0; i < radial.size(); ++i) {
       const double w = estimation::tukey_weight(magnitudes[i], kTukeyTuning * scale);
-      A += w * directions[i] * directions[i].transpose();
-      b += w * radial[i] * directions[i];
+      const Eigen::Vector3d& u = directions[i];
+      const double wy = w * u.y();
+      const double wz = w * u.z();
+      const double wr = w * radial[i];
+      xx += w * u.x() * u.x();
+      yx += wy * u.x();
+      yy += wy * u.y();
+      zx += wz * u.x();
+      zy += wz * u.y();
+      zz += wz * u.z();
+      bx += wr * u.x();
+      by += wr * u.y();
+      bz += wr * u.z();
     }
+    Eigen::Matrix3d A;
+    A << xx, yx, zx, yx, yy, zy, zx, zy, zz;
+    const Eigen::Vector3d b(bx, by, bz);
     const Eigen::Vector3d last = result.W;
     result.W = solve_constrained(A, b);
     result.information = A / (scale * scale);

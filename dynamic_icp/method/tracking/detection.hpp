@@ -13,9 +13,9 @@
 
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/tracking/ground.hpp"
+#include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/range_image.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
-#include "dynamic_icp/method/tracking/stack_memory.hpp"
 
 namespace dynamic_icp::tracking {
 

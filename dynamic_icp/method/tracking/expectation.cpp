@@ -3,12 +3,14 @@
 #include "dynamic_icp/method/tracking/expectation.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <memory_resource>
 
 #include <Eigen/Geometry>
 
-#include "dynamic_icp/method/tracking/stack_memory.hpp"
+#include "dynamic_icp/method/base/simd.hpp"
+#include "dynamic_icp/method/tracking/memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -29,6 +31,27 @@ OrientedBox above_ground(OrientedBox box) {
   box.size.z() -= clearance;
   box.centre += 0.5 * clearance * box.axes.col(2);
   return box;
+}
+
+/// Which points are not farther from a place than `reach_m`.
+void find_near(std::span<const Vector3d> points, const Vector3d& place, double reach_m,
+               std::array<std::uint8_t, RangeImage::kPatch>& is_near) {
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const double* const p = points.data()->data();
+    const std::size_t n = points.size();
+    const Vector3d centre = place;
+    const double squared_m2 = reach_m * reach_m;
+    std::array<double, RangeImage::kPatch> squared;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = p[3 * i] - centre.x();
+      const double y = p[3 * i + 1] - centre.y();
+      const double z = p[3 * i + 2] - centre.z();
+      squared[i] = x * x + (y * y + z * z);
+    }
+    for (std::size_t i = 0; i < n; ++i) {
+      is_near[i] = squared[i] > squared_m2 ? 0 : 1;
+    }
+  });
 }
 
 constexpr double kRounding_m = 0.01;  // more than rounding moves a point
@@ -108,14 +131,11 @@ void find_static_rows(const TrackingInput& input, const Expectation& expected, s
   // What moves during the sweep is not seen where it is at the stamp.
   const double reach = 0.5 * box.size.norm() + input.sweep_s * expected.velocity.norm() + kRounding_m;
   const Vector3d centre_sensor = input.sensor.T_world_sensor.inverse() * box.centre;
-  const std::vector<RangeImage::Patch>& patches = input.view.patches();
-  for (std::size_t patch = 0; patch < patches.size(); ++patch) {
-    if (patches[patch].squaredExteriorDistance(centre_sensor) > reach * reach) {
-      continue;
-    }
-    const std::size_t end = std::min((patch + 1) * RangeImage::kPatch, input.scan.size());
-    for (std::size_t row = patch * RangeImage::kPatch; row < end; ++row) {
-      if (input.is_moving[row] != 0 || (input.scan.points()[row] - centre_sensor).squaredNorm() > reach * reach) {
+  std::array<std::uint8_t, RangeImage::kPatch> is_near;
+  input.view.visit_patches(centre_sensor, reach, [&](std::size_t begin, std::size_t end) {
+    find_near(std::span(input.scan.points()).subspan(begin, end - begin), centre_sensor, reach, is_near);
+    for (std::size_t row = begin; row < end; ++row) {
+      if (is_near[row - begin] == 0 || input.is_moving[row] != 0) {
         continue;
       }
       const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
@@ -123,7 +143,7 @@ void find_static_rows(const TrackingInput& input, const Expectation& expected, s
         rows.push_back(static_cast<std::uint32_t>(row));
       }
     }
-  }
+  });
 }
 
 void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,

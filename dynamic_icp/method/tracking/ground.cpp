@@ -8,7 +8,9 @@
 
 #include <Eigen/Geometry>
 
+#include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/base/simd.hpp"
 #include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::tracking {
@@ -66,21 +68,45 @@ GroundHeights::GroundHeights(const Ground& ground, std::span<const Eigen::Vector
   const Eigen::Matrix3d R_level_sensor = ground.level.transpose() * T_world_sensor.linear();
   const double plane_z = *ground.offset_m - ground.up().dot(sensor_world_);
   const std::size_t stride = std::max<std::size_t>(1, points.size() / kMaxGroundPoints);
-  for (std::size_t row = 0; row < points.size(); row += stride) {
-    if (is_moving[row] != 0) {
-      continue;
-    }
-    const Eigen::Vector3d& p = points[row];
-    const double z = (R_level_sensor(2, 0) * p.x() + R_level_sensor(2, 1) * p.y()) + R_level_sensor(2, 2) * p.z();
-    const double bin = (z - plane_z) / kBin_m + 0.5 * kBins;
-    if (!(bin >= 0.0 && bin < kBins)) {
-      continue;
-    }
-    if (const auto cell = cell_of(R_level_sensor * p)) {
-      std::uint16_t& count = cells_[*cell][static_cast<std::size_t>(bin)];
-      count = static_cast<std::uint16_t>(std::min(count + 1, 0xffff));
+  Bins bins;
+  for (std::size_t begin = 0; begin < points.size(); begin += kBinBlock * stride) {
+    const std::size_t count = Workers::block_count(std::min(kBinBlock * stride, points.size() - begin), stride);
+    find_bins(&points[begin], stride, count, R_level_sensor, plane_z, bins);
+    for (std::size_t i = 0; i < count; ++i) {
+      if (bins.cell[i] >= 0 && is_moving[begin + i * stride] == 0) {
+        std::uint16_t& points_there =
+            cells_[static_cast<std::size_t>(bins.cell[i])][static_cast<std::size_t>(bins.bin[i])];
+        points_there = static_cast<std::uint16_t>(std::min(points_there + 1, 0xffff));
+      }
     }
   }
+}
+
+/// The bins of every `stride`th of some points (m, sensor frame).
+void GroundHeights::find_bins(const Eigen::Vector3d* points, std::size_t stride, std::size_t count,
+                              const Eigen::Matrix3d& R_level_sensor, double plane_z, Bins& bins) {
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const Eigen::Matrix3d R = R_level_sensor;
+    const double* const p = points->data();
+    const std::size_t step = 3 * stride;
+    const std::size_t n = count;
+    const double ground_z = plane_z;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = p[i * step];
+      const double y = p[i * step + 1];
+      const double z = p[i * step + 2];
+      const auto along = [&](int axis)
+                             DYNAMIC_ICP_KERNEL { return (R(axis, 0) * x + R(axis, 1) * y) + R(axis, 2) * z; };
+      const double bin = (along(2) - ground_z) / kBin_m + 0.5 * kBins;
+      const double column = along(0) / kCell_m + 0.5 * kCells;
+      const double row = along(1) / kCell_m + 0.5 * kCells;
+      const bool is_inside =
+          (bin >= 0.0) & (bin < kBins) & (column >= 0.0) & (column < kCells) & (row >= 0.0) & (row < kCells);
+      const int cell = static_cast<int>(is_inside ? row : 0.0) * kCells + static_cast<int>(is_inside ? column : 0.0);
+      bins.cell[i] = is_inside ? cell : -1;
+      bins.bin[i] = static_cast<int>(is_inside ? bin : 0.0);
+    }
+  });
 }
 
 Eigen::Vector3d GroundHeights::in_level(const Eigen::Vector3d& point_world) const {

@@ -72,6 +72,17 @@ class GroundHeights {
   static constexpr int kBins = 24;   // of heights
   using Histogram = std::array<std::uint16_t, kBins>;
 
+  static constexpr std::size_t kBinBlock = 512;
+
+  /// Where some points belong.
+  struct Bins {
+    std::array<int, kBinBlock> cell;  ///< -1: nowhere
+    std::array<int, kBinBlock> bin;
+  };
+
+  static void find_bins(const Eigen::Vector3d* points, std::size_t stride, std::size_t count,
+                        const Eigen::Matrix3d& R_level_sensor, double plane_z, Bins& bins);
+
   [[nodiscard]] std::optional<std::size_t> cell_of(const Eigen::Vector3d& from_sensor) const;
   [[nodiscard]] Eigen::Vector3d in_level(const Eigen::Vector3d& point_world) const;
 

@@ -14,12 +14,12 @@
 
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 #include "dynamic_icp/method/spatial/cell_order.hpp"
+#include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::size_t kCellBlock = 128;
 constexpr double kWiderThanReach = 1.001;  // rounding must not put cells within reach two cubes apart
 
 void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& cell) {
@@ -28,6 +28,13 @@ void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& c
   cell.radial_mps += radial;
   cell.time_s += scan.has_times() ? scan.times()[row] : 0.0;
   ++cell.count;
+}
+
+constexpr std::size_t kAhead = 16;  // moving points lie far apart in memory: what comes is asked for in time
+
+void prefetch_point(const Scan& scan, std::uint32_t row) {
+  __builtin_prefetch(&scan.points()[row]);
+  __builtin_prefetch(&scan.directions()[row]);
 }
 
 /// Calls visit(row) for each row of [begin, end) that moves, ascending: eight flags at a time, for most of them are 0.
@@ -56,12 +63,14 @@ void find_moving_rows(std::span<const std::uint8_t> is_moving, const Workers& wo
   std::vector<std::uint32_t>& end_of_block = result.end_of_block;
   end_of_block.resize(Workers::block_count(is_moving.size(), kPointBlock));
   workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    end_of_block[block] = static_cast<std::uint32_t>(std::count_if(
-        is_moving.begin() + static_cast<std::ptrdiff_t>(begin), is_moving.begin() + static_cast<std::ptrdiff_t>(end),
-        [](std::uint8_t moving) { return moving != 0; }));
+    std::uint32_t count = 0;
+    visit_moving(is_moving, begin, end, [&](std::size_t) { ++count; });
+    end_of_block[block] = count;
   });
   std::partial_sum(end_of_block.begin(), end_of_block.end(), end_of_block.begin());
-  result.rows.resize(end_of_block.empty() ? 0 : end_of_block.back());
+  const std::size_t rows = end_of_block.empty() ? 0 : end_of_block.back();
+  make_room(result.rows, rows);
+  result.rows.resize(rows);
   workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::uint32_t next = block == 0 ? 0 : end_of_block[block - 1];
     visit_moving(is_moving, begin, end,
@@ -83,12 +92,11 @@ bool beside_gap(const MovingCell& cell, const GroupingConfig& config) {
   return std::abs(cell.radial_mps) <= config.bridge_velocity_mps;
 }
 
-/// Whether two cells are neighbours on one body; `range` is that of the nearer one.
-bool linked(const MovingCell& a, const MovingCell& b, double range, const GroupingConfig& config) {
-  const bool gap = a.radial_mps * b.radial_mps < 0.0 && beside_gap(a, config) && beside_gap(b, config);
-  const double link = config.link_distance_m + config.link_growth * range;
+/// Whether two cells of this squared distance are neighbours on one body.
+bool linked(const NearCell& a, const NearCell& b, double squared, const GroupingConfig& config) {
+  const bool gap = a.radial_mps * b.radial_mps < 0.0 && a.beside_gap && b.beside_gap;
+  const double link = config.link_distance_m + config.link_growth * std::min(a.range_m, b.range_m);
   const double longest = gap ? std::max(link, config.bridge_m) : link;
-  const double squared = (a.centroid - b.centroid).squaredNorm();
   return squared <= longest * longest &&
          std::abs(a.radial_mps - b.radial_mps) <= config.link_velocity_mps + config.link_shear_rps * std::sqrt(squared);
 }
@@ -111,24 +119,25 @@ constexpr std::array<std::uint64_t, 14> kHalfNeighbourhood = [] {
   return offsets;
 }();
 
-/// Calls visit(i, k) once for each pair of the chosen cells that are at most `reach_m` apart, and for some more.
-template <typename Visit>
-void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::uint32_t> chosen, double reach_m,
-                      GroupingMemory& memory, const Visit& visit) {
+/// Unites the sets of each two of `memory.near` that are neighbours on one body and at most `reach_m` apart.
+void unite_neighbours(double reach_m, const GroupingConfig& config, GroupingMemory& memory) {
   const double cube_m = kWiderThanReach * reach_m;
+  const double squared_reach = cube_m * cube_m;
   spatial::CellOrder& cubes = memory.cubes;
   std::vector<std::uint64_t>& keys = memory.keys;
-  std::vector<std::uint32_t>& members = memory.members;
-  cubes.keys.resize(chosen.size());
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
-    cubes.keys[k] = spatial::clamped_cell_key(cells[chosen[k]].centroid / cube_m);
+  std::vector<NearCell>& sorted = memory.sorted;  // side by side in memory if they are in space
+  cubes.keys.clear();
+  for (const NearCell& cell : memory.near) {
+    cubes.keys.push_back(spatial::clamped_cell_key(cell.centroid / cube_m));
   }
   cubes.sort();
+  make_room(keys, cubes.cells());
+  make_room(sorted, memory.near.size());
   keys.resize(cubes.cells());
-  members.resize(chosen.size());
-  for (std::size_t k = 0; k < chosen.size(); ++k) {
+  sorted.resize(memory.near.size());
+  for (std::size_t k = 0; k < sorted.size(); ++k) {
     keys[cubes.cell[k]] = cubes.keys[k];
-    members[cubes.place(k)] = chosen[k];
+    sorted[cubes.place(k)] = memory.near[k];
   }
   for (std::size_t cube = 0; cube < cubes.cells(); ++cube) {
     for (const std::uint64_t offset : kHalfNeighbourhood) {
@@ -138,7 +147,10 @@ void visit_near_pairs(std::span<const MovingCell> cells, std::span<const std::ui
       }
       for (std::uint32_t a = cubes.first[cube]; a < cubes.first[cube + 1]; ++a) {
         for (std::uint32_t b = other == cube ? a + 1 : cubes.first[other]; b < cubes.first[other + 1]; ++b) {
-          visit(members[a], members[b]);
+          const double squared = (sorted[a].centroid - sorted[b].centroid).squaredNorm();
+          if (squared <= squared_reach && linked(sorted[a], sorted[b], squared, config)) {
+            memory.sets.unite(sorted[a].number, sorted[b].number);
+          }
         }
       }
     }
@@ -174,13 +186,14 @@ void add_groups_among(const MovingCells& moving, std::span<const std::uint32_t> 
     ++memory.sizes[memory.numbers[i]];
     memory.points[memory.numbers[i]] += memory.chosen[i].count;
   }
-  memory.places.assign(memory.sizes.size(), kDropped);
+  refill(memory.places, memory.sizes.size(), kDropped);
   for (std::size_t number = 0; number < memory.sizes.size(); ++number) {
     if (!std::cmp_less(memory.points[number], min_points)) {
       memory.places[number] = groups.first_cell.back();
       groups.first_cell.push_back(groups.first_cell.back() + memory.sizes[number]);
     }
   }
+  make_room(groups.cells, groups.first_cell.back());
   groups.cells.resize(groups.first_cell.back());
   for (std::size_t i = 0; i < cells.size(); ++i) {
     if (std::uint32_t& place = memory.places[memory.numbers[i]]; place != kDropped) {
@@ -220,7 +233,7 @@ bool too_wide(const MovingCells& moving, std::span<const std::uint32_t> cells, d
 /// Gives each group its rows.
 void add_rows(const MovingCells& moving, std::vector<std::uint32_t>& group_of_cell, CellGroups& groups) {
   constexpr std::uint32_t kNoGroup = ~0u;
-  group_of_cell.assign(moving.cells.size(), kNoGroup);
+  refill(group_of_cell, moving.cells.size(), kNoGroup);
   groups.first_row.assign(1, 0);
   for (std::uint32_t group = 0; group < groups.size(); ++group) {
     std::uint32_t rows = 0;
@@ -230,6 +243,7 @@ void add_rows(const MovingCells& moving, std::vector<std::uint32_t>& group_of_ce
     }
     groups.first_row.push_back(groups.first_row.back() + rows);
   }
+  make_room(groups.rows, groups.first_row.back());
   groups.rows.resize(groups.first_row.back());
   for (std::size_t i = 0; i < moving.rows.size(); ++i) {
     const std::uint32_t group = group_of_cell[moving.order.cell[i]];
@@ -266,51 +280,42 @@ void gather_cells(const Scan& scan, std::span<const double> radial, std::span<co
   find_moving_rows(is_moving, workers, result);
   const std::size_t n = result.rows.size();
   spatial::CellOrder& order = result.order;
+  make_room(order.keys, n);
   order.keys.resize(n);
   workers.for_each(n, kPointBlock, [&](std::size_t i) {
     order.keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
   });
   order.sort();
-  result.rows_by_cell.resize(n);
+  // In the order of the rows, which is that of the memory.
+  refill(result.cells, order.cells(), MovingCell{});
   for (std::size_t i = 0; i < n; ++i) {
-    result.rows_by_cell[order.place(i)] = result.rows[i];
-  }
-  result.cells.resize(order.cells());
-  workers.for_each(result.cells.size(), kCellBlock, [&](std::size_t cell) {
-    result.cells[cell] = {};
-    for (std::uint32_t k = order.first[cell]; k < order.first[cell + 1]; ++k) {
-      add_point(scan, result.rows_by_cell[k], radial[result.rows_by_cell[k]], result.cells[cell]);
+    if (i + kAhead < n) {
+      prefetch_point(scan, result.rows[i + kAhead]);
     }
-    take_means(result.cells[cell]);
-  });
+    add_point(scan, result.rows[i], radial[result.rows[i]], result.cells[order.cell[i]]);
+  }
+  std::for_each(result.cells.begin(), result.cells.end(), take_means);
 }
 
 void group_cells(std::span<const MovingCell> cells, const GroupingConfig& config, GroupingMemory& memory,
                  std::vector<std::uint32_t>& groups) {
-  memory.all.resize(cells.size());
-  std::iota(memory.all.begin(), memory.all.end(), 0u);
-  memory.slow.clear();
-  memory.ranges.resize(cells.size());
+  memory.near.clear();
+  double farthest = 0.0;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {
-    memory.ranges[i] = cells[i].centroid.norm();
-    if (beside_gap(cells[i], config)) {
-      memory.slow.push_back(i);
-    }
+    const double range = cells[i].centroid.norm();
+    memory.near.push_back({cells[i].centroid, range, cells[i].radial_mps, i, beside_gap(cells[i], config)});
+    farthest = std::max(farthest, range);
   }
   memory.sets.reset(cells.size());
-  const auto link = [&](std::uint32_t i, std::uint32_t k) {
-    if (linked(cells[i], cells[k], std::min(memory.ranges[i], memory.ranges[k]), config)) {
-      memory.sets.unite(i, k);
-    }
-  };
-  const double farthest = cells.empty() ? 0.0 : *std::max_element(memory.ranges.begin(), memory.ranges.end());
   const double longest = config.link_distance_m + config.link_growth * farthest;
-  visit_near_pairs(cells, memory.all, std::max(longest, config.cell_size_m), memory, link);
+  unite_neighbours(std::max(longest, config.cell_size_m), config, memory);
   // Only bridges over gaps are longer.
   if (config.bridge_m > longest) {
-    visit_near_pairs(cells, memory.slow, config.bridge_m, memory, link);
+    std::erase_if(memory.near, [](const NearCell& cell) { return !cell.beside_gap; });
+    unite_neighbours(config.bridge_m, config, memory);
   }
-  memory.number_of_root.assign(cells.size(), ~0u);
+  refill(memory.number_of_root, cells.size(), ~0u);
+  make_room(groups, cells.size());
   groups.resize(cells.size());
   std::uint32_t count = 0;
   for (std::uint32_t i = 0; i < cells.size(); ++i) {

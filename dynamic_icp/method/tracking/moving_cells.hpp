@@ -44,9 +44,7 @@ struct MovingCells {
   std::vector<std::uint32_t> rows;  ///< of the scan: the moving ones, ascending
   spatial::CellOrder order;         ///< of these rows
 
-  // Memory of gather_cells
-  std::vector<std::uint32_t> rows_by_cell;
-  std::vector<std::uint32_t> end_of_block;
+  std::vector<std::uint32_t> end_of_block;  ///< memory of gather_cells
 };
 
 /// Sorts the rows with `is_moving` != 0 into cubes. A cube holds few points of anything else than one surface, so its
@@ -86,14 +84,21 @@ struct CellGroups {
 void vehicle_groups(const MovingCells& moving, std::span<const std::uint32_t> cells, double largest_width_m,
                     int min_points, const GroupingConfig& config, GroupingMemory& memory, CellGroups& groups);
 
+/// What links a cell to others.
+struct NearCell {
+  Eigen::Vector3d centroid;  ///< m, sensor frame
+  double range_m = 0.0;
+  double radial_mps = 0.0;
+  std::uint32_t number = 0;
+  bool beside_gap = false;  ///< it may lie where the radial velocity of its body passes zero
+};
+
 struct GroupingMemory {
   // Of cells near each other
+  std::vector<NearCell> near;
+  std::vector<NearCell> sorted;
   spatial::CellOrder cubes;
   std::vector<std::uint64_t> keys;
-  std::vector<std::uint32_t> members;
-  std::vector<double> ranges;
-  std::vector<std::uint32_t> all;
-  std::vector<std::uint32_t> slow;
   spatial::DisjointSets sets;
   std::vector<std::uint32_t> number_of_root;
 

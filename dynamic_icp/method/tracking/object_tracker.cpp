@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "dynamic_icp/method/base/state_archive.hpp"
+#include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/track_merging.hpp"
 
 namespace dynamic_icp::tracking {
@@ -18,9 +19,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
-constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
-constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
+constexpr double kMax = 2.0;              // new objects are not wider than so many vehicles
+constexpr double kMinSignal = 2.0;        // of the radial velocities of a new object over their spread
+constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
+constexpr std::size_t kMinPoints = 3;     // of a detection: a velocity has three unknowns
 
 double latest_time(const Scan& scan) {
   double latest_s = 0.0;
@@ -63,6 +65,13 @@ struct ObjectTracker::Entry {
   int seen = 0;
   int missed = 0;
   std::vector<std::uint32_t> members = {};
+
+  // Entries change their places: without room from the beginning each would grow on its own.
+  Entry() {
+    for (std::vector<std::uint32_t>* rows : {&members, &static_rows, &merged}) {
+      rows->reserve(kUsualRows);
+    }
+  }
 
   // For their memory
   Track other;
@@ -214,6 +223,7 @@ void ObjectTracker::gather_static(const TrackingInput& input, const Expectation&
     entry.members.clear();
     return;
   }
+  make_room(entry.merged, entry.members.size() + entry.static_rows.size());
   entry.merged.resize(entry.members.size() + entry.static_rows.size());
   std::merge(entry.members.begin(), entry.members.end(), entry.static_rows.begin(), entry.static_rows.end(),
              entry.merged.begin());
@@ -279,9 +289,14 @@ void ObjectTracker::note_motion(Entry& entry, double stamp_s) const {
 
 /// Groups nobody owns become tracks.
 void ObjectTracker::initiate_tracks(const TrackingInput& input, const Workers& workers) {
+  // Groups among the unowned cells are parts of those among all: where these have too few points, so have the parts.
+  refill(unowned_points_, owners_.owner.size(), std::size_t{0});
+  for (std::size_t cell = 0; cell < owners_.owner.size(); ++cell) {
+    unowned_points_[groups_[cell]] += owners_.owner[cell] == kNobody ? moving_.cells[cell].count : 0;
+  }
   unowned_.clear();
   for (std::uint32_t cell = 0; cell < owners_.owner.size(); ++cell) {
-    if (owners_.owner[cell] == kNobody) {
+    if (owners_.owner[cell] == kNobody && std::cmp_greater_equal(unowned_points_[groups_[cell]], config_.min_points)) {
       unowned_.push_back(cell);
     }
   }
@@ -326,7 +341,7 @@ void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint3
   if (std::cmp_greater(contradictions, rows.size())) {
     return;
   }
-  entry.members.assign(rows.begin(), rows.end());
+  refill(entry.members, rows);
   entry.age = 1;
   entry.seen = 1;
   entry.missed = 0;
@@ -411,7 +426,7 @@ void ObjectTracker::report(const SensorMotion& sensor, const Eigen::Matrix3d& eg
   object.prediction.velocity_sensor = R * then.velocity;
   object.age_scans = entry.age;
   object.scans_seen = entry.seen;
-  object.members = entry.members;
+  refill(object.members, std::span<const std::uint32_t>(entry.members));
 }
 
 /// What tracks predict is computed from their states; what lies behind the living ones is memory.

@@ -108,9 +108,10 @@ class ObjectTracker {
   std::vector<std::uint32_t> groups_;  ///< of the cells
   std::vector<Eigen::Vector3d> cell_points_;
   std::vector<Eigen::Vector3d> cell_directions_;
-  std::vector<Expectation> expected_;   ///< of the tracks
-  CellOwners owners_;                   ///< numbers of tracks
-  std::vector<std::uint32_t> unowned_;  ///< cells
+  std::vector<Expectation> expected_;        ///< of the tracks
+  CellOwners owners_;                        ///< numbers of tracks
+  std::vector<std::size_t> unowned_points_;  ///< of the groups
+  std::vector<std::uint32_t> unowned_;       ///< cells
   CellGroups unowned_groups_;
   std::optional<GroundHeights> heights_;
   std::vector<TrackedObject> objects_;  ///< as many as tracks, and behind them memory for more

@@ -7,8 +7,11 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <memory_resource>
 #include <utility>
 #include <vector>
+
+#include "dynamic_icp/method/tracking/memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -49,13 +52,11 @@ struct Lowest {
   }
 };
 
-/// span_along without `rank` points at either end, fewer than kFew.
-Interval span_without_few(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin,
-                          const Eigen::Vector3d& axis, std::size_t rank) {
+/// span_of without `rank` values at either end, fewer than kFew.
+Interval span_without_few(std::span<const double> values, std::size_t rank) {
   Lowest low;
   Lowest high;  // of the negative values
-  for (const Eigen::Vector3d& point : points) {
-    const double value = (point - origin).dot(axis);
+  for (const double value : values) {
     low.add(value, rank + 1);
     high.add(-value, rank + 1);
   }
@@ -172,22 +173,28 @@ Eigen::Vector3d size_with(const OrientedBox& a, const OrientedBox& b) {
 
 Eigen::Vector3d aligned_extent(const OrientedBox& box) { return box.axes.cwiseAbs() * box.size; }
 
-Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,
-                    double trim) {
-  if (points.empty()) {
+Interval span_of(std::span<const double> values, double trim) {
+  if (values.empty()) {
     return {};
   }
-  const auto rank = static_cast<std::size_t>(trim * static_cast<double>(points.size() - 1));
+  const auto rank = static_cast<std::size_t>(trim * static_cast<double>(values.size() - 1));
   if (rank < kFew) {
-    return span_without_few(points, origin, axis, rank);
+    return span_without_few(values, rank);
   }
-  std::vector<double> values;
+  std::vector<double> sorted(values.begin(), values.end());
+  const double low = ranked(sorted, rank);
+  return {low, ranked(sorted, sorted.size() - 1 - rank)};
+}
+
+Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,
+                    double trim) {
+  StackMemory<4096> memory;
+  std::pmr::vector<double> values(memory.resource());
   values.reserve(points.size());
   for (const Eigen::Vector3d& point : points) {
     values.push_back((point - origin).dot(axis));
   }
-  const double low = ranked(values, rank);
-  return {low, ranked(values, values.size() - 1 - rank)};
+  return span_of(values, trim);
 }
 
 std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& level,

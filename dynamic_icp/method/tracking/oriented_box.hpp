@@ -70,6 +70,9 @@ struct Interval {
   [[nodiscard]] double middle() const { return 0.5 * (low + high); }
 };
 
+/// The span of some values without the outermost `trim` of them (a share, 0 to 0.5) on either side. Zero for none.
+Interval span_of(std::span<const double> values, double trim);
+
 /// The span of (p - origin) . axis without the outermost `trim` of the points (a share, 0 to 0.5) on either side, so
 /// that a stray point does not move it. Zero for no points.
 Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,

@@ -4,17 +4,19 @@
 
 #include <algorithm>
 #include <array>
+#include <bitset>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
 
+#include "dynamic_icp/method/base/lanes.hpp"
 #include "dynamic_icp/method/base/simd.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::size_t kPixelBlock = 512;
+constexpr std::size_t kBlock = RangeImage::kSector;  // of points
 constexpr int kColumns = 720;
 constexpr int kRows = 120;
 constexpr double kSlopePerRow = 0.0175;  // a degree
@@ -48,53 +50,106 @@ Cell cell_of(const Eigen::Vector3d& point) { return cell_of(point.x(), point.y()
 
 std::size_t place(int column, int row) { return static_cast<std::size_t>(column * kRows + row); }
 
-/// The coordinates of up to kPixelBlock points.
+/// The coordinates of up to kBlock points.
 struct Coordinates {
-  std::array<double, kPixelBlock> x;
-  std::array<double, kPixelBlock> y;
-  std::array<double, kPixelBlock> z;
+  std::array<double, kBlock> x;
+  std::array<double, kBlock> y;
+  std::array<double, kBlock> z;
 
-  explicit Coordinates(std::span<const Eigen::Vector3d> points) {
-    for (std::size_t i = 0; i < points.size(); ++i) {
-      x[i] = points[i].x();
-      y[i] = points[i].y();
-      z[i] = points[i].z();
-    }
+  void take(const Eigen::Vector3d* points, std::size_t count) {
+    simd::run([&]() DYNAMIC_ICP_KERNEL {
+      const double* p = points->data();
+      for (std::size_t i = 0; i < count; ++i) {
+        x[i] = p[3 * i];
+        y[i] = p[3 * i + 1];
+        z[i] = p[3 * i + 2];
+      }
+    });
   }
 };
+
+// The kernels keep what they sum up to themselves until the end: a store through a pointer could change anything else.
 
 /// The places of `count` points in the image. Returns the highest row among them.
 int find_places(const Coordinates& at, std::size_t count, std::uint32_t* places) {
   int highest = 0;
   simd::run([&]() DYNAMIC_ICP_KERNEL {
-    for (std::size_t i = 0; i < count; ++i) {
+    const std::size_t n = count;
+    std::uint32_t* const place = places;
+    int top = 0;
+    for (std::size_t i = 0; i < n; ++i) {
       const Cell cell = cell_of(at.x[i], at.y[i], at.z[i]);
-      places[i] = static_cast<std::uint32_t>(cell.column * kRows + cell.row);
-      highest = std::max(highest, cell.row);
+      place[i] = static_cast<std::uint32_t>(cell.column * kRows + cell.row);
+      top = std::max(top, cell.row);
     }
+    highest = top;
   });
   return highest;
 }
 
-/// The squared ranges of `count` points (m^2), and the boxes around each patch of them.
-void measure(const Coordinates& at, std::size_t count, float* squared, RangeImage::Patch* patches) {
+/// The squared ranges of `count` points, m^2.
+void measure_squared(const Coordinates& at, std::size_t count, float* squared) {
   simd::run([&]() DYNAMIC_ICP_KERNEL {
-    for (std::size_t i = 0; i < count; ++i) {
-      squared[i] = static_cast<float>(at.x[i] * at.x[i] + at.y[i] * at.y[i] + at.z[i] * at.z[i]);
+    const std::size_t n = count;
+    float* const result = squared;
+    for (std::size_t i = 0; i < n; ++i) {
+      result[i] = static_cast<float>(at.x[i] * at.x[i] + at.y[i] * at.y[i] + at.z[i] * at.z[i]);
     }
   });
-  for (std::size_t begin = 0; begin < count; begin += RangeImage::kPatch) {
-    const std::size_t rows = std::min(RangeImage::kPatch, count - begin);
-    const auto span_of = [&](const std::array<double, kPixelBlock>& values, double& low, double& high) {
-      const Eigen::Map<const Eigen::ArrayXd> part(&values[begin], static_cast<Eigen::Index>(rows));
-      low = part.minCoeff();
-      high = part.maxCoeff();
-    };
-    RangeImage::Patch& patch = patches[begin / RangeImage::kPatch];
-    span_of(at.x, patch.min().x(), patch.max().x());
-    span_of(at.y, patch.min().y(), patch.max().y());
-    span_of(at.z, patch.min().z(), patch.max().z());
+}
+
+/// From those of the deskewed points to those that were measured at other times (s), along these lines of sight.
+void take_back_motion(const Coordinates& sight, const double* times, const Eigen::Vector3d& velocity_sensor,
+                      std::size_t count, float* squared) {
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const std::size_t n = count;
+    float* const result = squared;
+    const double* const time = times;
+    const double vx = velocity_sensor.x();
+    const double vy = velocity_sensor.y();
+    const double vz = velocity_sensor.z();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double closing = time[i] * (sight.x[i] * vx + (sight.y[i] * vy + sight.z[i] * vz));
+      const double range = std::sqrt(static_cast<double>(result[i])) - closing;
+      const auto seen = static_cast<float>(range > 0.0 ? range : 0.0);
+      result[i] = seen * seen;
+    }
+  });
+}
+
+/// The least and the greatest of `count` values.
+DYNAMIC_ICP_INLINE void extremes(const double* values, std::size_t count, double& least, double& greatest) {
+  least = greatest = values[0];
+  std::size_t i = 0;
+  if (count >= simd::kLanes) {
+    simd::Lanes high;
+    simd::Lanes low;  // of the negative values
+    simd::load(high, values);
+    low = -high;
+    for (i = simd::kLanes; i + simd::kLanes <= count; i += simd::kLanes) {
+      simd::Lanes value;
+      simd::load(value, &values[i]);
+      simd::keep_larger(high, value);
+      simd::keep_larger(low, -value);
+    }
+    greatest = std::max({high[0], high[1], high[2], high[3]});
+    least = -std::max({low[0], low[1], low[2], low[3]});
   }
+  for (; i < count; ++i) {
+    least = std::min(least, values[i]);
+    greatest = std::max(greatest, values[i]);
+  }
+}
+
+/// The box around some of the points.
+RangeImage::Patch box_around(const Coordinates& at, std::size_t begin, std::size_t count) {
+  RangeImage::Patch patch;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    extremes(&at.x[begin], count, patch.min().x(), patch.max().x());
+    extremes(&at.y[begin], count, patch.min().y(), patch.max().y());
+    extremes(&at.z[begin], count, patch.min().z(), patch.max().z());
+  });
+  return patch;
 }
 
 }  // namespace
@@ -104,32 +159,47 @@ double RangeImage::cell_width() { return 8.0 / kColumns; }  // where the measure
 void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers) {
   const std::size_t rows = scan.size();
   nearest_squared_.assign(static_cast<std::size_t>(kColumns * kRows), std::numeric_limits<float>::infinity());
-  column_seen_.assign(kColumns, 0);
   patches_.resize(Workers::block_count(rows, kPatch));
+  sectors_.resize(Workers::block_count(rows, kBlock));
   places_.resize(rows);
   squared_.resize(rows);
-  highest_of_block_.resize(Workers::block_count(rows, kPixelBlock));
-  workers.for_blocks(rows, kPixelBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    const Coordinates points(std::span(scan.points()).subspan(begin, end - begin));
-    measure(points, end - begin, &squared_[begin], &patches_[begin / kPatch]);
-    if (!scan.has_times()) {
-      highest_of_block_[block] = find_places(points, end - begin, &places_[begin]);
-      return;
+  highest_of_block_.resize(Workers::block_count(rows, kBlock));
+  workers.for_blocks(rows, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    const std::size_t count = end - begin;
+    Coordinates at;
+    at.take(&scan.points()[begin], count);
+    measure_squared(at, count, &squared_[begin]);
+    sectors_[block].setEmpty();
+    for (std::size_t row = begin; row < end; row += kPatch) {
+      patches_[row / kPatch] = box_around(at, row - begin, std::min(kPatch, end - row));
+      sectors_[block].extend(patches_[row / kPatch]);
     }
-    const Coordinates directions(std::span(scan.directions()).subspan(begin, end - begin));
-    highest_of_block_[block] = find_places(directions, end - begin, &places_[begin]);
-    for (std::size_t row = begin; row < end; ++row) {
-      const double closing = scan.times()[row] * scan.directions()[row].dot(velocity_sensor);
-      const auto range = static_cast<float>(std::max(0.0, std::sqrt(static_cast<double>(squared_[row])) - closing));
-      squared_[row] = range * range;
+    if (scan.has_times()) {
+      at.take(&scan.directions()[begin], count);
+      take_back_motion(at, &scan.times()[begin], velocity_sensor, count, &squared_[begin]);
     }
+    highest_of_block_[block] = find_places(at, count, &places_[begin]);
   });
   for (std::size_t row = 0; row < rows; ++row) {
     float& nearest = nearest_squared_[places_[row]];
     nearest = std::min(nearest, squared_[row]);
-    column_seen_[places_[row] / kRows] = 1;
   }
+  find_seen_columns();
   highest_row_ = highest_of_block_.empty() ? 0 : *std::max_element(highest_of_block_.begin(), highest_of_block_.end());
+}
+
+void RangeImage::find_seen_columns() {
+  column_seen_.resize(kColumns);
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    for (std::size_t column = 0; column < kColumns; ++column) {
+      const float* const cells = &nearest_squared_[column * kRows];
+      int seen = 0;
+      for (std::size_t row = 0; row < kRows; ++row) {
+        seen |= cells[row] < std::numeric_limits<float>::infinity() ? 1 : 0;
+      }
+      column_seen_[column] = static_cast<char>(seen);
+    }
+  });
 }
 
 /// Whether something nearer is seen in the direction of a row of the scan, and beside it to all sides.
@@ -150,7 +220,7 @@ bool RangeImage::are_mirrored(std::span<const std::uint32_t> rows) const {
   if (static_cast<double>(behind) <= kMinBehindShare * static_cast<double>(rows.size())) {
     return false;
   }
-  std::vector<bool> is_touched(nearest_squared_.size(), false);
+  std::bitset<kColumns * kRows> is_touched;
   for (const std::uint32_t row : rows) {
     is_touched[places_[row]] = true;
   }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -48,10 +49,27 @@ class RangeImage {
   [[nodiscard]] bool are_mirrored(std::span<const std::uint32_t> rows) const;
 
   /// Rows that follow each other are seen near each other more often than not: the boxes (m, sensor frame) around each
-  /// `kPatch` rows of the deskewed scan.
+  /// `kPatch` and each `kSector` rows of the deskewed scan.
   using Patch = Eigen::AlignedBox3d;
   static constexpr std::size_t kPatch = 64;
-  [[nodiscard]] const std::vector<Patch>& patches() const { return patches_; }
+  static constexpr std::size_t kSector = 512;
+  /// Calls visit(begin, end) for the rows [begin, end) of each patch that comes nearer to a place (m, sensor frame)
+  /// than `reach_m`, ascending.
+  template <typename Visit>
+  void visit_patches(const Eigen::Vector3d& place, double reach_m, const Visit& visit) const {
+    constexpr std::size_t kPatches = kSector / kPatch;
+    for (std::size_t sector = 0; sector < sectors_.size(); ++sector) {
+      if (sectors_[sector].squaredExteriorDistance(place) > reach_m * reach_m) {
+        continue;
+      }
+      const std::size_t end = std::min((sector + 1) * kPatches, patches_.size());
+      for (std::size_t patch = sector * kPatches; patch < end; ++patch) {
+        if (!(patches_[patch].squaredExteriorDistance(place) > reach_m * reach_m)) {
+          visit(patch * kPatch, std::min((patch + 1) * kPatch, places_.size()));
+        }
+      }
+    }
+  }
 
   /// Width of a cell at a distance of one metre, m: what is closer together may share one.
   static double cell_width();
@@ -61,7 +79,9 @@ class RangeImage {
   std::vector<char> column_seen_;
   int highest_row_ = 0;
   std::vector<Patch> patches_;
+  std::vector<Patch> sectors_;
 
+  void find_seen_columns();
   [[nodiscard]] bool is_behind(std::uint32_t row) const;
 
   // Of each row of the scan, as it was measured

@@ -124,24 +124,39 @@ TEST(RangeImage, FewPointsThatSeemToBeBehindASurfaceAreMirrored) {
   EXPECT_FALSE(mirrored_behind_wall(-10.0, 10.0, 2)) << "a fence";
 }
 
-TEST(RangeImage, PatchesHoldTheirRows) {
+TEST(RangeImage, PatchesNearAPlaceHoldAllRowsNearIt) {
+  // Rows in a coil: those that follow each other are near each other.
   RawScan raw;
-  for (std::uint64_t i = 0; i < 700; ++i) {
+  for (std::uint64_t i = 0; i < 1700; ++i) {
     const RandomSource one = RandomSource(3).fork(i);
-    raw.points.emplace_back(one.uniform(0, -30.0, 30.0), one.uniform(1, -30.0, 30.0), one.uniform(2, -2.0, 5.0));
+    const double turn = 0.01 * static_cast<double>(i);
+    raw.points.emplace_back(20.0 * std::cos(turn) + one.uniform(0), 20.0 * std::sin(turn) + one.uniform(1),
+                            0.002 * static_cast<double>(i) + one.uniform(2));
   }
   raw.doppler.assign(raw.points.size(), 0.0);
   const Scan scan = Scan::from_raw(raw);
   ASSERT_EQ(scan.size(), raw.points.size());
   const RangeImage image(scan, Vector3d::Zero(), Workers(3));
-  ASSERT_EQ(image.patches().size(), 11u) << "of 64 rows, the last of 60";
-  for (std::size_t i = 0; i < image.patches().size(); ++i) {
-    RangeImage::Patch around;
-    for (std::size_t row = 64 * i; row < std::min<std::size_t>(64 * (i + 1), 700); ++row) {
-      around.extend(raw.points[row]);
+  for (const double reach : {0.5, 3.0, 12.0, 60.0}) {
+    const Vector3d place(-20.0, 3.0, 2.0);
+    std::vector<std::uint32_t> visited;
+    image.visit_patches(place, reach, [&](std::size_t begin, std::size_t end) {
+      ASSERT_EQ(begin % 64, 0u);
+      ASSERT_EQ(end, std::min<std::size_t>(begin + 64, 1700));
+      Eigen::AlignedBox3d around;
+      for (std::size_t row = begin; row < end; ++row) {
+        around.extend(raw.points[row]);
+        visited.push_back(static_cast<std::uint32_t>(row));
+      }
+      EXPECT_LE(around.exteriorDistance(place), reach);
+    });
+    EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end()));
+    for (std::uint32_t row = 0; row < raw.points.size(); ++row) {
+      if ((raw.points[row] - place).norm() <= reach) {
+        EXPECT_TRUE(std::binary_search(visited.begin(), visited.end(), row)) << row << " within " << reach;
+      }
     }
-    EXPECT_EQ(image.patches()[i].min(), around.min()) << i;
-    EXPECT_EQ(image.patches()[i].max(), around.max()) << i;
+    EXPECT_EQ(visited.size() == 1700, reach == 60.0);
   }
 }
 
