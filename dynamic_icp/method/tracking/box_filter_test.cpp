@@ -216,6 +216,31 @@ TEST(BoxFilter, WhatSomethingNearerHidesStaysAsItWas) {
   EXPECT_GE(hidden, 4);
 }
 
+TEST(BoxFilter, PartsThatAddUpToMoreThanABodyAreForgotten) {
+  // A car stands behind a gap that shows the middle of its side and neither end, and its Doppler says that it crosses
+  // the gap. What is seen is never where the body should have gone: from scan to scan it seems to be a part of it
+  // farther back. All parts together would be a body of 16 m whose middle is 7 m from the car.
+  const TrackConfig config;
+  const MovingBox car = moving_body(15, 0, 0.5 * std::numbers::pi, 0, {4.4, 1.8, 1.5});
+  std::optional<BoxFilter> filter;
+  double longest = 0.0;
+  for (int k = 0; k < 40; ++k) {
+    Scene scene({car, screen(-40.0, -4.0), screen(4.0, 45.0)}, k * kScanPeriod_s);
+    const RandomSource random = RandomSource(8).fork(static_cast<std::uint64_t>(k));
+    for (std::size_t i = 0; i < scene.detection.radial.size(); ++i) {
+      scene.detection.radial[i] = scene.detection.directions[i].dot(Vector3d(0.0, 4.0, 0.0)) + 0.05 * random.normal(i);
+    }
+    take_in(filter, scene.detection, 0.5 * std::numbers::pi, config);
+    const BoxEstimate estimate = filter->estimate();
+    ASSERT_EQ(view_of_face(estimate, Face::kFront), FaceView::kUnknown);
+    ASSERT_EQ(view_of_face(estimate, Face::kRear), FaceView::kUnknown);
+    EXPECT_LT(filter->seen_box().size.x(), 2.0 * car.box.size.x()) << "scan " << k;
+    EXPECT_LT((estimate.box.centre - car.box.centre).head<2>().norm(), car.box.size.x()) << "scan " << k;
+    longest = std::max(longest, filter->seen_box().size.x());
+  }
+  EXPECT_GT(longest, 1.2 * car.box.size.x()) << "parts do add up";
+}
+
 /// All faces of a body whose every face is measured with the noise that the filter takes for it: each is displaced as a
 /// whole, and so is the ground.
 Detection whole_body(const MovingBox& body, const RandomSource& random, const TrackConfig& config) {
