@@ -23,6 +23,7 @@
 #include "apps/calibration_info.hpp"
 #include "apps/commands.hpp"
 #include "apps/input_options.hpp"
+#include "apps/recording_look.hpp"
 #include "apps/sweep_advice.hpp"
 #include "apps/terminal.hpp"
 
@@ -31,8 +32,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-constexpr std::size_t kScansLookedAt = 10;
-constexpr double kGapPeriods = 1.5;
 constexpr std::size_t kGapsShown = 5;
 constexpr std::size_t kSentenceColumn = 30;  // of the diagnosis, behind question and verdict
 
@@ -41,38 +40,6 @@ struct InfoOptions {
   datasets::InputSettings settings;
   bool json = false;
 };
-
-/// When the scans are.
-struct TimesSeen {
-  std::size_t periods = 0;  ///< from one scan to the next
-  double period_s = 0.0;    ///< median
-  double shortest_s = 0.0;
-  double longest_s = 0.0;
-  std::vector<std::pair<std::size_t, double>> gaps;  ///< the scan after each, and how long it was, s
-};
-
-TimesSeen look_at_times(const datasets::Dataset& dataset) {
-  std::vector<double> periods;
-  for (std::size_t i = 1; i < dataset.size(); ++i) {
-    periods.push_back(seconds_between(dataset.stamp(i - 1), dataset.stamp(i)));
-  }
-  TimesSeen seen;
-  seen.periods = periods.size();
-  if (periods.empty()) {
-    return seen;
-  }
-  std::vector<double> sorted = periods;
-  std::sort(sorted.begin(), sorted.end());
-  seen.period_s = sorted[sorted.size() / 2];
-  seen.shortest_s = sorted.front();
-  seen.longest_s = sorted.back();
-  for (std::size_t i = 0; i < periods.size(); ++i) {
-    if (periods[i] > kGapPeriods * seen.period_s) {
-      seen.gaps.emplace_back(i + 1, periods[i]);
-    }
-  }
-  return seen;
-}
 
 void print_time(const datasets::Dataset& dataset, const TimesSeen& seen) {
   if (dataset.size() == 0) {
@@ -93,55 +60,6 @@ void print_time(const datasets::Dataset& dataset, const TimesSeen& seen) {
   if (seen.gaps.size() > kGapsShown) {
     print_row("gap          {} more\n", seen.gaps.size() - kGapsShown);
   }
-}
-
-/// What some scans spread over the recording hold.
-struct PointsSeen {
-  std::size_t scans = 0;
-  std::vector<std::size_t> sizes;  ///< ascending
-  Scan::Dropped dropped;
-  double nearest_m = std::numeric_limits<double>::infinity();
-  double farthest_m = 0.0;
-  double slowest_mps = std::numeric_limits<double>::infinity();
-  double fastest_mps = -std::numeric_limits<double>::infinity();
-  bool times = false;
-  std::vector<std::string> columns;
-  std::vector<std::string> warnings;
-  std::vector<Eigen::Isometry3d> mountings;  ///< T_scan_sensor of the sensors of a rig
-
-  /// Whether any point was usable, so that there are ranges.
-  [[nodiscard]] bool any() const { return farthest_m > 0.0; }
-};
-
-PointsSeen look_at_points(const datasets::Dataset& dataset) {
-  PointsSeen seen;
-  seen.scans = std::min(kScansLookedAt, dataset.size());
-  for (std::size_t k = 0; k < seen.scans; ++k) {
-    const std::size_t index = (2 * k + 1) * dataset.size() / (2 * seen.scans);
-    const RawScan raw = dataset.scan(index);
-    Scan::Dropped here;
-    const Scan scan = Scan::from_raw(raw, &here);
-    seen.sizes.push_back(raw.points.size());
-    seen.dropped += here;
-    seen.times = seen.times || scan.has_times();
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      seen.nearest_m = std::min(seen.nearest_m, scan.points()[i].norm());
-      seen.farthest_m = std::max(seen.farthest_m, scan.points()[i].norm());
-      seen.slowest_mps = std::min(seen.slowest_mps, scan.doppler()[i]);
-      seen.fastest_mps = std::max(seen.fastest_mps, scan.doppler()[i]);
-    }
-    if (!raw.warning.empty()) {
-      seen.warnings.push_back(raw.warning);
-    }
-    if (k == 0) {
-      seen.mountings = raw.mountings;
-      for (const datasets::PointColumn& column : dataset.columns(index)) {
-        seen.columns.push_back(column.name);
-      }
-    }
-  }
-  std::sort(seen.sizes.begin(), seen.sizes.end());
-  return seen;
 }
 
 double yaw_deg(const Eigen::Isometry3d& T) {
