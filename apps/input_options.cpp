@@ -109,7 +109,9 @@ void add_correction_options(CLI::App& command, datasets::InputSettings& settings
   add(command, settings, "columns", "LIST",
       "What the stored columns are: x,y,z,doppler in their order; or what all numbers of a record, row or array "
       "without "
-      "names are, with _ for what is not used, e.g. x,y,z,_,doppler (default x,y,z,doppler)");
+      "names are, with _ for what is not used, e.g. x,y,z,_,doppler; azimuth_deg,elevation_deg,range (or _rad) in "
+      "place "
+      "of x,y,z (default x,y,z,doppler)");
 }
 
 std::string as_options(const std::vector<std::pair<std::string, std::string>>& settings) {

@@ -195,7 +195,8 @@ def open(
     period : float, optional
         s from scan to scan where the recording has no times.
     columns : str or list of str, optional
-        What the numbers of a record without names are: "x,y,z,_,doppler".
+        What the numbers of a record without names are: "x,y,z,_,doppler"; "azimuth_deg,elevation_deg,range,doppler"
+        (or azimuth_rad, elevation_rad) of spherical coordinates.
     dtype : str, optional
         Type of these numbers.
     doppler_sign : {"away", "towards"}, optional

@@ -27,6 +27,7 @@ class Inputs:
             "RECORDING_TOWARDS": self.towards,
             "RECORDING_5": self.five_columns,
             "RECORDING_6": self.six_columns,
+            "RECORDING_SPHERICAL": self.spherical,
             "RUN": lambda path: self.run("run", self.get("DRIVE"), "--output", path),
             "RUN1": lambda path: self.run("run", self.get("RECORDING"), "--output", path),
             "RUN2": lambda path: self.run("run", self.get("RECORDING"), "--preset", "paper", "--output", path),
@@ -68,6 +69,14 @@ class Inputs:
 
     def five_columns(self, path: pathlib.Path) -> None:
         self.records(path, lambda rows: np.insert(rows, 3, 0.5, axis=1))
+
+    def spherical(self, path: pathlib.Path) -> None:
+        def change(rows: np.ndarray) -> np.ndarray:
+            x, y, z, doppler = rows.T
+            azimuth, elevation = np.arctan2(y, x), np.arctan2(z, np.hypot(x, y))
+            return np.column_stack([np.degrees(azimuth), np.degrees(elevation), np.linalg.norm(rows[:, :3], axis=1), doppler])
+
+        self.records(path, change)
 
     def six_columns(self, path: pathlib.Path) -> None:
         shutil.copytree(self.get("RECORDING"), path)

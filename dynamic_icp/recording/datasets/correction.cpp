@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 #include <map>
+#include <numbers>
 #include <utility>
 
 #include <fmt/format.h>
@@ -55,6 +56,18 @@ void reorder_columns(RawScan& scan, const std::array<int, 4>& columns) {
   for (Eigen::Vector3d& direction : scan.directions) {
     direction = Eigen::Vector3d(direction[columns[0]], direction[columns[1]], direction[columns[2]]);
   }
+}
+
+void make_cartesian(RawScan& scan, double radians_per_unit) {
+  for (Eigen::Vector3d& point : scan.points) {
+    const double azimuth = radians_per_unit * point.x();
+    const double elevation = radians_per_unit * point.y();
+    const double range = point.z();
+    point = {range * std::cos(elevation) * std::cos(azimuth), range * std::cos(elevation) * std::sin(azimuth),
+             range * std::sin(elevation)};
+  }
+  scan.directions.clear();
+  scan.mountings.clear();
 }
 
 class CorrectedDataset final : public Dataset {
@@ -148,6 +161,7 @@ void Correction::apply(const Correction& other) {
   assign(point_scale, other.point_scale);
   assign(time_scale, other.time_scale);
   assign(columns, other.columns);
+  assign(coordinates, other.coordinates);
 }
 
 void check(const Correction& correction) {
@@ -163,6 +177,10 @@ void check(const Correction& correction) {
 RawScan corrected(RawScan scan, const Correction& correction) {
   if (correction.columns && *correction.columns != Correction::kInOrder) {
     reorder_columns(scan, *correction.columns);
+  }
+  if (const Coordinates stored = correction.coordinates.value_or(Coordinates::kCartesian);
+      stored != Coordinates::kCartesian) {
+    make_cartesian(scan, stored == Coordinates::kSphericalDegrees ? std::numbers::pi / 180.0 : 1.0);
   }
   if (correction.point_scale) {
     for (Eigen::Vector3d& point : scan.points) {

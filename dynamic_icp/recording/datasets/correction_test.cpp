@@ -90,7 +90,8 @@ TEST(Correction, ApplyingTakesOverWhatTheOtherStates) {
                          .doppler_scale = 2.0,
                          .point_scale = 3.0,
                          .time_scale = 4.0,
-                         .columns = std::array{3, 2, 1, 0}};
+                         .columns = std::array{3, 2, 1, 0},
+                         .coordinates = Coordinates::kSphericalRadians};
   correction.apply(other);
   EXPECT_EQ(correction.doppler_kind, DopplerKind::kCompensated) << "the other one states none";
   correction.doppler_kind.reset();
@@ -119,6 +120,25 @@ TEST(Correction, ColumnsArePutInOrder) {
   EXPECT_EQ(scan.points[0], Vector3d(2.0, 3.0, 4.0));
   EXPECT_EQ(scan.doppler[0], 1.0);
   EXPECT_TRUE(scan.directions.empty());
+}
+
+// Against rotations of the x axis: up by the elevation, then to the left by the azimuth.
+TEST(Correction, SphericalCoordinatesAreMadeCartesian) {
+  Correction correction;
+  correction.columns = std::array{1, 2, 0, 3};  // read range, azimuth, elevation, Doppler
+  correction.point_scale = 2.0;
+  for (const auto& [coordinates, unit] : {std::pair{Coordinates::kSphericalRadians, 1.0},
+                                          std::pair{Coordinates::kSphericalDegrees, std::acos(-1.0) / 180.0}}) {
+    correction.coordinates = coordinates;
+    const RawScan scan = with(correction)->scan(0);
+    const Vector3d expected = Eigen::AngleAxisd(2.0 * unit, Vector3d::UnitZ()) *
+                              (Eigen::AngleAxisd(-3.0 * unit, Vector3d::UnitY()) * Vector3d(2.0, 0.0, 0.0));
+    EXPECT_TRUE(scan.points[0].isApprox(expected, 1e-14)) << scan.points[0].transpose();
+    EXPECT_EQ(scan.doppler[0], 4.0);
+    EXPECT_FALSE(scan.points[1].allFinite());
+    EXPECT_TRUE(scan.directions.empty());
+    EXPECT_TRUE(scan.mountings.empty());
+  }
 }
 
 // A point that one of the sensors sees: corrected in the sensor's axes and moved, or moved and corrected, is the same.

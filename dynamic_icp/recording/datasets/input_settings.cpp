@@ -17,6 +17,9 @@ namespace dynamic_icp::datasets {
 namespace {
 
 constexpr std::array<std::string_view, 4> kColumnNames = {"x", "y", "z", "doppler"};
+/// In place of x, y and z.
+constexpr std::array<std::string_view, 3> kInDegrees = {"azimuth_deg", "elevation_deg", "range"};
+constexpr std::array<std::string_view, 3> kInRadians = {"azimuth_rad", "elevation_rad", "range"};
 constexpr std::size_t kMaxColumns = 64;
 constexpr double kMinPeriod_s = 1e-6;
 constexpr double kMaxPeriod_s = 3600.0;
@@ -58,6 +61,35 @@ std::vector<std::string> names_in(const std::string& name, const std::string& te
   }
 }
 
+/// Puts x, y and z in the place of the names of spherical coordinates; says which these were, nothing where there are
+/// none.
+std::optional<Coordinates> take_spherical(std::vector<std::string>& names) {
+  for (const auto& [spherical, coordinates] :
+       {std::pair{kInDegrees, Coordinates::kSphericalDegrees}, std::pair{kInRadians, Coordinates::kSphericalRadians}}) {
+    const auto is_named = [&](std::string_view name) {
+      return std::find(names.begin(), names.end(), name) != names.end();
+    };
+    if (!std::all_of(spherical.begin(), spherical.end(), is_named)) {
+      continue;
+    }
+    for (std::size_t k = 0; k < 3; ++k) {
+      std::replace(names.begin(), names.end(), std::string(spherical.at(k)), std::string(kColumnNames.at(k)));
+    }
+    return coordinates;
+  }
+  return std::nullopt;
+}
+
+/// The other way round.
+std::vector<std::string> with_spherical(std::vector<std::string> names, std::optional<Coordinates> coordinates) {
+  const Coordinates stored = coordinates.value_or(Coordinates::kCartesian);
+  for (std::size_t k = 0; k < 3 && stored != Coordinates::kCartesian; ++k) {
+    const std::string_view name = (stored == Coordinates::kSphericalDegrees ? kInDegrees : kInRadians).at(k);
+    std::replace(names.begin(), names.end(), std::string(kColumnNames.at(k)), std::string(name));
+  }
+  return names;
+}
+
 /// Where x, y, z and Doppler stand where the names are these four, each once; nothing else.
 std::optional<std::array<int, 4>> permutation_of(const std::vector<std::string>& names) {
   std::array<int, 4> where = {-1, -1, -1, -1};
@@ -74,7 +106,8 @@ std::optional<std::array<int, 4>> permutation_of(const std::vector<std::string>&
 /// Four of these names in another order change the columns as read, whatever the layout; more, or others, say what
 /// numbers without names are.
 void set_columns(InputSettings& settings, const std::string& name, const std::string& text) {
-  const std::vector<std::string> names = names_in(name, text);
+  std::vector<std::string> names = names_in(name, text);
+  settings.correction.coordinates = take_spherical(names);
   settings.correction.columns = permutation_of(names);
   settings.open.columns = settings.correction.columns ? std::vector<std::string>() : names;
   if (settings.correction.columns) {
@@ -89,17 +122,19 @@ void set_columns(InputSettings& settings, const std::string& name, const std::st
     }
     (void)map_fields(used, {}, name);
   } catch (const DataError&) {
-    refuse(name, text,
-           "x, y, z and doppler, each once, and _ for what is not used, with commas: what the stored columns are");
+    refuse(
+        name, text,
+        "x, y, z (or azimuth_deg, elevation_deg, range; or azimuth_rad, elevation_rad, range) and doppler, each once, "
+        "and _ for what is not used, with commas: what the stored columns are");
   }
 }
 
-std::string stored_columns(const std::array<int, 4>& columns) {
-  std::array<std::string_view, 4> stored;
+std::vector<std::string> stored_columns(const std::array<int, 4>& columns) {
+  std::vector<std::string> stored(columns.size());
   for (std::size_t k = 0; k < 4; ++k) {
     stored.at(static_cast<std::size_t>(columns[k])) = kColumnNames[k];
   }
-  return fmt::format("{}", fmt::join(stored, ","));
+  return stored;
 }
 
 /// The names of the numbers of a record when those of x, y, z and Doppler as read change places.
@@ -178,12 +213,12 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
     all.emplace_back("truth-topic", settings.open.truth_topic);
   }
   const Correction& correction = settings.correction;
+  const auto add_columns = [&](const std::vector<std::string>& names) {
+    all.emplace_back("columns", fmt::format("{}", fmt::join(with_spherical(names, correction.coordinates), ",")));
+  };
   if (!settings.open.columns.empty()) {
-    all.emplace_back(
-        "columns",
-        fmt::format("{}", fmt::join(correction.columns ? in_other_places(settings.open.columns, *correction.columns)
-                                                       : settings.open.columns,
-                                    ",")));
+    add_columns(correction.columns ? in_other_places(settings.open.columns, *correction.columns)
+                                   : settings.open.columns);
   }
   if (!settings.open.dtype.empty()) {
     all.emplace_back("dtype", settings.open.dtype);
@@ -201,7 +236,7 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
   add_number("point-scale", correction.point_scale);
   add_number("time-scale", correction.time_scale);
   if (correction.columns && settings.open.columns.empty()) {
-    all.emplace_back("columns", stored_columns(*correction.columns));
+    add_columns(stored_columns(*correction.columns));
   }
   return all;
 }

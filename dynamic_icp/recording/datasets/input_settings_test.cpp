@@ -66,6 +66,10 @@ TEST(InputSettings, WrongTextsAreNamed) {
                        {"dtype", "float"},
                        {"columns", "x,x,z,doppler"},
                        {"columns", "x,y,z,doppler,x"},
+                       {"columns", "azimuth_deg,elevation_rad,range,doppler"},
+                       {"columns", "azimuth_deg,y,range,doppler"},
+                       {"columns", "azimuth_deg,elevation_deg,range,range,doppler"},
+                       {"columns", "azimuth,elevation,range,doppler"},
                        {"colour", "red"}};
   for (const auto& [name, text] : wrong) {
     InputSettings settings;
@@ -91,6 +95,25 @@ TEST(InputSettings, ColumnsAreAnOrderOrARecord) {
   EXPECT_EQ(settings.open.columns, (std::vector<std::string>{"x", "y", "z", "_", "doppler"}));
   EXPECT_EQ(settings.open.fields.at("points"), "cloud");
   EXPECT_EQ(texts(settings), (Texts{{"field.points", "cloud"}, {"columns", "x,y,z,_,doppler"}, {"dtype", "float64"}}));
+}
+
+TEST(InputSettings, ColumnsMayBeSpherical) {
+  InputSettings settings;
+  set(settings, "columns", "range,azimuth_deg,elevation_deg,doppler");
+  EXPECT_EQ(settings.correction.coordinates, Coordinates::kSphericalDegrees);
+  EXPECT_EQ(settings.correction.columns, (std::array<int, 4>{1, 2, 0, 3}));
+  EXPECT_EQ(texts(settings), (Texts{{"columns", "range,azimuth_deg,elevation_deg,doppler"}}));
+  set(settings, "columns", "azimuth_rad,elevation_rad,range,_,doppler");
+  EXPECT_EQ(settings.correction.coordinates, Coordinates::kSphericalRadians);
+  EXPECT_EQ(settings.open.columns, (std::vector<std::string>{"x", "y", "z", "_", "doppler"}));
+  EXPECT_EQ(texts(settings), (Texts{{"columns", "azimuth_rad,elevation_rad,range,_,doppler"}}));
+  set(settings, "columns", "x,y,z,range,doppler");
+  EXPECT_FALSE(settings.correction.coordinates) << "the range beside x, y and z is a column like others";
+  const Correction fix{.columns = std::array<int, 4>{2, 0, 1, 3}, .coordinates = Coordinates::kSphericalDegrees};
+  EXPECT_EQ(texts_of_fix(fix, {}), (Texts{{"columns", "elevation_deg,range,azimuth_deg,doppler"}}));
+  settings = {};
+  set(settings, "columns", "x,y,z,_,doppler");
+  EXPECT_EQ(texts_of_fix(fix, settings), (Texts{{"columns", "elevation_deg,range,azimuth_deg,_,doppler"}}));
 }
 
 // What the diagnosis finds of a record of more numbers is said of all of them.

@@ -4,11 +4,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 #include <vector>
 
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
-#include "dynamic_icp/recording/datasets/correction.hpp"
 #include "dynamic_icp/recording/diagnosis/scan_look.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -69,6 +69,86 @@ double static_residual(const RawScan& raw, const Workers& workers) {
   return quantile(std::move(residuals), kStaticShare);
 }
 
+/// The scan with the columns of azimuth, elevation and range as x, y and z.
+RawScan from_spherical(RawScan scan, const SphericalColumns& spherical) {
+  const auto& [azimuth, elevation, range] = spherical.columns;
+  datasets::Correction correction;
+  correction.columns = {azimuth, elevation, range, 3};
+  correction.coordinates = spherical.coordinates;
+  return datasets::corrected(std::move(scan), correction);
+}
+
+/// Whether the numbers may be angles and ranges: nothing is farther round than a full turn, above the zenith, or behind
+/// the sensor.
+bool may_be_spherical(const RawScan& scan, const SphericalColumns& spherical) {
+  constexpr double kRounding = 1e-6;
+  const double turn =
+      spherical.coordinates == datasets::Coordinates::kSphericalDegrees ? 360.0 : 2.0 * std::numbers::pi;
+  const auto column = [&](const Eigen::Vector3d& point, std::size_t k) { return point[spherical.columns.at(k)]; };
+  return std::ranges::all_of(scan.points, [&](const Eigen::Vector3d& point) {
+    return !point.allFinite() || (std::abs(column(point, 0)) <= turn &&
+                                  std::abs(column(point, 1)) <= (0.25 + kRounding) * turn && column(point, 2) >= 0.0);
+  });
+}
+
+/// How far a column of coordinates reaches: its standard deviation over all points.
+double spread_of(const std::vector<RawScan>& scans, int column) {
+  double sum = 0.0;
+  double squares = 0.0;
+  double count = 0.0;
+  for (const RawScan& scan : scans) {
+    for (const Eigen::Vector3d& point : scan.points) {
+      if (point.allFinite()) {
+        sum += point[column];
+        squares += point[column] * point[column];
+        count += 1.0;
+      }
+    }
+  }
+  return count > 0.0 ? std::sqrt(std::max(0.0, squares / count - sum / count * (sum / count))) : 0.0;
+}
+
+/// All that the columns of coordinates may be. Of a sensor that drives straight ahead the Doppler is the same with
+/// azimuth and elevation in each other's place: it sees farther round than up and down.
+std::vector<SphericalColumns> spherical_hypotheses(const std::vector<RawScan>& scans) {
+  std::vector<SphericalColumns> possible;
+  const std::array<double, 3> spread = {spread_of(scans, 0), spread_of(scans, 1), spread_of(scans, 2)};
+  for (const auto coordinates : {datasets::Coordinates::kSphericalDegrees, datasets::Coordinates::kSphericalRadians}) {
+    std::array<int, 3> columns = {0, 1, 2};
+    do {
+      const SphericalColumns spherical{columns, coordinates};
+      if (spread[static_cast<std::size_t>(columns[0])] >= spread[static_cast<std::size_t>(columns[1])] &&
+          std::ranges::all_of(scans, [&](const RawScan& scan) { return may_be_spherical(scan, spherical); })) {
+        possible.push_back(spherical);
+      }
+    } while (std::next_permutation(columns.begin(), columns.end()));
+  }
+  return possible;
+}
+
+/// The spherical coordinates that explain the Doppler best, where there may be any.
+std::optional<SphericalColumns> best_spherical(std::span<const RawScan> scans, const Workers& workers) {
+  std::vector<RawScan> few;
+  for (const RawScan& scan : scans) {
+    if (tells_columns(scan)) {
+      few.push_back(thinned(scan));
+    }
+  }
+  std::optional<SphericalColumns> best;
+  for (SphericalColumns& spherical : few.empty() ? std::vector<SphericalColumns>() : spherical_hypotheses(few)) {
+    std::vector<double> residuals;
+    for (const RawScan& scan : few) {
+      const RawScan cartesian = from_spherical(scan, spherical);
+      residuals.push_back(static_residual(prepared(cartesian, 3, guess_units(std::span(&cartesian, 1))), workers));
+    }
+    spherical.residual = quantile(std::move(residuals), 0.5);
+    if (!best || spherical.residual < best->residual) {
+      best = spherical;
+    }
+  }
+  return best;
+}
+
 }  // namespace
 
 UnitGuess guess_units(std::span<const RawScan> scans) {
@@ -124,6 +204,14 @@ ColumnScores score_columns(std::span<const RawScan> scans, const Workers& worker
     scores.likely_doppler = static_cast<int>(best - scores.residual.begin());
     scores.doppler = *best < kGoodResidual_mps ? scores.likely_doppler : 3;
   }
+  scores.likely_spherical = best_spherical(scans, workers);
+  if (const auto& spherical = scores.likely_spherical; spherical && spherical->residual < kGoodResidual_mps &&
+                                                       spherical->residual <= *best &&
+                                                       scores.residual[3] > kTimesWorse * spherical->residual) {
+    scores.spherical = spherical;
+    scores.doppler = 3;
+    scores.likely_doppler = 3;
+  }
   return scores;
 }
 
@@ -139,6 +227,11 @@ RawScan prepared(RawScan scan, int doppler, const UnitGuess& units) {
   correction.point_scale = units.points;
   correction.doppler_scale = units.doppler;
   return datasets::corrected(std::move(scan), correction);
+}
+
+RawScan prepared(RawScan scan, const ColumnScores& scores, const UnitGuess& units) {
+  return prepared(scores.spherical ? from_spherical(std::move(scan), *scores.spherical) : std::move(scan),
+                  scores.doppler, units);
 }
 
 }  // namespace dynamic_icp::diagnosis

@@ -18,6 +18,7 @@ constexpr double kFlat = 0.35;
 constexpr double kLooksAhead = 0.4;  // length of the mean line of sight
 constexpr double kAlongAxis = 0.9;   // cosine
 constexpr double kUnexplained_mps = 0.25;
+constexpr double kMuchBetter = 0.6;  // residual with spherical coordinates over that with the columns as they are
 
 constexpr double kPointsForExtent = 20.0;  // a scan; the extent of fewer says nothing
 
@@ -72,6 +73,21 @@ bool has_named_columns(const datasets::Dataset& dataset) {
   return std::ranges::find(kFormats, dataset.format()) != std::end(kFormats);
 }
 
+std::string_view unit_of(const SphericalColumns& spherical) {
+  return spherical.coordinates == datasets::Coordinates::kSphericalDegrees ? "degrees" : "radians";
+}
+
+/// Which of the columns as read are azimuth, elevation, range and Doppler.
+std::array<int, 4> as_read(const SphericalColumns& spherical, const Evidence& evidence) {
+  const std::array<int, 4> applied = evidence.applied.columns.value_or(datasets::Correction::kInOrder);
+  const std::array<int, 3>& found = spherical.columns;
+  std::array<int, 4> read = {found[0], found[1], found[2], 3};
+  for (int& column : read) {
+    column = applied.at(static_cast<std::size_t>(column));
+  }
+  return read;
+}
+
 /// Which of the columns as read are x, y, z and Doppler. Without an axis ahead x and y keep their order.
 std::array<int, 4> order_as_read(const Evidence& evidence, int up, std::optional<int> forward) {
   const int ahead = forward.value_or(up == 0 ? 1 : 0);
@@ -96,6 +112,7 @@ Finding columns(const Evidence& evidence) {
                       {"residual_of_column_2_mps", scores.residual[1]},
                       {"residual_of_column_3_mps", scores.residual[2]},
                       {"residual_of_column_4_mps", scores.residual[3]},
+                      {"residual_of_spherical_mps", scores.likely_spherical ? scores.likely_spherical->residual : 0.0},
                       {"spread_x", view.spread.x()},
                       {"spread_y", view.spread.y()},
                       {"spread_z", view.spread.z()}};
@@ -103,6 +120,14 @@ Finding columns(const Evidence& evidence) {
   if (evidence.looks.empty()) {
     finding.verdict = Verdict::kCannotTell;
     finding.sentence = "there are no scans";
+  } else if (scores.spherical) {
+    finding.verdict = Verdict::kWrong;
+    finding.sentence = fmt::format(
+        "the points are spherical coordinates: with azimuth and elevation in {} and range a velocity explains the "
+        "Doppler to {:.2f} m/s, with x, y, z only to {:.2f}",
+        unit_of(*scores.spherical), scores.spherical->residual, scores.residual[3]);
+    finding.fix.columns = as_read(*scores.spherical, evidence);
+    finding.fix.coordinates = scores.spherical->coordinates;
   } else if (scores.doppler != 3) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format(
@@ -121,6 +146,15 @@ Finding columns(const Evidence& evidence) {
         "well; if so, state the order of the columns",
         scores.likely_doppler + 1, scores.residual.at(static_cast<std::size_t>(scores.likely_doppler)),
         scores.residual[3]);
+  } else if (const auto& spherical = scores.likely_spherical;
+             up != 2 && spherical && spherical->residual < kMuchBetter * scores.residual[3]) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence = fmt::format(
+        "the points may be spherical coordinates: with azimuth and elevation in {} and range a velocity explains the "
+        "Doppler to {:.2f} m/s, with x, y, z to {:.2f}; or another column than the third is up and down",
+        unit_of(*spherical), spherical->residual, scores.residual[3]);
+    finding.fix.columns = as_read(*spherical, evidence);
+    finding.fix.coordinates = spherical->coordinates;
   } else if (up != 2) {
     finding.verdict = Verdict::kWrong;
     finding.sentence =

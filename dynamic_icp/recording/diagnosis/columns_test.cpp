@@ -1,5 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
@@ -25,6 +27,45 @@ TEST(Columns, ColumnsInAnotherOrderAreFound) {
   EXPECT_EQ(diagnosis_of(upright).of(Question::kColumns).fix, (Correction{.columns = std::array{0, 2, 1, 3}}));
 }
 
+/// x, y, z as angles per radian and range, these at the places that are named.
+void to_spherical(RawScan& raw, double per_radian, const std::array<Eigen::Index, 3>& places) {
+  for (Vector3d& point : raw.points) {
+    const Vector3d angles_and_range(per_radian * std::atan2(point.y(), point.x()),
+                                    per_radian * std::atan2(point.z(), point.head<2>().norm()), point.norm());
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      point[places.at(static_cast<std::size_t>(k))] = angles_and_range[k];
+    }
+  }
+}
+
+TEST(Columns, SphericalCoordinatesAreFound) {
+  const double per_degree = 180.0 / std::acos(-1.0);
+  struct Case {
+    double per_radian;
+    std::array<Eigen::Index, 3> places;
+    Correction fix;
+  };
+  const Case cases[] = {
+      {per_degree,
+       {0, 1, 2},
+       {.columns = std::array{0, 1, 2, 3}, .coordinates = datasets::Coordinates::kSphericalDegrees}},
+      {per_degree,
+       {1, 2, 0},
+       {.columns = std::array{1, 2, 0, 3}, .coordinates = datasets::Coordinates::kSphericalDegrees}},
+      {1.0, {0, 1, 2}, {.columns = std::array{0, 1, 2, 3}, .coordinates = datasets::Coordinates::kSphericalRadians}},
+      {1.0, {2, 1, 0}, {.columns = std::array{2, 1, 0, 3}, .coordinates = datasets::Coordinates::kSphericalRadians}}};
+  for (const Case& one : cases) {
+    Recording recording;
+    recording.perturb = [&](RawScan& raw, const Vector3d&) { to_spherical(raw, one.per_radian, one.places); };
+    const Diagnosis diagnosis = diagnosis_of(recording);
+    EXPECT_EQ(diagnosis.of(Question::kColumns).verdict, Verdict::kWrong) << diagnosis.of(Question::kColumns).sentence;
+    EXPECT_EQ(diagnosis.of(Question::kColumns).fix, one.fix);
+    for (const Question question : {Question::kDopplerSign, Question::kPointUnits, Question::kDopplerUnits}) {
+      EXPECT_EQ(diagnosis.of(question).verdict, Verdict::kOk) << diagnosis.of(question).sentence;
+    }
+  }
+}
+
 TEST(Columns, OfAFlatSensorOnItsSideTheOtherAxisIsUp) {
   Evidence evidence;
   evidence.looks.resize(1);
@@ -38,6 +79,21 @@ TEST(Columns, OfAFlatSensorOnItsSideTheOtherAxisIsUp) {
   evidence.looks[0].points = 1000;
   evidence.looks[0].look_spread = {0.6, 0.7, 0.1};
   EXPECT_EQ(columns(evidence).verdict, Verdict::kOk);
+}
+
+TEST(Columns, WhatMayBeSphericalIsNotCalledASensorOnItsSide) {
+  Evidence evidence;
+  evidence.looks.resize(1);
+  evidence.looks[0].points = 1000;
+  evidence.looks[0].look_spread = {0.7, 0.1, 0.6};
+  evidence.columns.residual[3] = 1.0;
+  evidence.columns.likely_spherical = SphericalColumns{.columns = {1, 2, 0}, .residual = 0.5};
+  EXPECT_EQ(columns(evidence).verdict, Verdict::kSuspicious);
+  EXPECT_EQ(columns(evidence).fix,
+            (Correction{.columns = std::array{1, 2, 0, 3}, .coordinates = datasets::Coordinates::kSphericalDegrees}));
+  evidence.columns.likely_spherical->residual = 0.9;
+  EXPECT_EQ(columns(evidence).verdict, Verdict::kWrong) << "spherical coordinates explain no more";
+  EXPECT_EQ(columns(evidence).fix.columns, (std::array{0, 2, 1, 3}));
 }
 
 TEST(Columns, AFixIsOfTheColumnsAsStoredWhateverWasAppliedToThem) {

@@ -191,8 +191,7 @@ std::vector<std::size_t> stretch_begins(const Evidence& evidence, std::size_t st
 
 Seen see(const Evidence& evidence, std::size_t index, const Workers& workers) {
   Seen seen;
-  seen.look =
-      look_at(prepared(evidence.dataset->scan(index), evidence.columns.doppler, evidence.units), workers, &seen.still);
+  seen.look = look_at(prepared(evidence.dataset->scan(index), evidence.columns, evidence.units), workers, &seen.still);
   seen.look.stamp = evidence.dataset->stamp(index);
   return seen;
 }
@@ -210,7 +209,7 @@ void learn_columns(Evidence& evidence, const Workers& workers) {
   }
   evidence.columns = score_columns(few, workers);
   for (RawScan& scan : few) {
-    scan = prepared(std::move(scan), evidence.columns.doppler, {});
+    scan = prepared(std::move(scan), evidence.columns, {});
   }
   evidence.units = guess_units(few);
 }
@@ -221,7 +220,9 @@ const Comparison* Evidence::reference() const {
   return matching.tells() ? &matching : truth.tells() ? &truth : nullptr;
 }
 
-bool Evidence::is_in_metres() const { return columns.doppler == 3 && units.points == 1.0 && units.doppler == 1.0; }
+bool Evidence::is_in_metres() const {
+  return columns.doppler == 3 && !columns.spherical && units.points == 1.0 && units.doppler == 1.0;
+}
 
 double Evidence::median_of(double ScanLook::*value) const {
   std::vector<double> values;
