@@ -1,10 +1,6 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
-// Bags of other writers, as a user meets them: a simulated drive through every container, topics that info lists, a
-// rig.
-#include <fstream>
-#include <sstream>
-
+// What `info` and `run` say of bags: their topics, and the options that a message names.
 #include <nlohmann/json.hpp>
 
 #include "testing/bags_by_hand.hpp"
@@ -16,68 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-bool is_there(const std::string& command) { return run_shell(command).status == 0; }
-
-class Bags : public ProgramTest {
- protected:
-  [[nodiscard]] static fs::path scripts() { return source_folder() / "tests" / "interop"; }
-
-  /// A drive in the layout dicp of today: simulated time begins at 0, which is no time that a recorder writes.
-  [[nodiscard]] fs::path drive() const {
-    const fs::path path = folder_ / "drive";
-    const Outcome made = run_program(
-        "simulate city --quiet --frames 5 --set lidar.columns=300 --set lidar.rows=40 --output " + path.string());
-    EXPECT_EQ(made.status, 0) << made.text;
-    std::istringstream lines(read_file(path / "ref_poses.txt"));
-    std::string shifted;
-    for (std::string line; std::getline(lines, line);) {
-      EXPECT_TRUE(line.starts_with("0.")) << line;
-      shifted += "170000000" + line + "\n";
-    }
-    write_file(path / "ref_poses.txt", shifted);
-    return path;
-  }
-
-  [[nodiscard]] std::string trajectory(const fs::path& input, const std::string& format) const {
-    const fs::path out = folder_ / (input.filename().string() + "-run");
-    const Outcome ran = run_program("run --quiet " + input.string() + " --output " + out.string());
-    EXPECT_EQ(ran.status, 0) << ran.text;
-    EXPECT_EQ(json::parse(run_program("info --json " + input.string()).text)["format"], format);
-    return read_file(out / "trajectory.tum");
-  }
-
-  void expect_same(const fs::path& from, const std::vector<std::pair<std::string, std::string>>& bags) const {
-    const std::string expected = trajectory(from, "dicp");
-    ASSERT_GT(expected.size(), 100U);
-    for (const auto& [name, format] : bags) {
-      EXPECT_EQ(trajectory(folder_ / "out" / name, format), expected) << name;
-    }
-  }
-};
-
-TEST_F(Bags, OfPythonGiveTheTrajectoryOfThePlainLayoutBitForBit) {
-  if (!is_there("/usr/bin/python3 -c 'import rosbag, sqlite3'")) {
-    GTEST_SKIP() << "no rosbag: python3-rosbag of Debian";
-  }
-  const fs::path from = drive();
-  fs::create_directories(folder_ / "out");
-  const Outcome wrote = run_shell("/usr/bin/python3 '" + (scripts() / "write_drive.py").string() + "' '" +
-                                  from.string() + "' '" + (folder_ / "out").string() + "' 2>&1");
-  ASSERT_EQ(wrote.status, 0) << wrote.text;
-  expect_same(from, {{"drive.bag", "rosbag"}, {"drive-db3", "rosbag2"}});
-}
-
-TEST_F(Bags, OfMcapsAuthorsGiveTheTrajectoryOfThePlainLayoutBitForBit) {
-  if (!fs::exists(scripts() / "node_modules/@mcap/core") || !is_there("node --version")) {
-    GTEST_SKIP() << "no @mcap/core: scripts/install_viewer.sh tests";
-  }
-  const fs::path from = drive();
-  fs::create_directories(folder_ / "out");
-  const Outcome wrote = run_shell("node '" + (scripts() / "write_drive.mjs").string() + "' '" + from.string() + "' '" +
-                                  (folder_ / "out").string() + "' 2>&1");
-  ASSERT_EQ(wrote.status, 0) << wrote.text;
-  expect_same(from, {{"drive-ros2.mcap", "mcap"}, {"drive-protobuf.mcap", "mcap"}, {"drive-json.mcap", "mcap"}});
-}
+class Bags : public ProgramTest {};
 
 /// A ROS 1 bag of a few clouds and odometry; topics by name, whose points have these fields.
 void write_bag(const fs::path& path, const std::vector<std::pair<std::string, std::vector<std::string>>>& clouds) {

@@ -1,0 +1,90 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+// Numbers that are read, but are not what they are taken for.
+#include <cmath>
+#include <numbers>
+#include <string>
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <nlohmann/json.hpp>
+
+#include "tests/forms.hpp"
+
+namespace dynamic_icp::tests::forms {
+namespace {
+
+TEST_F(OpenDoor, WrongNumbersAreMendedByTheAdvice) {
+  const auto changed = [](double point, double doppler) {
+    return [=](const RawScan& scan, std::size_t i) -> Row {
+      const Eigen::Vector3d p = point * scan.points[i];
+      return {p.x(), p.y(), p.z(), doppler * scan.doppler[i]};
+    };
+  };
+  const auto spherical = [](double per_radian) {
+    return [=](const RawScan& scan, std::size_t i) -> Row {
+      const Eigen::Vector3d& p = scan.points[i];
+      return {per_radian * std::atan2(p.y(), p.x()), per_radian * std::atan2(p.z(), p.head<2>().norm()), p.norm(),
+              scan.doppler[i]};
+    };
+  };
+  const auto range_first = [&](const RawScan& scan, std::size_t i) -> Row {
+    const Row row = spherical(180.0 / std::numbers::pi)(scan, i);
+    return {row[2], row[0], row[1], row[3]};
+  };
+  struct Wrong {
+    const char* name;
+    RowOf row_of;
+    const char* advice;
+  };
+  const Wrong all[] = {
+      {"plain", xyzd, nullptr},
+      {"kmh", changed(1.0, 3.6), "--doppler-scale 0.27"},
+      {"mm", changed(1000.0, 1.0), "--point-scale 0.001"},
+      {"degrees", spherical(180.0 / std::numbers::pi), "--columns azimuth_deg,elevation_deg,range,doppler"},
+      {"radians", spherical(1.0), "--columns azimuth_rad,elevation_rad,range,doppler"},
+      {"range first", range_first, "--columns range,azimuth_deg,elevation_deg,doppler"},
+      {"towards", changed(1.0, -1.0), "--doppler-sign towards"}};
+  for (const Wrong& wrong : all) {
+    SCOPED_TRACE(wrong.name);
+    const fs::path input = folder_ / wrong.name;
+    counted("point_clouds/{:05d}.bin", records<float>(wrong.row_of))(drive(), input);
+    write(input / "ref_poses.txt", drive().poses);
+    std::string command = fmt::format("run --quiet '{}' --output '{}'", input.string(), (input / "out").string());
+    if (wrong.advice != nullptr) {
+      const Outcome refused = run_program(command);
+      EXPECT_EQ(refused.status, kFailed) << refused.text;
+      EXPECT_NE(refused.text.find(wrong.advice), std::string::npos) << refused.text;
+      EXPECT_FALSE(fs::exists(input / "out"));
+      command += fmt::format(" {}", fmt::join(options_in(refused.text), " "));
+    }
+    const Outcome mended = run_program(command);
+    ASSERT_EQ(mended.status, kDone) << mended.text;
+    EXPECT_LT(nlohmann::json::parse(read_file(input / "out" / "summary.json")).at("rte_rmse_m").get<double>(), 0.05);
+  }
+}
+
+TEST_F(OpenDoor, PointsWithoutTimesAreSpokenOf) {
+  const fs::path input = counted("point_clouds/{:05d}.bin", records<float>(xyzd))(drive(), folder_ / "plain");
+  write(input / "ref_poses.txt", drive().poses);
+  const Outcome outcome = run_program(fmt::format("run {} --output {}", input.string(), (folder_ / "out").string()));
+  ASSERT_EQ(outcome.status, kDone) << outcome.text;
+  EXPECT_NE(outcome.text.find("the points have no times"), std::string::npos) << outcome.text;
+}
+
+TEST_F(OpenDoor, ColumnsThatChangedPlacesAreSaidOfTheWholeRecord) {
+  const auto doppler_first = [](const RawScan& scan, std::size_t i) -> Row {
+    const Eigen::Vector3d& p = scan.points[i];
+    return {scan.doppler[i], p.y(), p.z(), intensity(i), p.x()};
+  };
+  const fs::path input = counted("{}.bin", records<float>(doppler_first))(drive(), folder_ / "scans");
+  const Outcome info = run_program("info " + input.string() + " --columns x,y,z,_,doppler");
+  ASSERT_EQ(info.status, kDone) << info.text;
+  ASSERT_NE(info.text.find("fix with --columns doppler,y,z,_,x"), std::string::npos) << info.text;
+  datasets::InputSettings settings;
+  datasets::set(settings, "columns", "doppler,y,z,_,x");
+  expect_same(*datasets::open_input(input, settings), drive().scans.size());
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tests::forms
