@@ -1,7 +1,7 @@
 // What run --live sends, received by @foxglove/ws-protocol over the sockets of `ws`, against the MCAP file of the same
 // run. Status 77 (skipped) where the packages are missing. DYNAMIC_ICP_PROGRAM names the program.
 import assert from 'node:assert/strict';
-import { execFileSync, spawn } from 'node:child_process';
+import { execFileSync, spawn, spawnSync } from 'node:child_process';
 import { once } from 'node:events';
 import fs from 'node:fs';
 import { createRequire } from 'node:module';
@@ -22,8 +22,8 @@ const folder = fs.mkdtempSync(path.join(os.tmpdir(), 'live-'));
 const children = [];
 
 /// A run with a live view at a free port; the address once it is told.
-async function startRun(...words) {
-  const child = spawn(program, ['run', 'drive', '--live=0', '--threads', '1', ...words], { cwd: folder, stdio: ['ignore', 'ignore', 'pipe'] });
+async function startRunOf(input, ...words) {
+  const child = spawn(program, ['run', input, '--live=0', '--threads', '1', ...words], { cwd: folder, stdio: ['ignore', 'ignore', 'pipe'] });
   children.push(child);
   const exited = once(child, 'exit');
   for await (const line of createInterface({ input: child.stderr })) {
@@ -32,6 +32,8 @@ async function startRun(...words) {
   }
   throw new Error('no address was told');
 }
+
+const startRun = (...words) => startRunOf('drive', ...words);
 
 /// All that a client is sent until the server ends.
 function receive(authority) {
@@ -111,6 +113,47 @@ async function clientsThatAreGone() {
   }
 }
 
+/// Clients that are processes of their own and are killed while they are sent something.
+async function clientsThatAreKilled() {
+  const { exited, authority } = await startRun('--output', 'killed');
+  const client = `
+    const { WebSocket } = require(${JSON.stringify(require.resolve('ws'))});
+    const socket = new WebSocket('ws://${authority}/', ['foxglove.websocket.v1']);
+    const subscriptions = [0, 1, 2, 3, 4].map((id) => ({ id, channelId: id }));
+    socket.on('open', () => socket.send(JSON.stringify({ op: 'subscribe', subscriptions })));
+    socket.on('message', (data, isBinary) => isBinary && console.log('got'));`;
+  const clients = Array.from({ length: 4 }, () => spawn(process.execPath, ['-e', client], { stdio: ['ignore', 'pipe', 'inherit'] }));
+  children.push(...clients);
+  await Promise.all(clients.map(async (one) => {
+    await Promise.race([once(one.stdout, 'data'), once(one, 'exit')]);
+    one.kill('SIGKILL');
+  }));
+  assert.equal((await exited)[0], 0);
+  assert.equal(fs.readFileSync(path.join(folder, 'killed', 'trajectory.tum'), 'utf8'), fs.readFileSync(path.join(folder, 'run', 'trajectory.tum'), 'utf8'));
+}
+
+/// A port that another run has, and a run that is killed: its clients notice, its port is free again, nothing is half there.
+async function portsAndKills() {
+  fs.mkdirSync(path.join(folder, 'waits', 'point_clouds'), { recursive: true });
+  for (const name of fs.readdirSync(path.join(folder, 'drive', 'point_clouds'))) {
+    fs.copyFileSync(path.join(folder, 'drive', 'point_clouds', name), path.join(folder, 'waits', 'point_clouds', name));
+  }
+  const { child, exited, authority } = await startRunOf('waits', '--follow', '--output', 'never');
+  const port = authority.split(':')[1];
+  const second = spawnSync(program, ['run', 'drive', `--live=${port}`, '--output', 'second'], { cwd: folder, encoding: 'utf8' });
+  assert.equal(second.status, 1, second.stderr);
+  assert.match(second.stderr, new RegExp(port));
+  assert.ok(!fs.existsSync(path.join(folder, 'second')));
+  const client = receive(authority);
+  child.kill('SIGKILL');
+  await client.done;
+  await exited;
+  assert.ok(!fs.existsSync(path.join(folder, 'never')));
+  const again = spawnSync(program, ['run', 'drive', `--live=${port}`, '--output', 'again', '--max-frames', '2'], { cwd: folder, encoding: 'utf8' });
+  assert.equal(again.status, 0, again.stderr);
+  assert.deepEqual(fs.readdirSync(folder).filter((name) => name.includes('partial')), []);
+}
+
 /// Other pages, other hosts.
 async function whoMayNot() {
   const { child, authority } = await startRun('--output', 'third');
@@ -129,6 +172,8 @@ try {
   execFileSync(program, ['simulate', 'city', '--output', 'drive', '--frames', '12', '--seed', '4', '--quiet', '--set', 'lidar.columns=500'], { cwd: folder });
   await sameAsTheFile();
   await clientsThatAreGone();
+  await clientsThatAreKilled();
+  await portsAndKills();
   await whoMayNot();
 } finally {
   children.forEach((child) => child.kill('SIGKILL'));
