@@ -50,6 +50,7 @@ class LiveServer::Server {
     accept_next();
     thread_ = std::thread([this] {
       lower_own_priority();
+      name_own_thread("live server");
       io_.run();
     });
   }

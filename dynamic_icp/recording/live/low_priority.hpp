@@ -8,4 +8,8 @@ namespace dynamic_icp::live {
 /// as it is.
 void lower_own_priority();
 
+/// Names the calling thread for those who look at what a process does (`top -H`, scripts/measure_live.mjs). At most 15
+/// bytes.
+void name_own_thread(const char* name);
+
 }  // namespace dynamic_icp::live

@@ -74,6 +74,7 @@ std::size_t LiveView::end(const std::string& text) {
 
 void LiveView::make_messages() {
   live::lower_own_priority();
+  live::name_own_thread("live messages");
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return is_over_ || !waiting_.empty(); });
