@@ -236,6 +236,46 @@ TEST_F(FollowedBagTest, GarbageEndsItAfterTheScansBeforeAndTheByteIsSaid) {
   EXPECT_NE(follow_stream("").fault.find("a stream: "), std::string::npos);
 }
 
+TEST_F(FollowedBagTest, DamageAnywhereEndsItWithScansThatAreRight) {
+  const std::string content = by_hand::mcap_file(channels_of_drive(), drive(), layout_of("zstd"));
+  const std::vector<RawScan> right = follow_stream(content).scans;
+  for (std::size_t at = 0; at < content.size(); at += 1 + content.size() / 60) {
+    std::string spoiled = content;
+    spoiled[at] = static_cast<char>(spoiled[at] ^ 0x41);
+    const Followed followed = follow_stream(spoiled);
+    ASSERT_LE(followed.scans.size(), kDriveScans) << at;
+    for (std::size_t i = 0; i < followed.scans.size(); ++i) {
+      expect_same(followed.scans[i], right[i]);
+    }
+    EXPECT_TRUE(followed.scans.size() == kDriveScans || !followed.fault.empty() || !followed.notes.empty()) << at;
+  }
+}
+
+TEST_F(FollowedBagTest, ASenderThatComesLaterIsTakenForTheTopicItHas) {
+  std::string content = by_hand::mcap_file(channels_of_drive(), drive(), layout_of("unchunked"));
+  content.resize(content.find("\x0F" + by_hand::number(std::uint64_t{4})));
+  const Channel again = {9, "/lidar", "sensor_msgs/msg/PointCloud2", "", "cdr"};
+  const Channel other = {12, "/late", "sensor_msgs/msg/PointCloud2", "", "cdr"};
+  for (const Channel& channel : {again, other}) {
+    content += by_hand::mcap_schema(channel) + by_hand::mcap_channel(channel);
+  }
+  for (int i = 0; i < 3; ++i) {
+    Message message = cloud_of(1, 2.0 + 0.1 * i, i);
+    message.channel = 9;
+    content += by_hand::mcap_message(message);
+    message.channel = 12;
+    content += by_hand::mcap_message(message);
+  }
+  const Followed followed = follow_stream(content);
+  EXPECT_EQ(followed.fault, "");
+  EXPECT_EQ(followed.scans.size(), kDriveScans + 3);
+  InputSettings settings;
+  settings.open.topics = {"/lidar"};
+  expect_as_finished(followed.scans, content, settings);
+  ASSERT_EQ(followed.notes.size(), 1U);
+  EXPECT_NE(followed.notes[0].find("before its end mark"), std::string::npos) << followed.notes[0];
+}
+
 TEST_F(FollowedBagTest, AStampThatGoesBackCostsOneScanAndAClockThatDoesEndsIt) {
   std::vector<Message> messages = drive();
   for (Message& message : messages) {
