@@ -23,7 +23,7 @@ from ._trajectory import Trajectory, read_trajectory
 
 
 class Run(HtmlTable):
-    """The results of `run`, or of the command `run`: a folder of files (README.md, Outputs).
+    """The results of `run`, or of the command `run`: a folder of files (docs/outputs.md).
 
     Parameters
     ----------
