@@ -26,6 +26,11 @@ export function element(tag, properties = {}, ...children) {
   return made;
 }
 
+/** Sets what differs: what is set again as it was makes the browser style it again. */
+export function put(holder, key, value) {
+  if (holder[key] !== value) holder[key] = value;
+}
+
 /**
  * A button that shows an on and an off state; the caller sets `aria-pressed`.
  * @param {string} text

@@ -11,6 +11,7 @@ try {
   const viewport = { width: Number(width), height: Number(height) };
   const { page } = await openPage(browser, `${pathToFileURL(resolve(file)).href}#${fragment}`, { viewport });
   await page.waitForSelector('.scene-holder[data-frame]');
+  await page.waitForFunction(() => !document.querySelector('[aria-busy]')); // what is made after the first picture
   await page.waitForTimeout(1500); // all points are drawn once nothing moves
   await page.screenshot({ path: out });
 } finally {

@@ -2,7 +2,7 @@
 import { UNKNOWN } from '../bytes.js';
 import { colouring, nextLimit } from '../colour/colourings.js';
 import { gradient, markColours } from '../colour/maps.js';
-import { button, element } from '../dom.js';
+import { button, element, put } from '../dom.js';
 import { shortNumber } from '../format.js';
 import { MOST_CROSSES } from '../scene/predicted_points.js';
 import { runAt } from '../session.js';
@@ -82,7 +82,7 @@ export function createPointReading(store) {
       store.set({ picked: null }); // it was a point of another scan
       return;
     }
-    reading.hidden = !picked;
+    put(reading, 'hidden', !picked);
     if (!picked) return;
     const kind = picked.object !== null ? `object ${picked.object}` : ['not used', 'static', 'moving'][picked.label] ?? 'moving';
     const rows = [

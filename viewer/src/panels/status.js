@@ -1,11 +1,8 @@
 // Over the view: which frame this is, how fast it goes, and what is wrong with it.
-import { element } from '../dom.js';
+import { element, put } from '../dom.js';
 import { counted, grouped, shortNumber } from '../format.js';
 import { speedOf } from '../runs.js';
 import { runAt } from '../session.js';
-
-/** Unchanged texts cost no drawing. */
-const setText = (holder, text) => { if (holder.textContent !== text) holder.textContent = text; };
 
 function scanNote(run, shown) {
   if (shown.trouble) return shown.trouble;
@@ -39,19 +36,19 @@ export function createStatus(report, store) {
     ].filter(Boolean);
     facts.forEach(([name, value], k) => {
       entries[k] ??= line.insertBefore(element('span', {}, element('small'), element('b')), badge);
-      setText(entries[k].firstChild, name);
-      setText(entries[k].lastChild, value);
+      put(entries[k].firstChild, 'textContent', name);
+      put(entries[k].lastChild, 'textContent', value);
     });
     while (entries.length > facts.length) entries.pop().remove();
     const look = `badge ${['ok', 'degenerate', 'lost', 'first'].includes(status) ? status : 'other'}`;
-    if (badge.className !== look) badge.className = look;
-    setText(badge, status);
+    put(badge, 'className', look);
+    put(badge, 'textContent', status);
     const directions = frames.lost_directions[frame] ?? [];
     const reasons = [frames.reason[frame], directions.length ? `unknown: ${directions.join(', ')}` : ''].filter(Boolean);
-    setText(trouble, reasons.join(' · '));
-    trouble.hidden = reasons.length === 0;
-    setText(note, state.shown ? scanNote(run, state.shown) : '');
-    note.hidden = note.textContent === '';
+    put(trouble, 'textContent', reasons.join(' · '));
+    put(trouble, 'hidden', reasons.length === 0);
+    put(note, 'textContent', state.shown ? scanNote(run, state.shown) : '');
+    put(note, 'hidden', note.textContent === '');
   });
   return element('div', { class: 'status' }, line, trouble, note);
 }

@@ -1,5 +1,5 @@
 // One plot: a canvas that is drawn when its data, size or colours change, and a cursor over it that moves by itself.
-import { element } from '../dom.js';
+import { element, put } from '../dom.js';
 import { shortNumber } from '../format.js';
 import { drawnByProcessor } from '../processor.js';
 import { closest } from '../runs.js';
@@ -76,10 +76,10 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
   let hovered = null;
 
   function describeAt(value) {
-    at.textContent = hovered === null ? '' : `${plot.xName.split(' (')[0]} ${shortNumber(value, 4)}`;
+    put(at, 'textContent', hovered === null ? '' : `${plot.xName.split(' (')[0]} ${shortNumber(value, 4)}`);
     for (const { series, value: place } of values) {
       const k = value === null || series.xs.length === 0 ? -1 : closest(series.xs, value);
-      place.textContent = k < 0 ? '' : shortNumber(series.ys[k]);
+      put(place, 'textContent', k < 0 ? '' : shortNumber(series.ys[k]));
     }
   }
 
@@ -221,9 +221,9 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
 
   function placeCursors() {
     if (!x) return;
-    cursor.hidden = now === null || now < x.low || now > x.high;
+    put(cursor, 'hidden', now === null || now < x.low || now > x.high);
     if (!cursor.hidden) cursor.style.transform = `translateX(${x.place(now)}px)`;
-    hoverLine.hidden = hovered === null;
+    put(hoverLine, 'hidden', hovered === null);
     if (hovered !== null) hoverLine.style.transform = `translateX(${x.place(hovered)}px)`;
   }
 

@@ -1,7 +1,7 @@
 // Texts that stand at places of the scene, as elements over the picture. Where they would cover each other, those that
 // matter more stand and the others are hidden.
 import { Vector3 } from 'three';
-import { element } from '../dom.js';
+import { element, put } from '../dom.js';
 
 const GAP = 2; // pixels between texts
 
@@ -23,9 +23,6 @@ export function placeBoxes(boxes) {
   }
   return stands;
 }
-
-/** Sets what differs: what is set again as it was makes the browser look at it again. */
-const put = (holder, key, value) => { if (holder[key] !== value) holder[key] = value; };
 
 const MOST_SIZES = 4000; // of texts, remembered
 

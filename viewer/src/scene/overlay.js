@@ -1,7 +1,7 @@
 // What is drawn flat over the scene: the axes of the view from above in metres, the ruler, the ring about a picked point,
 // and the cross of axes in the corner.
 import { Vector3 } from 'three';
-import { element } from '../dom.js';
+import { element, put } from '../dom.js';
 import { shortNumber } from '../format.js';
 import { createScale, tickText } from '../plots/scale.js';
 import { cssColour } from '../theme.js';
@@ -149,7 +149,7 @@ export function createOverlay() {
     draw({ axes, ruler, picked }, camera, width, height) {
       camera.updateMatrixWorld();
       drawGizmo(camera);
-      canvas.hidden = !axes && ruler.length === 0 && !picked;
+      put(canvas, 'hidden', !axes && ruler.length === 0 && !picked);
       if (canvas.hidden) return;
       const pen = penOf(canvas, width, height);
       const pixelOf = (place) => {
