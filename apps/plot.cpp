@@ -42,6 +42,9 @@ struct PlotOptions {
   std::string theme = "light";
   std::string format = "svg";
   double scale = 2.0;
+  bool paper = false;
+
+  [[nodiscard]] figures::Medium medium() const { return paper ? figures::Medium::kPaper : figures::Medium::kScreen; }
 };
 
 drawing::Theme theme_of(const std::string& name) {
@@ -57,7 +60,8 @@ struct Pictures {
   std::vector<std::string> notes;
 };
 
-drawing::Svg steps_of_pair(const runs::RunFiles& run, std::int64_t source, const drawing::Theme& theme) {
+drawing::Svg steps_of_pair(const runs::RunFiles& run, std::int64_t source, const drawing::Theme& theme,
+                           figures::Medium medium) {
   if (source < 0) {
     throw UsageError(fmt::format("--pair is {}, expected 0 or more", source));
   }
@@ -66,8 +70,12 @@ drawing::Svg steps_of_pair(const runs::RunFiles& run, std::int64_t source, const
   if (recording == nullptr) {
     throw DataError(notes.back());
   }
-  return figures::step_figure(run, figures::read_pair(run, *recording, static_cast<std::size_t>(source), Workers()),
-                              theme);
+  drawing::Svg steps = figures::step_figure(
+      run, figures::read_pair(run, *recording, static_cast<std::size_t>(source), Workers()), theme, medium);
+  if (medium == figures::Medium::kPaper) {
+    steps.set_px_per_mm(figures::kPaperPxPerMm);
+  }
+  return steps;
 }
 
 Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme) {
@@ -81,9 +89,9 @@ Pictures pictures_of_run(const PlotOptions& options, const drawing::Theme& theme
   const std::optional<std::size_t> frame =
       options.frame ? std::optional(static_cast<std::size_t>(*options.frame)) : std::nullopt;
   const figures::RunContext context = figures::read_context(run, frame);
-  Pictures pictures{figures::draw_figures(run, context, theme), context.notes};
+  Pictures pictures{figures::draw_figures(run, context, theme, options.medium()), context.notes};
   if (options.pair) {
-    pictures.figures.push_back({"steps", steps_of_pair(run, *options.pair, theme)});
+    pictures.figures.push_back({"steps", steps_of_pair(run, *options.pair, theme, options.medium())});
   }
   if (options.worst_objects > 0) {
     auto worst = figures::draw_worst_objects(run, static_cast<std::size_t>(options.worst_objects), theme);
@@ -124,7 +132,7 @@ Pictures pictures_of_runs(const PlotOptions& options, const drawing::Theme& them
     std::optional<figures::RunTruth> truth = figures::read_truth(runs[k], recording.get(), notes);
     compared.push_back({names[k], std::move(runs[k]), std::move(truth)});
   }
-  pictures.figures = figures::draw_comparison(compared, theme);
+  pictures.figures = figures::draw_comparison(compared, theme, options.medium());
   return pictures;
 }
 
@@ -193,6 +201,10 @@ void add_plot_command(CLI::App& app, std::function<int()>& selected) {
   add_option(*command, "--scale", options->scale, "F",
              fmt::format("Pixels of a PNG file for each px of the SVG one, {} to {} (default {})", kMinScale, kMaxScale,
                          options->scale));
+  command->add_flag(
+      "--paper", options->paper,
+      "Sizes for a paper of two columns: 88 mm wide (paths and plots over time) or 181 mm (scans), letters "
+      "of 7 to 9 pt, no titles");
   command->callback([options, &selected] { selected = [options] { return plot(*options); }; });
 }
 

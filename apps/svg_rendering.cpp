@@ -28,6 +28,7 @@ cairo_status_t append(void* bytes, const unsigned char* data, unsigned int lengt
 }
 
 constexpr double kPointsPerPx = 0.75;
+constexpr double kPxPerInch = 96.0;
 constexpr const char* kNoDate = "2000-01-01T00:00:00Z";  // the time of day is no part of a picture
 
 /// A document and its size in px.
@@ -42,6 +43,9 @@ Picture read_svg(const std::string& document) {
   Picture picture;
   picture.handle.reset(
       rsvg_handle_new_from_data(reinterpret_cast<const guint8*>(document.data()), document.size(), &error));
+  if (picture.handle != nullptr) {
+    rsvg_handle_set_dpi(picture.handle.get(), kPxPerInch);  // of those who state their size in mm
+  }
   if (picture.handle == nullptr ||
       rsvg_handle_get_intrinsic_size_in_pixels(picture.handle.get(), &picture.width, &picture.height) == FALSE) {
     fail(error != nullptr ? error->message : "it has no size");

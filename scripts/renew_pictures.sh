@@ -12,7 +12,7 @@ echo "== Scenes"
 scripts/draw_scenes.sh
 
 echo "== Figures of the paper"
-scripts/paper_figures.sh "$work/paper" >/dev/null
+scripts/paper_figures.sh "$work/paper" svg screen >/dev/null
 cp "$work/paper/steps.svg" docs/steps.svg
 cp "$work/paper/trajectory.svg" docs/trajectories.svg
 

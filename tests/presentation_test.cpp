@@ -88,6 +88,11 @@ TEST_F(Presentation, PlotsAreMadeFromARun) {
     const std::string first = pdf("pdf");
     EXPECT_EQ(first.substr(0, 5), "%PDF-");
     EXPECT_TRUE(first == pdf("pdf-again")) << "the same picture, the same bytes";
+    run_program("plot " + out + " --paper --format pdf --output " + (folder_ / "paper").string());
+    const std::string paper = read_file(folder_ / "paper" / "trajectory.pdf");
+    const std::size_t box = paper.find("/MediaBox [ 0 0 ");
+    ASSERT_NE(box, std::string::npos);
+    EXPECT_NEAR(std::stod(paper.substr(box + 16)), 88.0 / 25.4 * 72.0, 0.1) << "a column of 88 mm, in points";
   } else {
     EXPECT_EQ(png.status, 1);
     EXPECT_NE(png.text.find("built without librsvg"), std::string::npos) << png.text;

@@ -10,8 +10,9 @@
 namespace dynamic_icp::drawing {
 namespace {
 
-constexpr double kTickSize = 12.0;   // px, font
-constexpr double kLabelSize = 13.0;  // px, font
+constexpr double kTickSize = 12.0;       // px, font
+constexpr double kLabelSize = 13.0;      // px, font
+constexpr double kLabelDistance = 18.0;  // px, from the area to the label, without the numbers between
 
 /// Tick marks of an axis that is `pixels` long, at least `spacing` px apart.
 std::vector<double> ticks_of(const Axis& axis, double pixels, double spacing) {
@@ -110,12 +111,15 @@ Pixel Axes::at(double x, double y) const {
 }
 
 void Axes::draw_x_ticks(Svg& svg, const Theme& theme) const {
-  const std::vector<double> ticks = ticks_of(x_, area_.width, 70.0);
+  constexpr double kNarrow = 400.0;
+  const std::vector<double> ticks = ticks_of(x_, area_.width, area_.width < kNarrow ? 48.0 : 70.0);
   for (std::size_t k = 0; k < ticks.size(); ++k) {
     const double x = at(ticks[k], y_.range.minimum).x;
     svg.line({x, area_.top}, {x, area_.bottom()}, {.stroke = theme.grid});
-    svg.text({x, area_.bottom() + 17.0}, tick_label(x_, ticks, k),
-             {.colour = theme.muted, .size = kTickSize, .anchor = Anchor::kMiddle});
+    if (x_.with_numbers) {
+      svg.text({x, area_.bottom() + 17.0}, tick_label(x_, ticks, k),
+               {.colour = theme.muted, .size = kTickSize, .anchor = Anchor::kMiddle});
+    }
   }
 }
 
@@ -132,6 +136,15 @@ double Axes::draw_y_ticks(Svg& svg, const Theme& theme) const {
   return widest;
 }
 
+double Axes::left_margin() const {
+  double widest = 0.0;
+  const std::vector<double> ticks = ticks_of(y_, area_.height, 34.0);
+  for (std::size_t k = 0; k < ticks.size(); ++k) {
+    widest = std::max(widest, estimated_width(tick_label(y_, ticks, k), kTickSize));
+  }
+  return widest + kLabelDistance + kLabelSize;
+}
+
 void Axes::draw(Svg& svg, const Theme& theme) const {
   svg.rectangle(area_, {.fill = theme.panel});
   draw_x_ticks(svg, theme);
@@ -139,7 +152,7 @@ void Axes::draw(Svg& svg, const Theme& theme) const {
   svg.rectangle(area_, {.stroke = theme.grid, .width = 1.2});
   svg.text({area_.left + 0.5 * area_.width, area_.bottom() + 36.0}, x_.label,
            {.colour = theme.ink, .size = kLabelSize, .anchor = Anchor::kMiddle});
-  svg.text({area_.left - label_width - 18.0, area_.top + 0.5 * area_.height}, y_.label,
+  svg.text({area_.left - label_width - kLabelDistance, area_.top + 0.5 * area_.height}, y_.label,
            {.colour = theme.ink, .size = kLabelSize, .anchor = Anchor::kMiddle, .vertical = true});
 }
 

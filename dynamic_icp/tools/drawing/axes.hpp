@@ -42,6 +42,7 @@ struct Axis {
   Range range;        ///< > 0 where the scale is logarithmic
   Scale scale = Scale::kLinear;
   bool whole_numbers = false;  ///< no ticks in between
+  bool with_numbers = true;    ///< at its ticks; without them another axis has them
 };
 
 /// A drawing area with two axes: maps values to pixels and draws frame, grid, ticks and labels.
@@ -54,6 +55,9 @@ class Axes {
   [[nodiscard]] Pixel at(double x, double y) const;
 
   void draw(Svg& svg, const Theme& theme) const;
+
+  /// What ticks and label of the vertical axis take to the left of the area, px.
+  [[nodiscard]] double left_margin() const;
 
  private:
   void draw_x_ticks(Svg& svg, const Theme& theme) const;

@@ -189,11 +189,15 @@ void Svg::begin_clip(const PixelBox& box) {
 void Svg::end_clip() { body_ += "</svg>\n"; }
 
 std::string Svg::element() const {
+  const auto size_of = [&](double px) {
+    return px_per_mm_ ? compact_number(px / *px_per_mm_) + "mm" : compact_number(px);
+  };
   return fmt::format(
-      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{0}\" height=\"{1}\" viewBox=\"0 0 {0} {1}\" role=\"img\" "
+      "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{4}\" height=\"{5}\" viewBox=\"0 0 {0} {1}\" role=\"img\" "
       "aria-label=\"{2}\" font-family=\"system-ui, -apple-system, 'Segoe UI', Roboto, 'DejaVu Sans', sans-serif\">\n"
       "{3}</svg>\n",
-      compact_number(width_), compact_number(height_), escape_markup(description_), body_);
+      compact_number(width_), compact_number(height_), escape_markup(description_), body_, size_of(width_),
+      size_of(height_));
 }
 
 std::string Svg::document() const { return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n" + element(); }

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -59,6 +60,10 @@ class Svg {
   [[nodiscard]] double width() const { return width_; }
   [[nodiscard]] double height() const { return height_; }
 
+  /// The file says how large the picture is on paper: so many px of the drawing a mm. Without this a px is one of the
+  /// screen.
+  void set_px_per_mm(double px_per_mm) { px_per_mm_ = px_per_mm; }
+
   void line(Pixel from, Pixel to, const Paint& paint);
   void polyline(std::span<const Pixel> pixels, const Paint& paint);
   void polygon(std::span<const Pixel> pixels, const Paint& paint);
@@ -88,6 +93,7 @@ class Svg {
 
   double width_;
   double height_;
+  std::optional<double> px_per_mm_;
   std::string description_;
   std::string body_;
 };

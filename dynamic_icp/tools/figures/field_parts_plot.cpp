@@ -132,14 +132,16 @@ void draw_part(drawing::Svg& svg, const drawing::Theme& theme, const drawing::Pi
 
 }  // namespace
 
-drawing::Svg field_parts_plot(const window::SensorCalibration& calibration, const drawing::Theme& theme) {
+drawing::Svg field_parts_plot(const window::SensorCalibration& calibration, const drawing::Theme& theme,
+                              Medium medium) {
+  const double width = medium == Medium::kPaper ? kColumnWidth - kPartLeft - 30.0 : kPartWidth;
   const std::vector<PartPanel> panels = part_panels(calibration);
   constexpr double kRow = kPartAbove + kPartHeight + kPartBelow;
-  drawing::Svg svg(kPartLeft + kPartWidth + 30.0, kRow * static_cast<double>(panels.size()),
+  drawing::Svg svg(kPartLeft + width + 30.0, kRow * static_cast<double>(panels.size()),
                    "What was learned of the error of the Doppler by line, face and range, with one standard deviation");
   svg.rectangle({0.0, 0.0, svg.width(), svg.height()}, {.fill = theme.background});
   for (std::size_t k = 0; k < panels.size(); ++k) {
-    draw_part(svg, theme, {kPartLeft, kPartAbove + kRow * static_cast<double>(k), kPartWidth, kPartHeight}, panels[k]);
+    draw_part(svg, theme, {kPartLeft, kPartAbove + kRow * static_cast<double>(k), width, kPartHeight}, panels[k]);
   }
   return svg;
 }

@@ -103,10 +103,11 @@ std::array<ShownField, 2> panels_of(const window::ErrorByDirection& learned, con
 
 }  // namespace
 
-drawing::Svg field_plot(const window::SensorCalibration& calibration, const drawing::Theme& theme) {
+drawing::Svg field_plot(const window::SensorCalibration& calibration, const drawing::Theme& theme, Medium medium) {
+  const double width = medium == Medium::kPaper ? kColumnWidth - kBeside - 30.0 : kFieldWidth;
   const std::size_t sensors = calibration.shape.views.size();
   constexpr double kRow = kAbove + kFieldHeight + kBelow;
-  drawing::Svg svg(kBeside + kFieldWidth + 30.0, 2.0 * kRow * static_cast<double>(sensors),
+  drawing::Svg svg(kBeside + width + 30.0, 2.0 * kRow * static_cast<double>(sensors),
                    "What was learned of the error of the Doppler, by direction, and its standard deviation");
   svg.rectangle({0.0, 0.0, svg.width(), svg.height()}, {.fill = theme.background});
   double top = kAbove;
@@ -114,7 +115,7 @@ drawing::Svg field_plot(const window::SensorCalibration& calibration, const draw
     const window::ErrorByDirection learned = window::error_by_direction(calibration, sensor, kAzimuths, kElevations);
     const std::string name = sensors > 1 ? fmt::format(" of sensor {}", sensor) : "";
     for (const ShownField& shown : panels_of(learned, name)) {
-      draw_field(svg, theme, {kBeside, top, kFieldWidth, kFieldHeight}, shown, calibration.shape.views[sensor]);
+      draw_field(svg, theme, {kBeside, top, width, kFieldHeight}, shown, calibration.shape.views[sensor]);
       top += kRow;
     }
   }

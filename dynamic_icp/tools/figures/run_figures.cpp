@@ -108,9 +108,30 @@ std::optional<Panel> compared_panel(const std::vector<ComparedRun>& runs, const 
   return panel;
 }
 
+MapSize map_size(Medium medium) {
+  return medium == Medium::kPaper
+             ? MapSize{.width = kColumnWidth, .largest_height = 1.1 * kColumnWidth, .with_title = false}
+             : MapSize{};
+}
+
+PanelSize panel_size(Medium medium) {
+  return medium == Medium::kPaper ? PanelSize{.width = kColumnWidth, .height = 120.0, .with_titles = false}
+                                  : PanelSize{};
+}
+
+/// On paper px are parts of a mm.
+std::vector<Figure> on(Medium medium, std::vector<Figure> figures) {
+  if (medium == Medium::kPaper) {
+    for (Figure& figure : figures) {
+      figure.svg.set_px_per_mm(kPaperPxPerMm);
+    }
+  }
+  return figures;
+}
+
 }  // namespace
 
-std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const drawing::Theme& theme) {
+std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const drawing::Theme& theme, Medium medium) {
   PathMap map{.title = "Trajectories from above"};
   for (const ComparedRun& run : runs) {
     map.estimates.push_back({run.name, positions_of(run.files)});
@@ -118,7 +139,7 @@ std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const 
       map.ground_truth = positions_of(*run.truth);
     }
   }
-  std::vector<Figure> figures = {{"trajectory", trajectory_plot(map, theme)}};
+  std::vector<Figure> figures = {{"trajectory", trajectory_plot(map, theme, map_size(medium))}};
   const std::map<std::size_t, double> times = times_of(runs);
   std::vector<double> seconds;
   for (const auto& [index, time] : times) {
@@ -134,22 +155,23 @@ std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const 
       }
     }
     if (!panels.empty()) {
-      figures.push_back({name, series_plot(seconds, panels, theme)});
+      figures.push_back({name, series_plot(seconds, panels, theme, panel_size(medium))});
     }
   }
-  return figures;
+  return on(medium, std::move(figures));
 }
 
-std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& context, const drawing::Theme& theme) {
+std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& context, const drawing::Theme& theme,
+                                 Medium medium) {
   std::vector<double> times;
   for (std::size_t k = 0; k < run.frames.size(); ++k) {
     times.push_back(run.seconds(k));
   }
   std::vector<Figure> figures;
   if (context.scan) {
-    figures.push_back({"scan", scan_plot(*context.scan, theme)});
+    figures.push_back({"scan", scan_plot(*context.scan, theme, medium)});
   }
-  figures.push_back({"trajectory", trajectory_plot(path_map(run, context), theme)});
+  figures.push_back({"trajectory", trajectory_plot(path_map(run, context), theme, map_size(medium))});
   const std::vector<RunSeries> all = run_series(run, context.truth);
   for (const auto& [name, ids] : kOverTime) {
     std::vector<Panel> panels;
@@ -159,14 +181,14 @@ std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& co
       }
     }
     if (!panels.empty()) {
-      figures.push_back({name, series_plot(times, panels, theme)});
+      figures.push_back({name, series_plot(times, panels, theme, panel_size(medium))});
     }
   }
   if (const auto calibration = runs::read_calibration_of(run.folder)) {
-    figures.push_back({"doppler_error", field_plot(*calibration, theme)});
-    figures.push_back({"doppler_error_parts", field_parts_plot(*calibration, theme)});
+    figures.push_back({"doppler_error", field_plot(*calibration, theme, medium)});
+    figures.push_back({"doppler_error_parts", field_parts_plot(*calibration, theme, medium)});
   }
-  return figures;
+  return on(medium, std::move(figures));
 }
 
 }  // namespace dynamic_icp::figures

@@ -9,6 +9,7 @@
 #include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/drawing/svg.hpp"
 #include "dynamic_icp/tools/drawing/theme.hpp"
+#include "dynamic_icp/tools/figures/paper.hpp"
 #include "dynamic_icp/tools/figures/run_context.hpp"
 
 namespace dynamic_icp::figures {
@@ -20,7 +21,8 @@ struct Figure {
 
 /// The figures of a run in the order of that list, without those that have nothing to show: no "scan" when the
 /// recording is gone, no "errors" without ground truth, no "doppler_error" where none was learned.
-std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& context, const drawing::Theme& theme);
+std::vector<Figure> draw_figures(const runs::RunFiles& run, const RunContext& context, const drawing::Theme& theme,
+                                 Medium medium = Medium::kScreen);
 
 /// A run among others over the same recording.
 struct ComparedRun {
@@ -31,6 +33,7 @@ struct ComparedRun {
 
 /// "trajectory", "errors" (with ground truth), "convergence" and "timing" of several runs in common pictures. They must
 /// begin with the same scan: the first pose of each is the identity.
-std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const drawing::Theme& theme);
+std::vector<Figure> draw_comparison(const std::vector<ComparedRun>& runs, const drawing::Theme& theme,
+                                    Medium medium = Medium::kScreen);
 
 }  // namespace dynamic_icp::figures

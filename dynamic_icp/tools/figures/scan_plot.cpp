@@ -21,8 +21,8 @@ namespace dynamic_icp::figures {
 namespace {
 
 constexpr PanelSpacing kSpacing;
-constexpr double kWidth = 1120.0;    // px
-constexpr double kScaleFoot = 78.0;  // px below the panels, for the scales
+constexpr double kScreenWidth = 1120.0;  // px
+constexpr double kScaleFoot = 78.0;      // px below the panels, for the scales
 constexpr std::size_t kMaxDots = 13'000;
 
 /// The rows to draw: thinned just as far as it takes to stay within kMaxDots.
@@ -139,7 +139,7 @@ void draw_foot(drawing::Svg& svg, const drawing::Theme& theme, const GroundView&
                const std::string& note) {
   const double top = ground.box.bottom() + 34.0;
   draw_colour_bar(svg, theme, {kSpacing.margin + 10.0, top, 340.0, 12.0}, scales.limit);
-  const double right = kWidth - kSpacing.margin;
+  const double right = svg.width() - kSpacing.margin;
   draw_scale_bar(svg, theme, {right, top + 6.0}, scales.ring_m, ground.pixels_per_metre());
   const double text_right = right - scales.ring_m * ground.pixels_per_metre() - 24.0;
   const drawing::TextStyle style{.colour = theme.muted, .size = 12.0, .anchor = drawing::Anchor::kEnd};
@@ -151,9 +151,11 @@ void draw_foot(drawing::Svg& svg, const drawing::Theme& theme, const GroundView&
 void draw_head(drawing::Svg& svg, const drawing::Theme& theme, const GroundView& ground, const char* title,
                const char* explanation) {
   const double baseline = ground.box.top - 13.0;
-  svg.text({ground.box.left, baseline}, title, {.colour = theme.ink, .size = 16.0, .bold = true});
-  svg.text({ground.box.left + drawing::estimated_width(title, 17.5) + 10.0, baseline}, explanation,
-           {.colour = theme.muted, .size = 13.0});
+  svg.text({ground.box.left, baseline}, title, {.colour = theme.ink, .size = 15.0, .bold = true});
+  const double left = ground.box.left + drawing::estimated_width(title, 16.5) + 10.0;
+  if (left + drawing::estimated_width(explanation, 13.0) <= ground.box.right()) {
+    svg.text({left, baseline}, explanation, {.colour = theme.muted, .size = 13.0});
+  }
 }
 
 /// What a panel shows.
@@ -176,16 +178,17 @@ std::vector<PanelContent> panel_contents(const ScanView& view) {
 
 }  // namespace
 
-drawing::Svg scan_plot(const ScanView& view, const drawing::Theme& theme) {
+drawing::Svg scan_plot(const ScanView& view, const drawing::Theme& theme, Medium medium) {
+  const double width = medium == Medium::kPaper ? kTextWidth : kScreenWidth;
   const std::vector<PanelContent> contents = panel_contents(view);
   const Region region = region_of_interest(view.scan, rows_per_cell(view.scan, 0.5), view.objects);
-  const std::vector<GroundView> panels = arrange_panels(region, contents.size(), kWidth, kSpacing);
+  const std::vector<GroundView> panels = arrange_panels(region, contents.size(), width, kSpacing);
   const Scales scales{.limit = colour_limit(view.scan.doppler()), .ring_m = drawing::nice_step(region.x.length(), 9)};
   const std::vector<std::uint32_t> rows = rows_to_draw(view.scan, panels.front());
 
-  drawing::Svg svg(kWidth, panels.back().box.bottom() + kScaleFoot,
+  drawing::Svg svg(width, panels.back().box.bottom() + kScaleFoot,
                    view.title + " from above, coloured by Doppler velocity");
-  svg.rectangle({0.0, 0.0, kWidth, svg.height()}, {.fill = theme.background}, 10.0);
+  svg.rectangle({0.0, 0.0, width, svg.height()}, {.fill = theme.background}, 10.0);
   for (std::size_t k = 0; k < panels.size(); ++k) {
     draw_head(svg, theme, panels[k], contents[k].title, contents[k].explanation);
     svg.rectangle(panels[k].box, {.fill = theme.panel}, 6.0);

@@ -2,12 +2,14 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/tools/figures/scan_plot.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "testing/picture_texts.hpp"
 #include "testing/well_formed.hpp"
 
 namespace dynamic_icp::figures {
@@ -55,6 +57,24 @@ TEST(ScanPlot, NamesObjectsWithTheirSpeed) {
   EXPECT_NE(document.find(">sensor · 13.0 m/s<"), std::string::npos);
   EXPECT_NE(document.find("2,000 points"), std::string::npos);
   EXPECT_EQ(drawing::count_of(document, "Ego-motion compensated"), 1u);
+}
+
+TEST(ScanPlot, OnPaperAllTextsAreOnThePageAlsoWherePanelsStandSideBySide) {
+  ScanView view = random_view(2000);
+  view.objects.clear();  // their names are placed, and cut, within the panel
+  const drawing::Svg svg = scan_plot(view, drawing::theme(drawing::Ground::kLight), Medium::kPaper);
+  EXPECT_DOUBLE_EQ(svg.width(), kTextWidth);
+  const std::string document = svg.document();
+  double heads_right = 0.0;
+  for (const auto& [text, size, box] : drawing::texts_of(document)) {
+    EXPECT_TRUE(box.left >= 0.0 && box.right() <= svg.width() && box.bottom() <= svg.height()) << text;
+    EXPECT_GE(size / kPaperPxPerMm / 25.4 * 72.0, 7.0) << text;
+    if (text.starts_with("Measured") || text.starts_with("every point")) {
+      heads_right = std::max(heads_right, box.right());
+    } else if (text.starts_with("Ego-motion")) {
+      EXPECT_LT(heads_right, box.left) << "heads side by side";
+    }
+  }
 }
 
 TEST(ScanPlot, TheLabelOfTheSensorHasTheColourOfItsMark) {

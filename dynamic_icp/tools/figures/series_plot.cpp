@@ -16,8 +16,11 @@ namespace {
 
 constexpr double kLeft = 74.0;  // px around the drawing areas
 constexpr double kRight = 18.0;
-constexpr double kHead = 40.0;  // title; the legend comes below
-constexpr double kFoot = 50.0;  // ticks and label of the time axis
+constexpr double kHead = 40.0;   // title; the legend comes below
+constexpr double kBare = 10.0;   // above a drawing area without title
+constexpr double kNoFoot = 6.0;  // below one without times
+constexpr double kEdge = 4.0;    // of the picture, left of the labels
+constexpr double kFoot = 50.0;   // ticks and label of the time axis
 
 constexpr double kTowering = 20.0;  // times as large: on a linear axis the rest lies on its foot
 
@@ -128,6 +131,11 @@ std::vector<drawing::LegendEntry> legend_of(const Panel& panel, const drawing::T
   return legend;
 }
 
+bool are_named_alike(const Panel& a, const Panel& b) {
+  return std::equal(a.series.begin(), a.series.end(), b.series.begin(), b.series.end(),
+                    [](const Series& one, const Series& other) { return one.name == other.name; });
+}
+
 void draw_levels(drawing::Svg& svg, const drawing::Theme& theme, const drawing::PixelBox& area,
                  const drawing::Axes& axes, const drawing::Range& times, const Panel& panel) {
   for (const Level& level : panel.levels) {
@@ -135,17 +143,26 @@ void draw_levels(drawing::Svg& svg, const drawing::Theme& theme, const drawing::
     const std::array<drawing::Pixel, 2> line = {{{area.left, y}, {area.right(), y}}};
     svg.polyline(line, {.stroke = theme.ink, .width = 1.0, .opacity = 0.6});
     svg.text({area.right() - 4.0, y - 4.0}, level.name,
-             {.colour = theme.muted, .size = 11.0, .anchor = drawing::Anchor::kEnd, .halo = theme.panel});
+             {.colour = theme.muted, .size = 12.0, .anchor = drawing::Anchor::kEnd, .halo = theme.panel});
   }
 }
 
+drawing::Axes axes_of(const drawing::PixelBox& area, const Panel& panel, const std::vector<double>& times,
+                      bool with_times) {
+  const drawing::Range range = drawing::range_of(times).value_or(drawing::Range{0.0, 1.0});
+  const bool instant = !(range.length() > 0.0);
+  return {area,
+          {.label = with_times ? "time (s)" : "",
+           .range = instant ? drawing::padded(range, 0.0) : range,
+           .with_numbers = with_times},
+          vertical_axis(panel)};
+}
+
 void draw_panel(drawing::Svg& svg, const drawing::Theme& theme, const drawing::PixelBox& area, const Panel& panel,
-                const std::vector<double>& times) {
+                const std::vector<double>& times, bool with_times) {
   const drawing::Axis vertical = vertical_axis(panel);
   const drawing::Range time_range = drawing::range_of(times).value_or(drawing::Range{0.0, 1.0});
-  const bool instant = !(time_range.length() > 0.0);
-  const drawing::Axes axes(
-      area, {.label = "time (s)", .range = instant ? drawing::padded(time_range, 0.0) : time_range}, vertical);
+  const drawing::Axes axes = axes_of(area, panel, times, with_times);
   axes.draw(svg, theme);
   const std::vector<drawing::LegendEntry> legend = legend_of(panel, theme);
   for (std::size_t k = 0; k < panel.series.size(); ++k) {
@@ -166,26 +183,43 @@ void draw_panel(drawing::Svg& svg, const drawing::Theme& theme, const drawing::P
 
 drawing::Svg series_plot(const std::vector<double>& times, const std::vector<Panel>& panels,
                          const drawing::Theme& theme, const PanelSize& size) {
-  const double area_width = size.width - kLeft - kRight;
-  // A single line needs no legend: the title says what it is.
-  const auto draw_legend_of = [&](drawing::Svg* svg, double top, const Panel& panel) {
-    const bool is_needed = panel.series.size() > 1;
-    return is_needed ? drawing::draw_legend(svg, theme, {kLeft, top + 47.0}, area_width, legend_of(panel, theme)) : 0;
+  // Without titles panels stand close: the last one has the times of all, a legend that is that of the panel before is
+  // left out, and the areas begin where their numbers end.
+  const double head = size.with_titles ? kHead : kBare;
+  double left = kLeft;
+  if (!size.with_titles) {
+    left = 0.0;
+    for (const Panel& panel : panels) {
+      left = std::max(left, kEdge + axes_of({0.0, 0.0, size.width, size.height}, panel, times, true).left_margin());
+    }
+  }
+  const double area_width = size.width - left - kRight;
+  const auto has_times = [&](std::size_t k) { return size.with_titles || k + 1 == panels.size(); };
+  const auto foot = [&](std::size_t k) { return has_times(k) ? kFoot : kNoFoot; };
+  // A single line needs no legend: the title, or the label of the axis, says what it is.
+  const auto draw_legend_of = [&](drawing::Svg* svg, double top, std::size_t k) {
+    const bool is_needed =
+        panels[k].series.size() > 1 && (size.with_titles || k == 0 || !are_named_alike(panels[k], panels[k - 1]));
+    return is_needed
+               ? drawing::draw_legend(svg, theme, {left, top + head + 7.0}, area_width, legend_of(panels[k], theme))
+               : 0;
   };
   double height = 0.0;
   std::string description;
-  for (const Panel& panel : panels) {
-    height += kHead + drawing::kLegendLine * draw_legend_of(nullptr, 0.0, panel) + size.height + kFoot;
-    description += (description.empty() ? "" : "; ") + panel.title;
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    height += head + drawing::kLegendLine * draw_legend_of(nullptr, 0.0, k) + size.height + foot(k);
+    description += (description.empty() ? "" : "; ") + panels[k].title;
   }
   drawing::Svg svg(size.width, height, description);
-  svg.rectangle({0.0, 0.0, size.width, height}, {.fill = theme.background}, 8.0);
+  svg.rectangle({0.0, 0.0, size.width, height}, {.fill = theme.background}, size.with_titles ? 8.0 : 0.0);
   double top = 0.0;
-  for (const Panel& panel : panels) {
-    svg.text({kLeft, top + 26.0}, panel.title, {.colour = theme.ink, .size = 15.0, .bold = true});
-    top += kHead + drawing::kLegendLine * draw_legend_of(&svg, top, panel);
-    draw_panel(svg, theme, {kLeft, top, area_width, size.height}, panel, times);
-    top += size.height + kFoot;
+  for (std::size_t k = 0; k < panels.size(); ++k) {
+    if (size.with_titles) {
+      svg.text({left, top + 26.0}, panels[k].title, {.colour = theme.ink, .size = 15.0, .bold = true});
+    }
+    top += head + drawing::kLegendLine * draw_legend_of(&svg, top, k);
+    draw_panel(svg, theme, {left, top, area_width, size.height}, panels[k], times, has_times(k));
+    top += size.height + foot(k);
   }
   return svg;
 }

@@ -37,6 +37,7 @@ struct Panel {
 struct PanelSize {
   double width = 560.0;   ///< px
   double height = 210.0;  ///< px of one drawing area
+  bool with_titles = true;
 };
 
 /// The panels below each other over one time axis (s).

@@ -25,7 +25,7 @@ using drawing::Pixel;
 using runs::ObjectRow;
 using runs::RunFiles;
 
-constexpr double kFigureWidth = 1120.0;  // px
+constexpr double kScreenFigureWidth = 1120.0;  // px
 constexpr double kMargin = 20.0;
 constexpr double kPanelHead = 48.0;  // above each panel: title and legend
 constexpr double kLowerHeight = 250.0;
@@ -79,9 +79,9 @@ Region scene_region(const std::vector<ObjectRow>& objects) {
 /// A picture that grows panel by panel.
 class Sheet {
  public:
-  Sheet(const drawing::Theme& theme, double upper_height)
+  Sheet(const drawing::Theme& theme, double width, double upper_height)
       : theme_(theme),
-        svg_(kFigureWidth, 2.0 * kPanelHead + upper_height + kLowerHeight + kMargin,
+        svg_(width, 2.0 * kPanelHead + upper_height + kLowerHeight + kMargin,
              "The steps from a scan with Doppler to two aligned scans, from above") {
     svg_.rectangle({0.0, 0.0, svg_.width(), svg_.height()}, {.fill = theme.background}, 10.0);
   }
@@ -305,12 +305,13 @@ ScanPair read_pair(const RunFiles& run, const datasets::Dataset& recording, std:
   return pair;
 }
 
-drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawing::Theme& theme) {
+drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawing::Theme& theme, Medium medium) {
+  const double width = medium == Medium::kPaper ? kTextWidth : kScreenFigureWidth;
   const std::vector<ObjectRow>& objects = run.objects[pair.source];
-  const double upper_width = (kFigureWidth - 4.0 * kMargin) / 3.0;
+  const double upper_width = (width - 4.0 * kMargin) / 3.0;
   const Region scene = scene_region(objects);
   const double upper_height = std::clamp(upper_width * scene.y.length() / scene.x.length(), 180.0, 340.0);
-  Sheet sheet(theme, upper_height);
+  Sheet sheet(theme, width, upper_height);
   const auto upper = [&](int column) {
     return panel({kMargin + column * (upper_width + kMargin), kPanelHead, upper_width, upper_height}, scene);
   };
@@ -327,7 +328,7 @@ drawing::Svg step_figure(const RunFiles& run, const ScanPair& pair, const drawin
   if (lower.focus < objects.size()) {
     middle = lower.T_target_source * objects[lower.focus].centroid;
   }
-  const double lower_width = (kFigureWidth - 3.0 * kMargin) / 2.0;
+  const double lower_width = (width - 3.0 * kMargin) / 2.0;
   const double lower_top = 2.0 * kPanelHead + upper_height;
   const auto lower_view = [&](int column, const Region& region) {
     return panel({kMargin + column * (lower_width + kMargin), lower_top, lower_width, kLowerHeight}, region);

@@ -10,6 +10,7 @@
 #include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/tools/drawing/svg.hpp"
 #include "dynamic_icp/tools/drawing/theme.hpp"
+#include "dynamic_icp/tools/figures/paper.hpp"
 #include "dynamic_icp/tools/figures/shown_scan.hpp"
 
 namespace dynamic_icp::figures {
@@ -30,6 +31,7 @@ ScanPair read_pair(const runs::RunFiles& run, const datasets::Dataset& recording
 /// The steps of the method on one pair from above: the measured Doppler; what the velocity filter tells to move;
 /// objects with boxes and velocities, and the true ones; the points of the largest object, as they are and predicted,
 /// beside the next scan; and both scans as they were aligned.
-drawing::Svg step_figure(const runs::RunFiles& run, const ScanPair& pair, const drawing::Theme& theme);
+drawing::Svg step_figure(const runs::RunFiles& run, const ScanPair& pair, const drawing::Theme& theme,
+                         Medium medium = Medium::kScreen);
 
 }  // namespace dynamic_icp::figures

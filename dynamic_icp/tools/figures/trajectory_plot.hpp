@@ -27,11 +27,13 @@ struct PathMap {
 struct MapSize {
   double width = 560.0;           ///< px
   double largest_height = 520.0;  ///< px; a straight drive gets less
+  bool with_title = true;
 };
 
 /// Top view (x to the right, y up) with equal scales: the estimates as lines on top of a broad line for the
 /// ground truth, a ring where the drive starts and a dot where each estimate ends. Without positions the map is empty
-/// and says so.
+/// and says so. Estimates that lead so far away that the rest would be small are cut off at the edge, where a triangle
+/// points out; all of them stand in an inset in a free corner, else below the map (see `choose_map`).
 drawing::Svg trajectory_plot(const PathMap& paths, const drawing::Theme& theme, const MapSize& size = {});
 
 }  // namespace dynamic_icp::figures

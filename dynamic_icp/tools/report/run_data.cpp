@@ -210,10 +210,10 @@ Json pictures(const RunFiles& run) {
     add("What was learned of the sensor: the error of its Doppler by direction",
         "At 30 m and medium intensity, mean of the faces. What looks like a velocity of the sensor is known by the "
         "planes only.",
-        figures::field_plot);
+        [](const auto&... what) { return figures::field_plot(what...); });
     add("By line, face and range",
         "Bars and band: one standard deviation. What all lines and faces have in common is among the directions.",
-        figures::field_parts_plot);
+        [](const auto&... what) { return figures::field_parts_plot(what...); });
   }
   return list;
 }
