@@ -3,7 +3,7 @@
 //   node test/measure.mjs PAGE.html ...                   pages that are there, one after the other in each round: compared
 //                                                         while the same other things go on
 //   node test/measure.mjs [--frames 1000] [--points 3500] a page of an invented drive
-//   [--rounds 3]                                          medians of so many
+//   [--rounds N]                                          medians of so many; 3 where pages are compared
 import { mkdtempSync, rmSync, statSync, writeFileSync } from 'node:fs';
 import { tmpdir } from 'node:os';
 import { basename, join, resolve } from 'node:path';
@@ -103,7 +103,7 @@ const short = (value) => (value >= 100 ? value.toFixed(0) : value.toPrecision(3)
 const found = await findBrowser();
 if (found.missing) throw new Error(found.missing);
 try {
-  const rounds = option('--rounds', 3);
+  const rounds = option('--rounds', files.length > 1 ? 3 : 1);
   const measured = files.map(() => []);
   for (let round = 0; round < rounds; ++round) for (const [k, file] of files.entries()) measured[k].push(await measure(found, file));
   for (const [k, file] of files.entries()) {
