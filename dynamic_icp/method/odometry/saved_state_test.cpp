@@ -166,6 +166,27 @@ TEST(SavedState, ScansThatAreNoUseAndThatWereLost) {
   }
 }
 
+// Two motions explained the first scan; a plain does not show how the first scans turned.
+TEST(SavedState, WhatIsInDoubtFromScanToScan) {
+  std::vector<RawScan> divided = scans_of({street(), circle(8.0, 0.0), {}}, 7);
+  for (std::size_t i = 0; i < divided[0].points.size(); ++i) {
+    const Vector3d u = divided[0].points[i].normalized();
+    divided[0].doppler[i] += u.y() > 0.0 ? 2.0 * u.x() : 0.0;
+  }
+  std::vector<RawScan> bent = scans_of({plain(), circle(8.0, 0.5), sweeping()}, 2);
+  for (int k = 2; k < 6; ++k) {
+    bent.push_back(Drive{street(), circle(8.0, 0.5), sweeping()}.scan(k));
+  }
+  const auto odometry = make_odometry({}, {}, 1);
+  odometry->process(divided[0]);
+  ASSERT_EQ(odometry->process(divided[1]).status, FrameStatus::kAmbiguous);
+  const auto other = make_odometry({}, {}, 1);
+  other->process(bent[0]);
+  ASSERT_EQ(other->process(bent[1]).status, FrameStatus::kDegenerate);
+  expect_same_bits({}, divided, {1, 3});
+  expect_same_bits({}, bent, {2, 3});
+}
+
 TEST(SavedState, Rigs) {
   std::vector<RawScan> scans;
   const Drive drive = everything();
