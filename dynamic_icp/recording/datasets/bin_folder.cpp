@@ -71,8 +71,11 @@ fs::path first_with_points(const fs::path& folder, const std::vector<fs::path>& 
   if (shape) {
     throw *shape;
   }
-  throw DataError(fmt::format("{}: {} bytes that look like no records of points with Doppler. Tried:{}", file.string(),
-                              content.size(), names));
+  throw DataError(
+      fmt::format("{}: {} bytes that look like no records of points with Doppler. Tried:{}\nRecords of other numbers "
+                  "are read where "
+                  "`columns` and `dtype` state what they are, e.g. x,y,z,doppler and int16",
+                  file.string(), content.size(), names));
 }
 
 }  // namespace

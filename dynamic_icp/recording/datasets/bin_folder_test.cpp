@@ -97,6 +97,7 @@ TEST_F(BinFolder, WhatLooksLikeNothingIsRefusedWithWhatWasTried) {
   expect_within(fault(),
                 "1.bin: 43 bytes that look like no records of points with Doppler. Tried:\n  radar of View-of-Delft, "
                 "28 bytes: does not divide");
+  expect_within(fault(), "`columns` and `dtype` state what they are");
   write("1.bin", std::string(16, '\x7f'));
   expect_within(fault(), "xyzd, 16 bytes");
   write("1.bin", "");
