@@ -140,6 +140,9 @@ bool is_stream(const RunOptions& options) { return options.recording.path == dat
 
 int run(const RunOptions& options) {
   const runs::RunSettings settings = settings_of(options);
+  if (settings.follow_timeout_s && !(*settings.follow_timeout_s > 0.0)) {
+    throw UsageError(fmt::format("--follow-timeout is {} s, expected more than 0", *settings.follow_timeout_s));
+  }
   if (is_stream(options) && options.report) {
     throw UsageError("--report reads the scans again, which standard input does not allow");
   }
@@ -246,8 +249,7 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
                         "standard input (INPUT is -), until file or stream ends, Ctrl-C or --max-frames");
   add_option(*command, "--follow-timeout", options->settings.follow_timeout_s, "S",
              "End as if the recording had, once no scan has come for S seconds (default: wait on)")
-      ->needs(follow)
-      ->check(CLI::PositiveNumber);
+      ->needs(follow);
   add_option(*command, "--save-kitti", options->settings.kitti_file, "FILE",
              "Write the poses as KITTI has them, FILE.txt: 12 numbers a scan, T_world_sensor row by row");
   add_option(*command, "--calibration", options->settings.calibration, "FILE",

@@ -95,6 +95,10 @@ struct FollowedMcap::State {
 
   /// What is there of the last record.
   void take_cut() {
+    if (scan.at() == 0) {
+      cut = fmt::format("{}: ends at byte {}, before the mark of an MCAP file", bytes->path().string(), bytes->size());
+      return;
+    }
     try {
       scan.take_cut();
       if (!scan.has_ended()) {
