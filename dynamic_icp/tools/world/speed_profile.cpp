@@ -62,11 +62,11 @@ double SpeedProfile::distance_since_first_knot(double time_s) const {
 }
 
 SpeedProfile wandering_speed(double mean_mps, double share, double duration_s, const RandomSource& random) {
-  constexpr double kKnotSpacing = 2.5;  // s
+  constexpr double kKnotSpacing_s = 2.5;  // s
   std::vector<SpeedKnot> knots;
-  for (int i = 0; i * kKnotSpacing <= duration_s + kKnotSpacing; ++i) {
+  for (int i = 0; i * kKnotSpacing_s <= duration_s + kKnotSpacing_s; ++i) {
     const double wander = random.uniform(static_cast<std::uint64_t>(i), -share, share);
-    knots.push_back({i * kKnotSpacing, mean_mps * (1.0 + wander)});
+    knots.push_back({i * kKnotSpacing_s, mean_mps * (1.0 + wander)});
   }
   return SpeedProfile(std::move(knots));
 }
