@@ -4,7 +4,7 @@
 
 #include "dynamic_icp/method/base/config_field.hpp"
 #include "dynamic_icp/method/tracking/body_filter.hpp"
-#include "dynamic_icp/method/tracking/moving_cells.hpp"
+#include "dynamic_icp/method/tracking/grouping_config.hpp"
 
 namespace dynamic_icp::tracking {
 
