@@ -2,41 +2,13 @@
 // SPDX-License-Identifier: MIT
 //
 // In the long run the default pipeline asks the system for nothing as large as a column of a scan.
-#include <atomic>
-#include <cstdlib>
-#include <new>
 #include <random>
 
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/odometry/window_odometry.hpp"
 
-namespace {
-
-std::atomic<std::size_t> largest_allocation{0};
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t bytes) {
-  std::size_t before = largest_allocation;
-  while (bytes > before && !largest_allocation.compare_exchange_weak(before, bytes)) {
-  }
-  if (void* memory = std::malloc(bytes)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-
-// Also this one: what it returns comes to the operator delete below.
-[[gnu::noinline]] void* operator new(std::size_t bytes, const std::nothrow_t& /*tag*/) noexcept {
-  try {
-    return operator new(bytes);
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "testing/counted_allocations.hpp"
 
 namespace dynamic_icp::odometry {
 namespace {

@@ -2,10 +2,7 @@
 // SPDX-License-Identifier: MIT
 //
 // In the long run the tracker asks the system for no memory at all.
-#include <atomic>
 #include <cmath>
-#include <cstdlib>
-#include <new>
 #include <numbers>
 
 #include <gtest/gtest.h>
@@ -13,31 +10,7 @@
 #include "dynamic_icp/method/tracking/object_tracker.hpp"
 
 #include "testing/boxes_in_view.hpp"
-
-namespace {
-
-std::atomic<std::size_t> allocations{0};
-
-}  // namespace
-
-[[gnu::noinline]] void* operator new(std::size_t bytes) {
-  ++allocations;
-  if (void* memory = std::malloc(bytes)) {
-    return memory;
-  }
-  throw std::bad_alloc();
-}
-
-// Also this one: what it returns comes to the operator delete below.
-[[gnu::noinline]] void* operator new(std::size_t bytes, const std::nothrow_t& /*tag*/) noexcept {
-  try {
-    return operator new(bytes);
-  } catch (const std::bad_alloc&) {
-    return nullptr;
-  }
-}
-[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
-[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+#include "testing/counted_allocations.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -69,11 +42,11 @@ TEST(TrackerMemory, NothingIsAllocatedInTheLongRun) {
       const double t = k * kScanPeriod_s;
       View view = view_of(rounds_of_traffic(t), t);
       const auto pose = Eigen::Isometry3d::Identity();
-      const std::size_t before = allocations;
+      const std::size_t before = allocation_count;
       tracker.flag_expected(view.scan, view.radial, SensorMotion{pose}, workers, view.is_moving);
       tracker.clear_carrier(view.scan, workers, view.is_moving);
       const auto all = tracker.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), workers);
-      const std::size_t asked = allocations - before;
+      const std::size_t asked = allocation_count - before;
       for (const TrackedObject& object : all) {
         newest = std::max(newest, object.id);
       }
