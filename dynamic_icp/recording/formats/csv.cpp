@@ -20,13 +20,16 @@
 namespace dynamic_icp::formats {
 namespace {
 
-constexpr std::string_view kAround = " \t\r\v\f";
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::size_t kMaxCsvColumns = 1024;
 
 std::string_view bare(std::string_view cell) {
-  const std::size_t begin = std::min(cell.find_first_not_of(kAround), cell.size());
-  cell = cell.substr(begin, cell.find_last_not_of(kAround) + 1 - begin);
+  while (!cell.empty() && is_blank(cell.front())) {
+    cell.remove_prefix(1);
+  }
+  while (!cell.empty() && is_blank(cell.back())) {
+    cell.remove_suffix(1);
+  }
   const bool quoted = cell.size() >= 2 && (cell.front() == '"' || cell.front() == '\'') && cell.back() == cell.front();
   return quoted ? cell.substr(1, cell.size() - 2) : cell;
 }
@@ -105,6 +108,8 @@ std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
     std::transform(cells.begin(), cells.end(), cells.begin(), bare);
     return cells;
   }
+  constexpr std::size_t kUsualCells = 8;
+  cells.reserve(kUsualCells);
   for (std::size_t begin = 0;;) {
     const std::size_t end = std::min(line.find(delimiter, begin), line.size());
     cells.push_back(bare(line.substr(begin, end - begin)));

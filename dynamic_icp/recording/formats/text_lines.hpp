@@ -22,6 +22,9 @@ struct PlacedLine {
 /// The lines of a text file that hold something but blanks. Throws as read_text_file does.
 std::vector<PlacedLine> read_lines(const std::filesystem::path& path);
 
+/// White space within a line.
+constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c == '\v' || c == '\f'; }
+
 /// The words of a line: what stands between blanks, tabs, carriage returns and the like.
 std::vector<std::string_view> words_of(std::string_view line);
 
