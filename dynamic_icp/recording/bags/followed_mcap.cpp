@@ -16,17 +16,17 @@
 namespace dynamic_icp::bags {
 namespace {
 
-/// A message, of a channel, and when it came.
-struct Come {
-  MessageEntry entry;
-  std::optional<Arrival> arrival;
-};
-
 bool is_same(const Topic& a, const Topic& b) {
   return a.name == b.name && a.type == b.type && a.encoding_name == b.encoding_name && a.schema == b.schema;
 }
 
 }  // namespace
+
+/// A message, of a channel, and when it came.
+struct FollowedMcap::Come {
+  MessageEntry entry;
+  std::optional<Arrival> arrival;
+};
 
 /// The bag of what has come until it was made.
 class FollowedMcap::SoFar final : public FileBag {

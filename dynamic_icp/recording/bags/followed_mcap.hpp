@@ -63,6 +63,7 @@ class FollowedMcap {
 
  private:
   class SoFar;
+  struct Come;
   struct State;
   std::unique_ptr<State> state_;
 };

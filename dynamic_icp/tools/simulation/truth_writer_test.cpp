@@ -64,9 +64,9 @@ TEST_F(TruthFiles, PosesAreRelativeToTheFirstScan) {
 
 TEST_F(TruthFiles, VehiclePosesAndCalibrationGiveTheSensorPoses) {
   write({0, true, false});
-  const auto json = nlohmann::json::parse(content(folder_ / "calibration.json"))["T_V_to_S"];
-  const auto& q = json["quaternion"];
-  const auto& t = json["translation"];
+  const auto mounting = nlohmann::json::parse(content(folder_ / "calibration.json"))["T_V_to_S"];
+  const auto& q = mounting["quaternion"];
+  const auto& t = mounting["translation"];
   const Eigen::Isometry3d T_vehicle_sensor =
       Eigen::Translation3d(t["x"], t["y"], t["z"]) * Eigen::Quaterniond(q["w"], q["x"], q["y"], q["z"]);
   const std::vector<Row> rows = poses();
