@@ -46,7 +46,7 @@ elif [[ "${1:-}" == method ]]; then
   # Drives of the baselines, and many drives in one test, take minutes each here. Other tests reach the same code, and check.sh
   # runs them.
   run_tests method -R "^($(IFS='|'; echo "${modules[*]}")|library)\\." \
-    -E '^odometry\.(KissIcp|ScanToScanIcp|Symmetry)\.|StatesHowWellTheMotionIsKnown|StartsAtAnySpeed|UndoesSweeps'
+    -E '^odometry\.(KissIcp|ScanToScanIcp|Symmetry)\.|StatesHowWellTheMotionIsKnown|StartsAtAnySpeed|UndoesSweeps|SavedState.(PresetDefault|ScansThat|WhatIsNoPart)'
 else
   if scripts/install_dependencies.sh python; then
     python=ON
