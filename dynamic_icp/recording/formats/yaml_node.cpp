@@ -5,9 +5,11 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
+#include <sstream>
 #include <vector>
 
 #include <fmt/format.h>
+#include <yaml-cpp/eventhandler.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 
@@ -47,6 +49,41 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
+/// Where the documents of a stream begin; what is in them does not matter.
+class DocumentMarks final : public YAML::EventHandler {
+ public:
+  std::vector<YAML::Mark> marks;
+
+  void OnDocumentStart(const YAML::Mark& mark) override { marks.push_back(mark); }
+  void OnDocumentEnd() override {}
+  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
+  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {}
+  void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                       YAML::EmitterStyle::value /*style*/) override {}
+  void OnSequenceEnd() override {}
+  void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {}
+  void OnMapEnd() override {}
+};
+
+/// Throws DataError where a second document begins. YAML::LoadAll would not do: where nothing can begin, at a comma for
+/// instance, it finds empty documents without end.
+void refuse_more_documents(const std::string& text, const std::filesystem::path& origin) {
+  std::istringstream stream(text);
+  YAML::Parser parser(stream);
+  DocumentMarks documents;
+  if (!parser.HandleNextDocument(documents) || !parser.HandleNextDocument(documents)) {
+    return;
+  }
+  const YAML::Mark& first = documents.marks.front();
+  const YAML::Mark& second = documents.marks.back();
+  throw DataError(fmt::format(
+      "{}: {}", place(origin, second.line + 1),
+      first.pos == second.pos ? "is no YAML: nothing begins so" : "another document begins here, expected one"));
+}
+
 }  // namespace
 
 std::string place(const std::filesystem::path& origin, int line) {
@@ -83,12 +120,10 @@ YAML::Node parse_document(std::string_view text, const std::filesystem::path& or
     throw DataError(fmt::format("{}: is no YAML: has bytes that are not UTF-8", place(origin, line)));
   }
   try {
-    const std::vector<YAML::Node> documents = YAML::LoadAll(std::string(text));
-    if (documents.size() > 1) {
-      throw DataError(
-          fmt::format("{}: holds {} documents, expected one", place(origin, line_of(documents[1])), documents.size()));
-    }
-    return documents.empty() || documents[0].IsNull() ? YAML::Node(YAML::NodeType::Undefined) : documents[0];
+    const std::string stream(text);
+    refuse_more_documents(stream, origin);
+    const YAML::Node document = YAML::Load(stream);
+    return document.IsNull() ? YAML::Node(YAML::NodeType::Undefined) : document;
   } catch (const YAML::Exception& error) {
     throw DataError(fmt::format("{}: is no YAML: {}", place(origin, error.mark.line + 1), error.msg));
   }
