@@ -251,7 +251,7 @@ void add_benchmark_command(CLI::App& app, std::function<int()>& selected) {
   CLI::App* command = app.add_subcommand(
       "benchmark", "Recordings through all methods under identical preprocessing; the paper's tables");
   command->footer(
-      "Resumable: after an interruption the same command goes on where it was. Finished runs whose program, "
+      "Resumable: after an interruption the same command continues where it was. Finished runs whose program, "
       "configuration and "
       "recording are unchanged are not run again; failed ones are.");
   command->add_option("INPUT", options->inputs, "Recordings, or folders whose sub-folders are recordings");

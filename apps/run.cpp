@@ -219,7 +219,7 @@ void add_run_command(CLI::App& app, std::function<int()>& selected) {
   command->footer(
       "Exit status: 0 done; 1 the data or the machine failed; 2 wrong usage; 3 most scans are lost: there are results, "
       "but the trajectory is a guess; 130 (interrupt) and 143 (terminate): stopped after a scan, with the results so "
-      "far. A second signal ends it at once, without results. --resume goes on after any of them.");
+      "far. A second signal ends it at once, without results. --resume continues after any of them.");
   command->add_option("-o,--output", options->settings.output, "Folder for the results; must be new or empty")
       ->required()
       ->type_name("DIR");

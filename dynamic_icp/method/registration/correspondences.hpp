@@ -84,7 +84,7 @@ class CorrespondenceSearch {
   struct NeighbourCache {
     Eigen::Vector3d at = Eigen::Vector3d::Zero();  ///< m, target frame: where the point was
     double others = 0.0;                           ///< m, all other target points were at least so far away from there
-    std::array<std::uint32_t, spatial::FewNearest::kMost> nearest{};
+    std::array<std::uint32_t, spatial::FewNearest::kCapacity> nearest{};
     std::uint32_t count = 0;  ///< of those, the first ones
   };
 

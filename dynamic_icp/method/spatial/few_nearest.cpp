@@ -58,7 +58,7 @@ DYNAMIC_ICP_INLINE unsigned rows_within(const std::array<double, KdTree::kLeafSi
 DYNAMIC_ICP_INLINE void FewNearestSearch::search_near(const Eigen::Vector3d& query, FewNearest& found) const {
   NearbyLeaves::Leaves near;
   const std::size_t leaves = leaves_.near(query.x(), query.y(), query.z(), squared_gate_, near);
-  std::array<Neighbour, FewNearest::kMost + 1> nearest;  // one more, to be pushed out
+  std::array<Neighbour, FewNearest::kCapacity + 1> nearest;  // one more, to be pushed out
   std::size_t count = 0;
   double limit = squared_gate_;  // of what may still come in
   for (std::size_t j = 0; j < leaves; ++j) {
@@ -68,16 +68,16 @@ DYNAMIC_ICP_INLINE void FewNearestSearch::search_near(const Eigen::Vector3d& que
       const auto i = static_cast<std::size_t>(std::countr_zero(rest));
       insert_ordered(nearest.data(), nearest.data() + count,
                      {tree_.order()[near[j] * KdTree::kLeafSize + i], squared[i]});
-      count += count < FewNearest::kMost ? 1 : 0;
+      count += count < FewNearest::kCapacity ? 1 : 0;
     }
-    limit = count == FewNearest::kMost ? nearest[count - 1].squared_distance : limit;
+    limit = count == FewNearest::kCapacity ? nearest[count - 1].squared_distance : limit;
   }
   std::copy_n(nearest.begin(), count, found.neighbours.begin());
   found.count = count;
 }
 
 void FewNearestSearch::search_alone(const Eigen::Vector3d& query, FewNearest& found) {
-  tree_.nearest_k(query, FewNearest::kMost, max_distance_m_, alone_);
+  tree_.nearest_k(query, FewNearest::kCapacity, max_distance_m_, alone_);
   std::copy(alone_.begin(), alone_.end(), found.neighbours.begin());
   found.count = alone_.size();
 }

@@ -17,9 +17,9 @@ namespace dynamic_icp::spatial {
 
 /// The nearest points of a query, in the order of `is_nearer`.
 struct FewNearest {
-  static constexpr std::size_t kMost = 8;
+  static constexpr std::size_t kCapacity = 8;
 
-  std::array<Neighbour, kMost> neighbours{};
+  std::array<Neighbour, kCapacity> neighbours{};
   std::size_t count = 0;  ///< of those, the first ones
 };
 
@@ -30,7 +30,8 @@ class FewNearestSearch {
   /// Points at distance <= `max_distance_m` are found.
   FewNearestSearch(const KdTree& tree, double max_distance_m);
 
-  /// What `KdTree::nearest_k` finds with k = `FewNearest::kMost`, for each query. One that is not finite finds nothing.
+  /// What `KdTree::nearest_k` finds with k = `FewNearest::kCapacity`, for each query. One that is not finite finds
+  /// nothing.
   void search(std::span<const Eigen::Vector3d> queries, std::span<FewNearest> found);
 
  private:

@@ -36,7 +36,7 @@ FewNearest by_hand(const Points& points, const Eigen::Vector3d& query, double ma
   }
   std::sort(all.begin(), all.end(), is_nearer);
   FewNearest found;
-  found.count = std::min(all.size(), FewNearest::kMost);
+  found.count = std::min(all.size(), FewNearest::kCapacity);
   std::copy_n(all.begin(), found.count, found.neighbours.begin());
   return found;
 }
@@ -92,10 +92,10 @@ TEST(FewNearest, OfLittleOrNothing) {
   const Points queries{{0, 0, 0}, {std::nan(""), 0, 0}, {0, kInfinity, 0}, {0.5, 0, 0}};
   std::vector<FewNearest> found(queries.size());
   search.search(queries, found);
-  EXPECT_EQ(found[0].count, FewNearest::kMost);
+  EXPECT_EQ(found[0].count, FewNearest::kCapacity);
   EXPECT_EQ(found[1].count, 0u);
   EXPECT_EQ(found[2].count, 0u);
-  EXPECT_EQ(found[3].count, FewNearest::kMost);
+  EXPECT_EQ(found[3].count, FewNearest::kCapacity);
 }
 
 }  // namespace

@@ -13,7 +13,7 @@ bool NearbyLeaves::list(const KdTree& tree, const KdTree::Box& box, double limit
       tree, [&](KdTree::Node node) { return squared_distance(box, tree.box(node)); },
       [&](KdTree::Node, double reach) { return reach <= limit && !too_many; },
       [&](KdTree::Node node) {
-        too_many = count_ == kMost;
+        too_many = count_ == kCapacity;
         if (too_many) {
           return;
         }

@@ -33,17 +33,17 @@ DYNAMIC_ICP_INLINE void distances_to_leaf(const KdTree::Leaf& leaf, double x, do
 /// The leaves near some points that search together: one walk through the tree for all of them.
 class NearbyLeaves {
  public:
-  static constexpr std::size_t kMost = 256;
-  using Leaves = std::array<std::uint32_t, kMost>;
+  static constexpr std::size_t kCapacity = 256;
+  using Leaves = std::array<std::uint32_t, kCapacity>;
 
   /// Lists the leaves whose boxes are at most the squared distance `limit` (m^2) away from `box`, in an order that does
-  /// not depend on the limit. False when there are more than `kMost`: then the list is of no use.
+  /// not depend on the limit. False when there are more than `kCapacity`: then the list is of no use.
   bool list(const KdTree& tree, const KdTree::Box& box, double limit);
 
   /// Those whose boxes are at most the squared distance `limit` away from a point, the first ones of `near`. Returns
   /// their number.
   DYNAMIC_ICP_INLINE std::size_t near(double x, double y, double z, double limit, Leaves& near) const {
-    std::array<double, kMost> reach;
+    std::array<double, kCapacity> reach;
     for (std::size_t j = 0; j < count_; j += simd::kLanes) {
       simd::Lanes dx;
       simd::Lanes dy;
@@ -63,7 +63,7 @@ class NearbyLeaves {
   }
 
  private:
-  using Bounds = std::array<double, kMost>;
+  using Bounds = std::array<double, kCapacity>;
 
   /// How far a coordinate lies outside of four intervals.
   static DYNAMIC_ICP_INLINE void distances_beyond(const double* lower, const double* upper, double x,

@@ -118,8 +118,8 @@ Neighbourhoods::Neighbourhoods(const KdTree& tree, std::size_t k, double max_dis
       stride_(k_ + kLeafSize),
       found_squared_(kLeafSize * stride_),
       found_positions_(kLeafSize * stride_),
-      squared_((NearbyLeaves::kMost + 1) * kLeafSize),
-      positions_((NearbyLeaves::kMost + 1) * kLeafSize) {
+      squared_((NearbyLeaves::kCapacity + 1) * kLeafSize),
+      positions_((NearbyLeaves::kCapacity + 1) * kLeafSize) {
   forget_rows();
 }
 

@@ -24,7 +24,7 @@ namespace dynamic_icp::tracking {
 class Track {
  public:
   /// Of nothing yet: to be begun, or to be read.
-  Track() { hypotheses_.reserve(kMostHypotheses); }
+  Track() { hypotheses_.reserve(kMaxHypotheses); }
 
   /// From a first detection with at least one point, in a scan `stamp_s` after any origin of time.
   Track(const Detection& detection, double stamp_s, const TrackConfig& config) : Track() {
@@ -51,7 +51,7 @@ class Track {
 
  private:
   // Without heading, with that of the motion, and with either direction along the sides.
-  static constexpr std::size_t kMostHypotheses = 4;
+  static constexpr std::size_t kMaxHypotheses = 4;
 
   void add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config);
   [[nodiscard]] std::optional<double> heading_of_motion() const;

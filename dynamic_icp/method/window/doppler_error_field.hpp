@@ -20,9 +20,9 @@ namespace dynamic_icp::window {
 
 /// The columns of one measurement that are not zero: b = sum value[k] theta[index[k]].
 struct FieldColumns {
-  static constexpr std::size_t kMost = 16;
-  std::array<std::uint32_t, kMost> index{};
-  std::array<double, kMost> value{};
+  static constexpr std::size_t kCapacity = 16;
+  std::array<std::uint32_t, kCapacity> index{};
+  std::array<double, kCapacity> value{};
   std::size_t size = 0;
 
   void add(std::size_t column, double weight) {

@@ -110,7 +110,7 @@ TEST(DopplerErrorField, ColumnsReproduceTheError) {
     const VectorXd theta = random_vector(2, field.size());
     for (const DopplerCell& cell : cells) {
       const FieldColumns columns = field.columns(cell);
-      ASSERT_LE(columns.size, FieldColumns::kMost);
+      ASSERT_LE(columns.size, FieldColumns::kCapacity);
       VectorXd row = VectorXd::Zero(theta.size());
       std::set<std::uint32_t> seen;
       for (std::size_t k = 0; k < columns.size; ++k) {

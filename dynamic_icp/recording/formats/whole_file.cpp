@@ -107,7 +107,7 @@ OutputFile::OutputFile(const std::filesystem::path& path, const std::filesystem:
   }
 }
 
-OutputFile OutputFile::goes_on(const std::filesystem::path& path, std::uintmax_t length) {
+OutputFile OutputFile::resume(const std::filesystem::path& path, std::uintmax_t length) {
   OutputFile file(path, path, 0);
   const off_t there = ::lseek(file.descriptor_, 0, SEEK_END);
   if (there < 0) {

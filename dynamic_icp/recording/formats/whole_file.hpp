@@ -22,8 +22,8 @@ class OutputFile {
   explicit OutputFile(const std::filesystem::path& path);
   /// A file that is to be renamed: messages name the one that it will be.
   OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name);
-  /// Goes on with a file after its first `length` bytes and cuts off the rest. DataError where it is shorter.
-  static OutputFile goes_on(const std::filesystem::path& path, std::uintmax_t length);
+  /// Resumes a file after its first `length` bytes and cuts off the rest. DataError where it is shorter.
+  static OutputFile resume(const std::filesystem::path& path, std::uintmax_t length);
   ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;
   OutputFile(const OutputFile&) = delete;

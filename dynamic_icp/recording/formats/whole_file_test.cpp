@@ -107,16 +107,16 @@ TEST_F(WholeFile, AFileGoesOnAfterAGivenLength) {
     EXPECT_EQ(file.synchronise(), 10U);
   }
   {
-    OutputFile file = OutputFile::goes_on(folder_ / "a", 4);
+    OutputFile file = OutputFile::resume(folder_ / "a", 4);
     file.write("ab");
     EXPECT_EQ(file.synchronise(), 6U);
     file.close();
   }
   EXPECT_EQ(read_whole_file(folder_ / "a"), "0123ab");
-  expect_refusal([&] { OutputFile::goes_on(folder_ / "a", 7); }, "has 6 bytes, expected at least 7");
+  expect_refusal([&] { OutputFile::resume(folder_ / "a", 7); }, "has 6 bytes, expected at least 7");
   EXPECT_EQ(read_whole_file(folder_ / "a"), "0123ab");
   fs::remove(folder_ / "a");
-  expect_refusal([&] { OutputFile::goes_on(folder_ / "a", 0); }, "cannot open");
+  expect_refusal([&] { OutputFile::resume(folder_ / "a", 0); }, "cannot open");
   EXPECT_EQ(entries(), 0U);
 }
 

@@ -13,12 +13,12 @@
 
 namespace dynamic_icp::runs {
 
-/// The file in the folder of a run from which the run can go on.
+/// The file in the folder of a run from which the run can be resumed.
 inline constexpr const char* kCheckpointFile = "checkpoint";
 
 /// A run between two scans.
 struct Checkpoint {
-  std::string identity;         ///< JSON of what must be the same when it goes on (run_identity)
+  std::string identity;         ///< JSON of what must be the same when it is resumed (run_identity)
   std::string command;          ///< how the run was asked for at first
   std::size_t next = 0;         ///< the first scan that is not done, its index in the recording
   std::uint64_t last_scan = 0;  ///< checksum of the scan before it

@@ -53,7 +53,7 @@ std::optional<Checkpoint> checkpoint_in(const fs::path& folder,
 
 void refuse_difference(const fs::path& folder, const std::optional<std::string>& different) {
   if (different) {
-    throw DataError(fmt::format("{}: cannot go on with the run: {}", folder.string(), *different));
+    throw DataError(fmt::format("{}: cannot resume the run: {}", folder.string(), *different));
   }
 }
 
@@ -118,7 +118,7 @@ Continuation continuation(const formats::OutputFolder& output, const fs::path& f
     return fs::exists(final / "run.json", fault) ? after_written(output, final, identity, replace, notice)
                                                  : Continuation{};
   } catch (const fs::filesystem_error& error) {
-    throw DataError(fmt::format("{}: cannot go on with the run: {}", final.string(), error.code().message()));
+    throw DataError(fmt::format("{}: cannot resume the run: {}", final.string(), error.code().message()));
   }
 }
 

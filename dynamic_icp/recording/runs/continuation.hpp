@@ -12,10 +12,10 @@
 
 namespace dynamic_icp::runs {
 
-/// What is left to do of a run that is to go on.
+/// What is left to do of a run that is to be resumed.
 struct Continuation {
   bool is_complete = false;        ///< nothing: an earlier run in the folder is whole
-  std::optional<Checkpoint> from;  ///< where it goes on; empty: begins anew
+  std::optional<Checkpoint> from;  ///< where it resumes; empty: begins anew
 };
 
 /// Looks for the checkpoint of a run that was killed, taken over in `output`, or of one that was stopped, in `final`:

@@ -45,7 +45,7 @@ class FilesBeside {
   /// Last, for an earlier file is only replaced by that of a run that is whole.
   void write(const formats::Trajectory& trajectory, const formats::OutputFolder& output, RunResult& result);
 
-  /// Of the map, scan by scan: an MCAP file cannot go on.
+  /// Of the map, scan by scan: an MCAP file cannot be resumed.
   void state(StateArchive& archive);
   void begin_anew();
 

@@ -151,7 +151,7 @@ TEST_F(ResumedRun, EndsWithTheFilesOfAnUnbrokenOne) {
     settings_.command = "another";  // the run is the one that was begun
     settings_.threads = 1;
     ASSERT_TRUE(run()) << last;
-    EXPECT_TRUE(last == 0 || was_told("going on after " + std::to_string(last) + " of 6 scans"));
+    EXPECT_TRUE(last == 0 || was_told("resumed after " + std::to_string(last) + " of 6 scans"));
     settings_.command = "run";
     if (last > 0) {
       EXPECT_EQ(differing(files_in(settings_.output), whole), kNone) << last;
@@ -199,7 +199,7 @@ TEST_F(ResumedRun, AfterAStopThatKeptTheResultsSoFar) {
   EXPECT_TRUE(stopped->summary.stopped);
   EXPECT_EQ(stopped->summary.frames, 3U);
   ASSERT_TRUE(run());
-  EXPECT_TRUE(was_told("going on after 3 of 6 scans"));
+  EXPECT_TRUE(was_told("resumed after 3 of 6 scans"));
   EXPECT_EQ(differing(files_in(settings_.output), whole), kNone);
 }
 
@@ -214,7 +214,7 @@ TEST_F(ResumedRun, WhereItIsCompleteNothingIsDone) {
   EXPECT_EQ(fs::last_write_time(settings_.output / "run.json"), written);
   EXPECT_EQ(differing(files_in(settings_.output), whole), kNone);
   settings_.config = odometry::PaperConfig{};
-  EXPECT_NE(refusal().find("cannot go on with the run"), std::string::npos) << "of other settings";
+  EXPECT_NE(refusal().find("cannot resume the run"), std::string::npos) << "of other settings";
   settings_.replace = true;
   EXPECT_FALSE(run().value().was_complete);
 }
@@ -238,7 +238,7 @@ TEST_F(ResumedRun, WhatCouldNotBeMadeIsMadeWithTheLastScans) {
     fs::remove_all(settings_.output / "maps");
     notices_.clear();
     ASSERT_TRUE(run());
-    EXPECT_EQ(was_told("going on after 5 of 6 scans"), checkpoint_s == 0.0);
+    EXPECT_EQ(was_told("resumed after 5 of 6 scans"), checkpoint_s == 0.0);
     EXPECT_EQ(differing(files_in(settings_.output), whole), kNone) << checkpoint_s;
     fs::remove_all(settings_.output);
   }
@@ -314,7 +314,7 @@ TEST_F(ResumedRun, AnErrorNamesWhereItGoesOn) {
       throw DataError("the disk is full");
     }
   };
-  EXPECT_EQ(refusal(), "the disk is full (--resume goes on after 4 of 6 scans)");
+  EXPECT_EQ(refusal(), "the disk is full (--resume continues after 4 of 6 scans)");
 }
 
 TEST_F(ResumedRun, CancelledLeavesNothing) {

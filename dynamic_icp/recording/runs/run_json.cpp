@@ -90,59 +90,49 @@ Json path_json(const std::optional<fs::path>& path) {
   return path ? Json(fs::absolute(*path).string()) : Json(nullptr);
 }
 
+/// What was asked for, of what: the same whoever computes it, and wherever the results go.
+Json request_json(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
+                  const fs::path& ground_truth) {
+  return {{"version", version()},
+          {"input",
+           {{"path", recording.path == datasets::kStandardInput ? recording.path.string()
+                                                                : fs::absolute(recording.path).string()},
+            {"format", dataset.format()},
+            {"options", input_json(recording.settings)},
+            {"scans", dataset.size()}}},
+          {"method", settings.method},
+          {"preset", settings.preset},
+          {"ablation", settings.ablation},
+          {"start", settings.start},
+          {"max_frames", settings.max_frames ? Json(*settings.max_frames) : Json(nullptr)},
+          {"calibration", path_json(settings.calibration)},
+          {"ground_truth", ground_truth.empty() ? Json(nullptr) : path_json(ground_truth)},
+          {"configuration", configuration_json(settings.config)}};
+}
+
+/// File names need not be UTF-8.
+std::string text_of(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace
 
 std::string run_identity(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
                          const fs::path& ground_truth) {
-  const Json json = {{"version", version()},
-                     {"input",
-                      {{"path", fs::absolute(recording.path).string()},
-                       {"format", dataset.format()},
-                       {"options", input_json(recording.settings)},
-                       {"scans", dataset.size()}}},
-                     {"method", settings.method},
-                     {"preset", settings.preset},
-                     {"ablation", settings.ablation},
-                     {"start", settings.start},
-                     {"max_frames", settings.max_frames ? Json(*settings.max_frames) : Json(nullptr)},
-                     {"calibration", path_json(settings.calibration)},
-                     {"ground_truth", ground_truth.empty() ? Json(nullptr) : path_json(ground_truth)},
-                     {"save_labels", settings.save_labels},
-                     {"save_map", path_json(settings.map_file)},
-                     {"map_voxel_m", settings.map_voxel_m},
-                     {"save_kitti", path_json(settings.kitti_file)},
-                     {"configuration", configuration_json(settings.config)}};
-  return json.dump(-1, ' ', false, Json::error_handler_t::replace);
+  Json json = request_json(recording, settings, dataset, ground_truth);
+  json["save_labels"] = settings.save_labels;
+  json["save_map"] = path_json(settings.map_file);
+  json["map_voxel_m"] = settings.map_voxel_m;
+  json["save_kitti"] = path_json(settings.kitti_file);
+  return text_of(json, -1);
 }
 
 std::string run_json(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
                      const fs::path& ground_truth, const RunResult& result, const FilesInRun& in_run) {
-  Json json = {{"version", version()},
-               {"command", settings.command},
-               {"input",
-                {{"path", recording.path == datasets::kStandardInput ? recording.path.string()
-                                                                     : fs::absolute(recording.path).string()},
-                 {"format", dataset.format()},
-                 {"options", input_json(recording.settings)},
-                 {"scans", dataset.size()}}},
-               {"method", settings.method},
-               {"preset", settings.preset},
-               {"ablation", settings.ablation},
-               {"start", settings.start},
-               {"threads", settings.threads}};
+  Json json = request_json(recording, settings, dataset, ground_truth);
+  json["command"] = settings.command;
+  json["threads"] = settings.threads;
   json["stopped"] = result.summary.stopped;
-  json["max_frames"] = nullptr;
-  if (settings.max_frames) {
-    json["max_frames"] = *settings.max_frames;
-  }
-  json["calibration"] = nullptr;
-  if (settings.calibration) {
-    json["calibration"] = fs::absolute(*settings.calibration).string();
-  }
-  json["ground_truth"] = nullptr;
-  if (!ground_truth.empty()) {
-    json["ground_truth"] = fs::absolute(ground_truth).string();
-  }
   json["sweep"] = sweep_json(result.sweep);
   json["doppler"] = result.doppler;
   json["map"] = map_json(settings, result, in_run.map);
@@ -150,9 +140,7 @@ std::string run_json(const Recording& recording, const RunSettings& settings, co
   json["kitti"] = file_json(result.has_kitti, settings.kitti_file, in_run.kitti);
   json["assumptions"] = result.summary.assumptions;
   json["warnings"] = result.warnings;
-  json["configuration"] = configuration_json(settings.config);
-  // File names need not be UTF-8.
-  return json.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+  return text_of(json, 2) + "\n";
 }
 
 }  // namespace dynamic_icp::runs

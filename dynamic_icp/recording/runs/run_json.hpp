@@ -21,7 +21,7 @@ struct FilesInRun {
 std::string run_json(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
                      const std::filesystem::path& ground_truth, const RunResult& result, const FilesInRun& in_run);
 
-/// What must be the same for a run to go on where it was ended, as JSON: for `difference` (checkpoint.hpp). The parts
+/// What must be the same for a run to be resumed, as JSON: for `difference` (checkpoint.hpp). The parts
 /// that run.json has, too, are there under the same names.
 std::string run_identity(const Recording& recording, const RunSettings& settings, const datasets::Dataset& dataset,
                          const std::filesystem::path& ground_truth);

@@ -89,7 +89,7 @@ class Run {
     if (check_.sweep && check_.sweep->found_sweep()) {
       diagnosis::declare(*check_.sweep, *sweep_config(settings_.config));
     }
-    if (settings.resume && !can_go_on()) {
+    if (settings.resume && !can_resume()) {
       throw UsageError(settings.follow ? "a run that follows a recording while it grows cannot be resumed"
                                        : "a run that writes an MCAP file cannot be resumed");
     }
@@ -107,7 +107,7 @@ class Run {
     using Leftover = formats::OutputFolder::Leftover;
     formats::OutputFolder output(settings_.output, run_result(), settings_.replace || settings_.resume, inputs,
                                  settings_.resume ? Leftover::kTakeOver : Leftover::kRemove);
-    if (!take_up(output)) {
+    if (!find_checkpoint(output)) {
       return true;
     }
     if (!fill(output)) {
@@ -166,7 +166,7 @@ class Run {
       if (saved_ == 0) {
         throw;
       }
-      throw DataError(fmt::format("{} (--resume goes on after {} of {} scans)", error.what(), saved_, scans_.size()));
+      throw DataError(fmt::format("{} (--resume continues after {} of {} scans)", error.what(), saved_, scans_.size()));
     }
   }
 
@@ -176,11 +176,11 @@ class Run {
     }
   }
 
-  /// Scans that come when they come are no stream to go on with, and MCAP files are written from one end to the other.
-  [[nodiscard]] bool can_go_on() const { return !settings_.follow && !settings_.mcap_file; }
+  /// Scans that come when they come cannot be read again, and MCAP files are written from one end to the other.
+  [[nodiscard]] bool can_resume() const { return !settings_.follow && !settings_.mcap_file; }
 
-  /// Looks for where to go on; false when nothing is left to do.
-  bool take_up(const formats::OutputFolder& output) {
+  /// Looks for where to resume; false when nothing is left to do.
+  bool find_checkpoint(const formats::OutputFolder& output) {
     if (!settings_.resume) {
       if (output.had_checkpoint()) {
         tell("a run that was ended early was here, with a checkpoint: removed, as it was not to be resumed");
@@ -192,7 +192,7 @@ class Run {
     from_ = std::move(found.from);
     result_.was_complete = found.is_complete;
     if (!from_ && !found.is_complete) {
-      tell("no checkpoint to go on from: the run begins with its first scan");
+      tell("no checkpoint to resume from: the run begins with its first scan");
     }
     return !found.is_complete;
   }
@@ -235,11 +235,11 @@ class Run {
     if (!truth_.warning.empty()) {
       warn(truth_.warning);
     }
-    std::unique_ptr<RunWriter> going_on = go_on(odometry, output);
-    if (!going_on) {
-      going_on = std::make_unique<RunWriter>(output.path(), settings_.save_labels);
+    std::unique_ptr<RunWriter> resumed = resume(odometry, output);
+    if (!resumed) {
+      resumed = std::make_unique<RunWriter>(output.path(), settings_.save_labels);
     }
-    RunWriter& writer = *going_on;
+    RunWriter& writer = *resumed;
     beside_.open(truth_.trajectory, messages_settings());
     open_live_view();
     if (!process_scans(*odometry, writer, output)) {
@@ -282,14 +282,15 @@ class Run {
     archive(usable_, result_.sweep, result_.warnings, result_.failures, beside_);
   }
 
-  /// Brings everything to where it was at the checkpoint, from which the odometry and the files go on. Null without
+  /// Brings everything to where it was at the checkpoint, from which the odometry and the files continue. Null without
   /// one, and where that cannot be done: then everything is as it was, to begin anew.
-  std::unique_ptr<RunWriter> go_on(std::unique_ptr<odometry::Odometry>& odometry, const formats::OutputFolder& output) {
+  std::unique_ptr<RunWriter> resume(std::unique_ptr<odometry::Odometry>& odometry,
+                                    const formats::OutputFolder& output) {
     if (!from_) {
       return nullptr;
     }
     if (checksum(dataset_->scan(from_->next - 1)) != from_->last_scan) {
-      throw DataError(fmt::format("{}: cannot go on with the run: {} is not what it was", settings_.output.string(),
+      throw DataError(fmt::format("{}: cannot resume the run: {} is not what it was", settings_.output.string(),
                                   dataset_->scan_file(from_->next - 1).string()));
     }
     const RunResult before = result_;
@@ -302,7 +303,7 @@ class Run {
       results.end();
       settings_.command = from_->command;
       saved_ = from_->next - scans_.begin;
-      tell(fmt::format("going on after {} of {} scans", from_->next - scans_.begin, scans_.size()));
+      tell(fmt::format("resumed after {} of {} scans", from_->next - scans_.begin, scans_.size()));
       return writer;
     } catch (const DataError& error) {
       fault = output.in_final_names(error.what());
@@ -373,7 +374,7 @@ class Run {
       }
       report_progress(i + 1 - scans_.begin);
       stopped_ = i + 1 < scans_.end && callbacks_.stop && callbacks_.stop();
-      if (can_go_on() && i + 1 < scans_.end && (stopped_ || timer_.is_due())) {
+      if (can_resume() && i + 1 < scans_.end && (stopped_ || timer_.is_due())) {
         save_checkpoint(odometry, writer, scan, i + 1, output);
       }
       if (live_) {
@@ -507,7 +508,7 @@ class Run {
   Latencies latencies_;
   UsablePoints usable_;
   std::string identity_;
-  std::optional<Checkpoint> from_;  ///< where the run goes on
+  std::optional<Checkpoint> from_;  ///< where the run resumes
   std::size_t saved_ = 0;           ///< scans in the last checkpoint
   CheckpointTimer timer_{settings_.checkpoint_s};
   bool is_begun_ = false;  ///< there is a result

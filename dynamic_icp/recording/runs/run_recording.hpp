@@ -29,8 +29,9 @@ struct Recording {
 struct RunSettings {
   std::filesystem::path output;  ///< folder of the run: new or empty, or an earlier run where `replace` is set
   bool replace = false;
-  bool resume = false;         ///< goes on with an earlier run in `output` that was ended; with none it begins one
-  double checkpoint_s = 10.0;  ///< of computation between two checkpoints, from which a run can go on; 0: every scan
+  bool resume = false;  ///< resumes an earlier run in `output` that was ended; with none it begins one
+  double checkpoint_s =
+      10.0;  ///< of computation between two checkpoints, from which a run can be resumed; 0: every scan
   std::string method = "dynamic-icp";
   std::string preset = "default";  ///< for run.json: what it means is in `config`
   std::string ablation = "none";   ///< likewise
@@ -55,12 +56,12 @@ struct RunSettings {
 /// What the caller of a run may want to hear and do while it continues. All are called by the calling thread; each may
 /// be empty.
 struct RunCallbacks {
-  /// Before the first scan and after each one; a run that goes on begins with the scans that are done. `total` is 0
+  /// Before the first scan and after each one; a resumed run begins with the scans that are done. `total` is 0
   /// where nobody knows: of a recording that grows.
   std::function<void(std::size_t done, std::size_t total)> progress;
   /// What the user should know, as soon as it is known.
   std::function<void(const std::string& text)> warning;
-  /// How the run goes, which is no part of its results: that it goes on, that there is no checkpoint.
+  /// How the run goes, which is no part of its results: that it is resumed, that there is no checkpoint.
   std::function<void(const std::string& text)> notice;
   /// Where the run can be watched from now on: "127.0.0.1:8765".
   std::function<void(const std::string& authority)> listening;
@@ -98,9 +99,10 @@ struct RunResult {
 /// files of a run (run_writer.hpp) with run.json and the map into a folder that appears whole or not at all. Nothing
 /// when it was cancelled: then nothing is written, and an earlier run in the folder stays as it was.
 ///
-/// A run that ends otherwise, by a signal or an error too, can go on from its last checkpoint (checkpoint.hpp) and then
-/// ends with the bytes of an unbroken one, but for times of computation. That needs the same recording and settings;
-/// others are a DataError that names the difference. Runs that follow a recording or write an MCAP file cannot.
+/// A run that ends otherwise, by a signal or an error too, can be resumed from its last checkpoint (checkpoint.hpp) and
+/// then ends with the bytes of an unbroken one, but for times of computation. That needs the same recording and
+/// settings; others are a DataError that names the difference. Runs that follow a recording or write an MCAP file
+/// cannot.
 ///
 /// Throws UsageError when the settings cannot be meant, DataError when the recording cannot be read, is wrong beyond
 /// doubt (check_recording) or has no scan with enough points, when the ground truth of the settings fits no scan, or

@@ -51,8 +51,8 @@ RunWriter::RunWriter(const std::filesystem::path& folder, bool save_labels)
 RunWriter::RunWriter(const std::filesystem::path& folder, bool save_labels, Lengths lengths)
     : folder_(folder),
       save_labels_(save_labels),
-      frames_file_(formats::OutputFile::goes_on(folder / "frames.jsonl", lengths.frames)),
-      objects_file_(formats::OutputFile::goes_on(folder / "objects.jsonl", lengths.objects)) {}
+      frames_file_(formats::OutputFile::resume(folder / "frames.jsonl", lengths.frames)),
+      objects_file_(formats::OutputFile::resume(folder / "objects.jsonl", lengths.objects)) {}
 
 RunWriter::RunWriter(const std::filesystem::path& folder, bool save_labels, std::size_t next, StateArchive& state)
     : RunWriter(folder, save_labels, lengths_in(state)) {

@@ -37,7 +37,7 @@ class RunWriter {
   /// One pose for each scan until now.
   [[nodiscard]] const formats::Trajectory& trajectory() const { return trajectory_; }
 
-  /// For another one to go on; what is written so far is on the device after it.
+  /// For another one to resume; what is written so far is on the device after it.
   void save(StateArchive& archive);
 
   /// Writes what is left. `ground_truth` may be empty, and may not fit: then there is no accuracy, and the summary says
