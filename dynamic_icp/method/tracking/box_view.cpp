@@ -25,6 +25,8 @@ constexpr double kLookBeyond_m = 0.4;
 constexpr double kClearance_m = 1.0;
 constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
 constexpr double kMaxGap_m = 0.5;
+constexpr double kFaceWidth_m = 0.5;    // what is seen so wide at an end that looks at the sensor is a face
+constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
 constexpr double kFullHeight = 0.4;  // below this share of their height bodies reach as far as anywhere: hoods, bumpers
 
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there and `lower_m`
@@ -65,7 +67,8 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, c
   return true;
 }
 
-AxisView view_along(const Vector3d& direction, const Vector3d& reference, std::span<const Vector3d> points) {
+AxisView view_along(const Vector3d& direction, const Vector3d& across, const Vector3d& reference,
+                    std::span<const Vector3d> points) {
   AxisView view;
   StackMemory<kMaxDetectionPoints * sizeof(double)> memory;
   std::pmr::vector<double> along(memory.resource());
@@ -76,18 +79,24 @@ AxisView view_along(const Vector3d& direction, const Vector3d& reference, std::s
   view.seen = span_of(along, kViewTrim);
   const auto look_at = [&](EndView& end, auto&& inwards) {  // how far inwards of the end a point lies
     double count = 0.0;
+    double sum = 0.0;
+    double squares = 0.0;
     end.gap = kMaxGap_m;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double depth = inwards(along[i]);
       if (depth <= kEndDepth_m) {
+        const double side = (points[i] - reference).dot(across);
         end.middle += points[i];
         count += 1.0;
+        sum += side;
+        squares += side * side;
       }
       if (depth > kSamePlace_m) {
         end.gap = std::min(end.gap, depth);
       }
     }
     end.middle /= count;
+    end.width = std::sqrt(12.0 * std::max(0.0, squares / count - sum * sum / (count * count)));  // if evenly spread
   };
   look_at(view.low, [&](double q) { return q - view.seen.low; });
   look_at(view.high, [&](double q) { return view.seen.high - q; });
@@ -100,16 +109,21 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
                                     const Vector3d& W, const Detection& detection) {
   std::array<AxisView, 3> views;
   std::array<bool, 2> faces_sensor{};
-  views[2] = view_along(axes.col(2), reference, points);
+  views[2] = view_along(axes.col(2), axes.col(1), reference, points);
   // Over something nearer often the cabin of a car is seen, and neither its hood nor its boot.
   const double ground =
       detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
   const double full = ground + kFullHeight * (views[2].seen.high - ground);
   const auto is_end = [&](const EndView& end, const Vector3d& outward) {
+    const double facing = outward.dot((detection.sensor - end.middle).normalized());
+    if (end.width > kFaceWidth_m && facing > kLooksAtSensor) {
+      return true;
+    }
     return is_true_end(end.middle, outward, axes.col(2).dot(end.middle - reference) - full, W, detection);
   };
   for (const int axis : {0, 1}) {
-    AxisView& view = views[static_cast<std::size_t>(axis)] = view_along(axes.col(axis), reference, points);
+    AxisView& view = views[static_cast<std::size_t>(axis)] =
+        view_along(axes.col(axis), axes.col(1 - axis), reference, points);
     const double sensor = axes.col(axis).dot(detection.sensor - reference);
     const double grazing = kGrazing * (detection.sensor - reference).norm();
     view.high.is_true = sensor > view.seen.high && is_end(view.high, axes.col(axis));

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/tracking/box_view.hpp"
 
+#include <cmath>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -85,6 +86,25 @@ TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
     EXPECT_NE(along.low.is_true, is_hidden);
     EXPECT_TRUE(left.high.is_true) << "the side is seen";
   }
+}
+
+TEST(BoxView, AFaceIsAnEndThoughSomethingHidesWhatIsBesideIt) {
+  // A part of the rear of a body; a nearer thing hides all that is beside it. Of a side that leads away from the sensor
+  // the same shows no end.
+  const std::vector<Vector3d> rear = face_points({20.0, 5.0, -0.5}, {20.0, 6.0, 0.5});
+  const std::vector<Vector3d> side = face_points({20.0, 6.0, -0.5}, {22.0, 6.0, 0.5});
+  RawScan raw;
+  for (double azimuth = -0.8; azimuth <= 0.8; azimuth += 0.002) {
+    for (double z = -1.0; z <= 1.0; z += 0.1) {
+      raw.points.emplace_back(8.0 * std::cos(azimuth), 8.0 * std::sin(azimuth), z);
+      raw.doppler.push_back(0.0);
+    }
+  }
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+  Detection detection;
+  detection.view = &image;
+  EXPECT_TRUE(views_along(Matrix3d::Identity(), rear.front(), rear, {5.0, 0.0, 0.0}, detection)[0].low.is_true);
+  EXPECT_FALSE(views_along(Matrix3d::Identity(), side.front(), side, {5.0, 0.0, 0.0}, detection)[0].low.is_true);
 }
 
 }  // namespace

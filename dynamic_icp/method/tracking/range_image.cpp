@@ -230,17 +230,17 @@ bool RangeImage::are_mirrored(std::span<const std::uint32_t> rows) const {
 
 bool RangeImage::is_above_all(const Eigen::Vector3d& point) const { return cell_of(point).row > highest_row_; }
 
+/// Whether something is seen in a column, or on both sides of it: lines of sight may be farther apart than columns.
+bool RangeImage::is_in_view(int column) const {
+  const auto sees = [&](int step) {
+    return 0 != column_seen_[static_cast<std::size_t>((column + step + kColumns) % kColumns)];
+  };
+  return sees(0) || ((sees(-1) || sees(-2)) && (sees(1) || sees(2)));
+}
+
 bool RangeImage::hides(const Eigen::Vector3d& point, double clearance_m) const {
   const Cell cell = cell_of(point);
-  bool column_seen = false;
-  if (column_seen_.empty()) {
-    return true;
-  }
-  for (const int step : {-1, 0, 1}) {
-    column_seen =
-        column_seen || 0 != column_seen_[static_cast<std::size_t>((cell.column + step + kColumns) % kColumns)];
-  }
-  if (!column_seen) {
+  if (column_seen_.empty() || !is_in_view(cell.column)) {
     return true;
   }
   // Of two cells above each other the one that holds more of what is seen above the point: below may be the ground.

@@ -82,6 +82,7 @@ class RangeImage {
   std::vector<Patch> sectors_;
 
   void find_seen_columns();
+  [[nodiscard]] bool is_in_view(int column) const;
   [[nodiscard]] bool is_behind(std::uint32_t row) const;
 
   // Of each row of the scan, as it was measured

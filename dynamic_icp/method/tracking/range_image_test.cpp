@@ -50,8 +50,22 @@ TEST(RangeImage, BeyondTheFieldOfViewAllIsHidden) {
   add_wall(raw, -60.0, 60.0, 50.0);
   const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
   EXPECT_TRUE(image.hides(at(65.0, 10.0), 1.0));
+  EXPECT_TRUE(image.hides(at(61.2, 10.0), 1.0)) << "just beyond its edge";
+  EXPECT_FALSE(image.hides(at(59.5, 10.0), 1.0));
   EXPECT_TRUE(image.hides(at(180.0, 10.0), 1.0));
   EXPECT_TRUE(RangeImage(Scan{}, Vector3d::Zero(), Workers(1)).hides(at(0.0, 10.0), 1.0));
+}
+
+TEST(RangeImage, BetweenLinesOfSightThatAreFarApartNothingIsHidden) {
+  RawScan raw;
+  for (double azimuth = -60.0; azimuth <= 60.0; azimuth += 0.6) {  // every other column or so
+    raw.points.push_back(at(azimuth, 50.0));
+    raw.doppler.push_back(0.0);
+  }
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+  for (double azimuth = -58.9; azimuth < 59.0; azimuth += 0.1) {
+    EXPECT_FALSE(image.hides(at(azimuth, 10.0), 1.0)) << azimuth;
+  }
 }
 
 TEST(RangeImage, WithANegativeClearanceWhatIsFartherHidesToo) {
