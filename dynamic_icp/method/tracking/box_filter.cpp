@@ -19,12 +19,13 @@ using Eigen::Vector3d;
 constexpr double kReference_m = 0.01;  // the reference is a point of the body by definition
 constexpr double kLoose_m =
     1.5;  // standard deviation of the middle of what is seen of a body, if as much: others slide before it
-constexpr double kUnknownFace_m = 10.0;  // standard deviation
-constexpr double kKnownFace_m = 0.5;     // a face known better than this was seen
-constexpr double kFalseEnd_m = 0.1;      // what is seen so far beyond a face ...
-constexpr double kFalseEndSigmas = 3.0;  // ... and its noise shows that the body did not end there
-constexpr double kGrowth = 0.3;          // of a bound, towards what is seen beyond it: noise must not move it
-constexpr double kYawSearch_rad = 0.35;  // about the heading
+constexpr double kUnknownFace_m = 10.0;   // standard deviation
+constexpr double kKnownFace_m = 0.5;      // a face known better than this was seen
+constexpr double kFalseEnd_m = 0.1;       // what is seen so far beyond a face ...
+constexpr double kFalseEndSigmas = 3.0;   // ... and its noise shows that the body did not end there
+constexpr double kGrowth = 0.3;           // of a bound, towards what is seen beyond it: noise must not move it
+constexpr double kYawSearch_rad = 0.35;   // about the heading
+constexpr double kOnePointYaw_rad = 0.8;  // standard deviation of directions fitted to n points, times the root of n
 constexpr double kFirstYawSigma_rad = 0.1;
 constexpr double kSideslip_rad = 0.03;  // between heading and motion of the middle of a body ...
 constexpr double kSideslip_mps = 0.1;   // ... and whatever the speed ...
@@ -32,6 +33,7 @@ constexpr double kPivotShare = 0.15;    // ... and of the length that the point 
 constexpr double kBackwards_mps = 0.5;  // what moves backwards faster than this was taken the wrong way round
 constexpr double kLogHeading = -2.0;    // a scan without heading: more than the corrections of one cost
 constexpr double kWidthSigma_m = 0.5;
+constexpr double kSureSigmas = 3.0;      // nothing is beyond doubt that is less likely
 constexpr double kStump = 0.25;          // of the typical length or width
 constexpr double kVehicleWidth_m = 1.4;  // what is less wide may be short
 constexpr double kSizeScatter = 0.25;    // of what is seen of sizes about the typical ones, as a share
@@ -60,14 +62,6 @@ BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double
   return {state, covariance, level};
 }
 
-Vector3d mean_of(std::span<const Vector3d> points) {
-  Vector3d sum = Vector3d::Zero();
-  for (const Vector3d& point : points) {
-    sum += point;
-  }
-  return sum / static_cast<double>(points.size());
-}
-
 double face_sigma(const Vector3d& where, const Detection& detection, const TrackConfig& config) {
   return config.face_sigma_m + config.face_sigma_growth * (where - detection.sensor).norm();
 }
@@ -91,12 +85,13 @@ struct BoxFilter::Extent {
   double variance = 0.0;  ///< of that
 };
 
-BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, double log_likelihood,
+BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const BoxHistory& history,
                      const TrackConfig& config)
     : body_(prior(mean_of(detection.points), yaw_rad, yaw_rad ? kFirstYawSigma_rad : 0.0, detection.ground.level,
                   config)),
       has_heading_(yaw_rad.has_value()),
-      log_likelihood_(log_likelihood) {
+      was_vehicle_(history.was_vehicle),
+      log_likelihood_(history.log_likelihood) {
   if (!has_heading_) {
     body_ = prior(body_.position(), sight_yaw(body_.position(), detection), 0.0, detection.ground.level, config);
   }
@@ -116,6 +111,19 @@ void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
   }
   DetectionMemory memory;
   correct_faces(points_at_mean_time(detection, body_.velocity(), memory), detection, config);
+  was_vehicle_ = was_vehicle_ || is_fast_for_sure();
+}
+
+/// Whether no person moves as fast, beyond doubt.
+bool BoxFilter::is_fast_for_sure() const {
+  const double speed = body_.velocity().norm();
+  const Vector3d ahead = body_.velocity().normalized();
+  const double sigma = std::sqrt(ahead.dot(body_.velocity_covariance_at(Vector3d::Zero()) * ahead));
+  return !is_person_like(0.0, speed - kSureSigmas * sigma);
+}
+
+bool BoxFilter::may_be_person() const {
+  return !was_vehicle_ && is_person_like(std::max(span(0), span(1)), body_.velocity().norm());
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
@@ -145,7 +153,8 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
     const double side = std::max(span_along(points, body_.position(), axes.col(0), kViewTrim).length(),
                                  span_along(points, body_.position(), axes.col(1), kViewTrim).length());
     if (side >= kShortestSide_m) {
-      const double sigma = std::hypot(config.yaw_sigma_rad, face_sigma(body_.position(), detection, config) / side);
+      const double sigma = std::hypot(config.yaw_sigma_rad, face_sigma(body_.position(), detection, config) / side,
+                                      kOnePointYaw_rad / std::sqrt(static_cast<double>(points.size())));
       log_likelihood_ += body_.correct_yaw(*fitted, sigma * sigma);
     }
   }
@@ -262,7 +271,7 @@ void BoxFilter::limit_length() {
 
 /// What is a small part of the body that its other sides speak of did not end where it seemed to, away from the sensor.
 void BoxFilter::forget_stumps(const Detection& detection) {
-  if (!has_heading_ || is_person_like(std::max(span(0), span(1)), body_.velocity().norm())) {
+  if (!has_heading_ || may_be_person()) {
     return;
   }
   const double height = span(2);
@@ -300,7 +309,7 @@ void BoxFilter::correct_middle(int axis, const AxisView& view) {
 /// without heading, which has neither.
 double BoxFilter::size_log_likelihood(const TrackConfig& config) const {
   const double height = span(2);
-  if (!has_heading_ || is_person_like(std::max(span(0), span(1)), body_.velocity().norm())) {
+  if (!has_heading_ || may_be_person()) {
     return 0.0;
   }
   const auto surprise = [&](int axis, const Belief& typical) {
@@ -338,7 +347,7 @@ double BoxFilter::span(int axis) const { return std::max(0.0, reach(high_face(ax
 /// Along, to the left and up, with what is not seen filled in by what is likely.
 std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
   const double height = span(2);
-  const bool is_small = is_person_like(std::max(span(0), span(1)), body_.velocity().norm());
+  const bool is_small = may_be_person();
   const bool is_person = !has_heading_ || is_small;
   // The width first: it varies least.
   Belief width{span(1), 0.0};
@@ -420,7 +429,8 @@ BoxFilter BoxFilter::blank() {
 }
 
 void BoxFilter::state(StateArchive& archive) {
-  archive(body_, has_heading_, least_, faces_, log_likelihood_, size_log_likelihood_, spread_mps_, signal_mps_);
+  archive(body_, has_heading_, was_vehicle_, least_, faces_, log_likelihood_, size_log_likelihood_, spread_mps_,
+          signal_mps_);
   for (std::optional<Interval>& seen : last_seen_) {
     bool is_known = seen.has_value();
     archive(is_known);

@@ -28,6 +28,12 @@ struct BoxEstimate {
   std::array<FaceView, kFaces.size()> faces{};                    ///< by Face
 };
 
+/// What was known of a body before a hypothesis begins.
+struct BoxHistory {
+  double log_likelihood = 0.0;  ///< of what was seen
+  bool was_vehicle = false;     ///< no person moves as it did
+};
+
 /// Sides shorter than this have no direction, m.
 constexpr double kShortestSide_m = 1.0;
 
@@ -41,8 +47,7 @@ class BoxFilter {
  public:
   /// From a first detection with at least one point, at its mean time. `yaw`: the direction in which, or against which,
   /// the body is taken to move, as vehicles move along their sides; level axes. Without it the body has no heading.
-  /// `log_likelihood`: of what was seen before.
-  BoxFilter(const Detection& detection, std::optional<double> yaw_rad, double log_likelihood,
+  BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const BoxHistory& history,
             const TrackConfig& config);
 
   /// One of which nothing is known, for its state to be read.
@@ -54,8 +59,12 @@ class BoxFilter {
   /// Takes in another detection; the state must be that of its mean time.
   void correct(const Detection& detection, const TrackConfig& config);
 
+  /// Something else speaks for the hypothesis, by this logarithm of a likelihood.
+  void credit(double log_likelihood) { log_likelihood_ += log_likelihood; }
+
   [[nodiscard]] const BodyFilter& body() const { return body_; }
   [[nodiscard]] bool has_heading() const { return has_heading_; }
+  [[nodiscard]] bool was_vehicle() const { return was_vehicle_; }
   [[nodiscard]] BoxEstimate estimate() const;
 
   /// The part of the box that was seen.
@@ -87,6 +96,8 @@ class BoxFilter {
   void limit_length();
   void forget_stumps(const Detection& detection);
   [[nodiscard]] double size_log_likelihood(const TrackConfig& config) const;
+  [[nodiscard]] bool is_fast_for_sure() const;
+  [[nodiscard]] bool may_be_person() const;
   [[nodiscard]] bool is_known(Face face) const;
   [[nodiscard]] double reach(Face face) const;
   [[nodiscard]] bool is_whole(int axis) const;
@@ -96,6 +107,7 @@ class BoxFilter {
 
   BodyFilter body_;
   bool has_heading_;
+  bool was_vehicle_ = false;                            ///< faster than any person, at any time
   std::array<double, kFaces.size()> least_{};           ///< m from the reference: points were seen so far out
   std::array<FaceView, kFaces.size()> faces_{};         ///< by Face
   std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last

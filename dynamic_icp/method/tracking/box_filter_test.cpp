@@ -55,7 +55,7 @@ TEST(BoxFilter, SidesShowTheDirectionOfTheMotion) {
   const Vector3d velocity = 10.0 * upright_axes(0.4).col(0);
   Vector3d centre(25, 6, 0);
   const TrackConfig config;
-  BoxFilter filter(rear_and_side(centre, velocity, 1.0, 1), 0.2, 0.0, config);
+  BoxFilter filter(rear_and_side(centre, velocity, 1.0, 1), 0.2, {}, config);
   for (std::uint64_t k = 2; k < 3; ++k) {
     centre += 0.1 * velocity;
     filter.predict(0.1, config);
@@ -70,7 +70,7 @@ TEST(BoxFilter, ABoxThatGrowsStaysWhereItsTrueEndIs) {
   const Vector3d velocity(10, 0, 0);
   Vector3d centre(25, 6, 0);
   const TrackConfig config;
-  BoxFilter filter(rear_and_side(centre, velocity, 0.3, 1), 0.0, 0.0, config);
+  BoxFilter filter(rear_and_side(centre, velocity, 0.3, 1), 0.0, {}, config);
   for (std::uint64_t k = 2; k < 12; ++k) {
     centre += 0.1 * velocity;
     filter.predict(0.1, config);
@@ -84,7 +84,7 @@ TEST(BoxFilter, ABoxThatGrowsStaysWhereItsTrueEndIs) {
 TEST(BoxFilter, WhatMovesBackwardsWasTakenTheWrongWayRound) {
   const Vector3d velocity(10, 0, 0);
   const TrackConfig config;
-  BoxFilter filter(rear_and_side({25, 6, 0}, velocity, 1.0, 1), std::numbers::pi, 0.0, config);
+  BoxFilter filter(rear_and_side({25, 6, 0}, velocity, 1.0, 1), std::numbers::pi, {}, config);
   const BoxEstimate estimate = filter.estimate();
   EXPECT_GT(estimate.box.axes.col(0).dot(velocity), 9.9);
   EXPECT_NEAR(middle_of(estimate.box, Face::kRear).x(), 20.0, 0.3);
@@ -112,7 +112,7 @@ void take_in(std::optional<BoxFilter>& filter, const Detection& detection, std::
     filter->predict(kScanPeriod_s, config);
     filter->correct(detection, config);
   } else {
-    filter.emplace(detection, yaw_rad, 0.0, config);
+    filter.emplace(detection, yaw_rad, BoxHistory{}, config);
   }
 }
 
@@ -309,7 +309,7 @@ TEST(BoxFilter, CovarianceOfTheCentreIsThatOfItsErrors) {
         filter->predict(kScanPeriod_s, config);
         filter->correct(whole_body(body, random.fork(k), config), config);
       } else {
-        filter.emplace(whole_body(body, random.fork(k), config), yaw, 0.0, config);
+        filter.emplace(whole_body(body, random.fork(k), config), yaw, BoxHistory{}, config);
       }
     }
     const BoxEstimate estimate = filter->estimate();
@@ -326,7 +326,7 @@ TEST(BoxFilter, ABodyWithoutHeadingIsInItsBox) {
   const TrackConfig config;
   const Vector3d velocity(1.5, 0, 0);
   const Detection detection = rear_and_side({12, 9, 0}, velocity, 0.3, 3);
-  const BoxFilter filter(detection, std::nullopt, 0.0, config);
+  const BoxFilter filter(detection, std::nullopt, {}, config);
   const OrientedBox box = filter.estimate().box;
   double farthest = 0.0;
   for (const Vector3d& point : detection.points) {
@@ -350,7 +350,7 @@ TEST(BoxFilter, OfAPartWithoutHeadingTheCentreIsAsUncertainAsWhatIsHidden) {
     detection.radial.push_back(point.normalized().dot(lorry.velocity));
     detection.times.push_back(0.0);
   }
-  BoxFilter filter(detection, std::nullopt, 0.0, config);
+  BoxFilter filter(detection, std::nullopt, {}, config);
   EXPECT_GT(filter.body().velocity().norm(), 2.5) << "no person";
   const BoxEstimate estimate = filter.estimate();
   const Eigen::Vector3d deviations = estimate.centre_covariance.diagonal().cwiseSqrt();

@@ -7,6 +7,14 @@
 
 namespace dynamic_icp::tracking {
 
+Eigen::Vector3d mean_of(std::span<const Eigen::Vector3d> points) {
+  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
+  for (const Eigen::Vector3d& point : points) {
+    sum += point;
+  }
+  return sum / static_cast<double>(points.size());
+}
+
 void make_detection(const Scan& scan, std::span<const double> radial, std::span<const std::uint32_t> rows,
                     const SensorMotion& sensor, const GroundHeights& heights, const RangeImage* view,
                     Detection& detection) {

@@ -135,6 +135,7 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
 
   const TrackingInput input = prepare(scan, radial, is_moving, sensor, workers);
   expect(input.stamp_s, sensor, [](const Entry&) { return true; });
+  gather_headings(sensor);
   associate(input, expected_, config_.growth_m, owners_);
   collect_members(input, workers);
   initiate_tracks(input, workers);
@@ -182,6 +183,22 @@ void ObjectTracker::expect(double stamp_s, const SensorMotion& sensor, const Cho
     if (choice(entry)) {
       entry.predict(stamp_s, config_.track);
       expected_.emplace_back(entry.predicted, entry.now, sensor, config_);
+    }
+  }
+}
+
+/// The headings of what is predicted, and that of the carrier.
+void ObjectTracker::gather_headings(const SensorMotion& sensor) {
+  headings_.clear();
+  const auto add = [&](const Vector3d& position, const Vector3d& velocity, const Vector3d& direction) {
+    if (velocity.norm() > config_.slow_mps) {
+      headings_.add(position, direction);
+    }
+  };
+  add(sensor.T_world_sensor.translation(), sensor.velocity_world, sensor.velocity_world.normalized());
+  for (const Entry& entry : living()) {
+    if (entry.confirmed && entry.predicted.is_sure_of_heading()) {
+      add(entry.now.box.centre, entry.now.velocity, entry.now.box.axes.col(0));
     }
   }
 }
@@ -258,6 +275,7 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   Track& corrected = entry.other;
   corrected = entry.track;
   make_detection(input.scan, input.radial, entry.members, input.sensor, input.heights, &input.view, entry.detection);
+  entry.detection.headings = &headings_;
   corrected.correct(entry.detection, input.stamp_s, config_.track);
   if (corrected.best().spread_mps() > config_.max_spread_mps) {
     return miss();
@@ -321,6 +339,7 @@ void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint3
     return;
   }
   make_detection(input.scan, input.radial, rows, input.sensor, input.heights, &input.view, entry.detection);
+  entry.detection.headings = &headings_;
   entry.track.begin(entry.detection, input.stamp_s, config_.track);
   // Errors around zero have more spread than signal.
   const BoxFilter& best = entry.track.best();

@@ -20,8 +20,34 @@ constexpr double kQuarterTurn = 0.5 * std::numbers::pi;
 constexpr double kLogAlongSides = 8.0;       // of what has sides: it moves along them rather than anywhere
 constexpr double kVehicle_m = 2.0;           // what is longer moves along its sides for sure
 constexpr double kKnownDirection_rad = 0.2;  // standard deviation of the direction of a motion that shows a heading
+constexpr double kSameDirection_rad = 0.2;   // headings that differ less are one
 constexpr double kLogHopeless = -8.0;        // relative to the best hypothesis
 constexpr int kDecisionDetections = 10;      // after so many the best hypothesis stays alone
+
+struct Sides {
+  double yaw_rad = 0.0;  ///< level axes, of one of them
+  double length_m = 0.0;
+};
+
+/// The sides of what a body shows that moves with `velocity`, where they are long enough to have a direction.
+std::optional<Sides> sides_of(const Detection& detection, const Eigen::Vector3d& velocity) {
+  const Eigen::Matrix3d& level = detection.ground.level;
+  DetectionMemory memory;
+  const std::pmr::vector<Eigen::Vector3d> points = points_at_mean_time(detection, velocity, memory);
+  const std::optional<double> yaw = fit_yaw(points, level, 0.0, 0.5 * kQuarterTurn);
+  if (!yaw) {
+    return std::nullopt;
+  }
+  const Eigen::Matrix3d axes = level * upright_axes(*yaw);
+  const double length = std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
+                                 span_along(points, points.front(), axes.col(1), 0.0).length());
+  return length < kShortestSide_m ? std::nullopt : std::optional(Sides{*yaw, length});
+}
+
+/// Whether directions agree, up to multiples of `period_rad`.
+bool is_along(double yaw_rad, double other_rad, double period_rad) {
+  return std::abs(std::remainder(yaw_rad - other_rad, period_rad)) < kSameDirection_rad;
+}
 
 }  // namespace
 
@@ -31,8 +57,8 @@ void Track::begin(const Detection& detection, double stamp_s, const TrackConfig&
   has_sides_ = false;
   best_ = 0;
   hypotheses_.clear();
-  hypotheses_.emplace_back(detection, std::nullopt, 0.0, config);
-  add_headings(detection, 0.0, config);
+  hypotheses_.emplace_back(detection, std::nullopt, BoxHistory{}, config);
+  add_headings(detection, BoxHistory{}, config);
   evaluate();
 }
 
@@ -52,30 +78,56 @@ std::optional<double> Track::heading_of_motion() const {
   return std::atan2(v.y(), v.x());
 }
 
-/// The sides of what is seen, where they are long enough to show a direction, else the motion.
-void Track::add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config) {
-  const Eigen::Matrix3d& level = detection.ground.level;
-  DetectionMemory memory;
-  const std::pmr::vector<Eigen::Vector3d> points = points_at_mean_time(detection, body().velocity(), memory);
-  const std::optional<double> yaw = fit_yaw(points, level, 0.0, 0.5 * kQuarterTurn);
-  double side_m = 0.0;
-  if (yaw) {
-    const Eigen::Matrix3d axes = level * upright_axes(*yaw);
-    side_m = std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
-                      span_along(points, points.front(), axes.col(1), 0.0).length());
+/// A heading that is not among the hypotheses yet, with what others near by say of it.
+void Track::add_heading(const Detection& detection, double yaw_rad, const BoxHistory& history,
+                        const TrackConfig& config) {
+  BoxHistory with_prior = history;
+  if (detection.headings != nullptr) {
+    with_prior.log_likelihood +=
+        detection.headings->log_ratio(mean_of(detection.points), detection.ground.level, yaw_rad);
   }
-  if (side_m < kShortestSide_m) {
-    if (const std::optional<double> heading = heading_of_motion(); heading && !has_heading()) {
-      hypotheses_.emplace_back(detection, *heading, log_likelihood + kLogAlongSides, config);
+  hypotheses_.emplace_back(detection, yaw_rad, with_prior, config);
+}
+
+/// The sides of what is seen, where they are long enough to show a direction, else the motion, else others near by.
+void Track::add_headings(const Detection& detection, const BoxHistory& history, const TrackConfig& config) {
+  const std::optional<double> likeliest =
+      detection.headings != nullptr
+          ? detection.headings->likeliest_yaw(mean_of(detection.points), detection.ground.level)
+          : std::nullopt;
+  const BoxHistory along_sides{history.log_likelihood + kLogAlongSides, history.was_vehicle};
+  const std::optional<Sides> sides = sides_of(detection, body().velocity());
+  if (!sides) {
+    if (has_heading()) {
+      return;
+    }
+    if (const std::optional<double> heading = heading_of_motion()) {
+      add_heading(detection, *heading, along_sides, config);
+    } else if (likeliest) {
+      add_heading(detection, *likeliest, history, config);
     }
     return;
   }
   has_sides_ = true;
-  if (side_m > kVehicle_m) {
-    hypotheses_.clear();
+  if (sides->length_m > kVehicle_m) {
+    std::erase_if(hypotheses_, [&](const BoxFilter& one) {
+      return !one.has_heading() || !is_along(one.body().yaw(), sides->yaw_rad, kQuarterTurn);
+    });
   }
-  for (const double heading : {*yaw, *yaw + kQuarterTurn}) {
-    hypotheses_.emplace_back(detection, heading, log_likelihood + kLogAlongSides, config);
+  for (const double heading : {sides->yaw_rad, sides->yaw_rad + kQuarterTurn}) {
+    const auto has_it = [&](const BoxFilter& one) {
+      return one.has_heading() && is_along(one.body().yaw(), heading, std::numbers::pi);
+    };
+    if (std::none_of(hypotheses_.begin(), hypotheses_.end(), has_it)) {
+      add_heading(detection, heading, along_sides, config);
+      continue;
+    }
+    for (BoxFilter& one : hypotheses_) {
+      one.credit(has_it(one) ? kLogAlongSides : 0.0);
+    }
+  }
+  if (likeliest && sides->length_m <= kVehicle_m && !is_along(*likeliest, sides->yaw_rad, kQuarterTurn)) {
+    add_heading(detection, *likeliest, along_sides, config);
   }
 }
 
@@ -94,8 +146,8 @@ void Track::correct(const Detection& detection, double stamp_s, const TrackConfi
   ++detections_;
   if (!has_sides_ || !has_heading()) {  // sides tell more of a heading than the motion of what little was seen at first
     // A new hypothesis pays for knowing nothing before; one like the old, begun now, shows how much.
-    const BoxFilter anew(detection, std::nullopt, 0.0, config);
-    add_headings(detection, best().log_likelihood() - anew.log_likelihood(), config);
+    const BoxFilter anew(detection, std::nullopt, BoxHistory{}, config);
+    add_headings(detection, {best().log_likelihood() - anew.log_likelihood(), best().was_vehicle()}, config);
   }
   evaluate();
 }

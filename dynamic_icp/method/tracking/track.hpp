@@ -40,6 +40,9 @@ class Track {
   /// Takes in another detection; the state is then that of its mean time.
   void correct(const Detection& detection, double stamp_s, const TrackConfig& config);
 
+  /// Whether the sides of the body tell its heading, and nothing else explains it.
+  [[nodiscard]] bool is_sure_of_heading() const { return has_sides_ && hypotheses_.size() == 1; }
+
   [[nodiscard]] double time_s() const { return time_s_; }
   [[nodiscard]] const BoxFilter& best() const { return hypotheses_[best_]; }
   [[nodiscard]] const BodyFilter& body() const { return best().body(); }
@@ -50,10 +53,12 @@ class Track {
   void state(StateArchive& archive);
 
  private:
-  // Without heading, with that of the motion, and with either direction along the sides.
-  static constexpr std::size_t kMaxHypotheses = 4;
+  // Without heading, with that of the motion or of other vehicles, with either direction along the sides, and with that of
+  // other vehicles again.
+  static constexpr std::size_t kMaxHypotheses = 5;
 
-  void add_headings(const Detection& detection, double log_likelihood, const TrackConfig& config);
+  void add_headings(const Detection& detection, const BoxHistory& history, const TrackConfig& config);
+  void add_heading(const Detection& detection, double yaw_rad, const BoxHistory& history, const TrackConfig& config);
   [[nodiscard]] std::optional<double> heading_of_motion() const;
   [[nodiscard]] bool has_heading() const;
   void evaluate();

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <numbers>
+#include <optional>
 
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
@@ -94,18 +96,30 @@ TEST(Track, CovarianceIncludesTheDisagreementOfTheHypotheses) {
   EXPECT_LT(std::sqrt(all.velocity_covariance(0, 0)), 0.3) << "along the line of sight they agree";
 }
 
-/// Of something that drives away a part of its rear, with a height of `height_m`.
-Track track_of_part(double speed_mps, double height_m) {
+/// Of something that drives away a part of its rear, with a height of `height_m`; `speed_mps` by the number of the
+/// scan.
+Track track_of_part(const std::function<double(int)>& speed_mps, double height_m,
+                    const HeadingPrior* headings = nullptr) {
   const TrackConfig config;
-  const Vector3d velocity(speed_mps, 0.0, 0.0);
+  const Vector3d size(0.2, 0.7, height_m);
   Vector3d centre(20.0, -4.0, 0.0);
-  Track track(car_at(centre, velocity, 1, 0.0, {0.2, 0.7, height_m}), 0.0, config);
-  for (std::uint64_t scan = 2; scan < 20; ++scan) {
+  std::optional<Track> track;
+  for (int scan = 0; scan < 20; ++scan) {
+    const Vector3d velocity(speed_mps(scan), 0.0, 0.0);
+    Detection detection = car_at(centre, velocity, static_cast<std::uint64_t>(scan) + 1, 0.0, size);
+    detection.headings = headings;
+    if (track) {
+      track->correct(detection, 0.1 * scan, config);
+    } else {
+      track.emplace(detection, 0.0, config);
+    }
     centre += 0.1 * velocity;
-    track.correct(car_at(centre, velocity, scan, 0.0, {0.2, 0.7, height_m}), 0.1 * static_cast<double>(scan - 1),
-                  config);
   }
-  return track;
+  return *track;
+}
+
+Track track_of_part(double speed_mps, double height_m, const HeadingPrior* headings = nullptr) {
+  return track_of_part([&](int /*scan*/) { return speed_mps; }, height_m, headings);
 }
 
 TEST(Track, WhatIsFasterThanAPersonPointsWhereItMovesThoughLittleIsSeenOfIt) {
@@ -117,6 +131,52 @@ TEST(Track, WhatIsFasterThanAPersonPointsWhereItMovesThoughLittleIsSeenOfIt) {
   const Track person = track_of_part(1.5, 1.8);
   EXPECT_FALSE(person.best().has_heading());
   EXPECT_LT(person.estimate().box.size.head<2>().maxCoeff(), 1.0);
+}
+
+TEST(Track, AVehicleThatSlowsDownIsNoPerson) {
+  const Track braking = track_of_part([](int scan) { return std::max(1.0, 6.0 - 0.5 * scan); }, 2.0);
+  EXPECT_NEAR(braking.body().velocity().norm(), 1.0, 0.1);
+  EXPECT_GT(braking.estimate().box.size.x(), 2.0);
+}
+
+TEST(Track, OfWhatLittleIsSeenTheTrafficTellsTheHeading) {
+  HeadingPrior headings;
+  for (const double x : {10.0, 25.0, 40.0}) {
+    headings.add({x, -8.0, 0.0}, Vector3d::UnitX());
+  }
+  // Slower than a person may be, and 11 degrees off the line of sight.
+  const Track alone = track_of_part(2.0, 2.4);
+  EXPECT_FALSE(alone.best().has_heading());
+  const Track among_others = track_of_part(2.0, 2.4, &headings);
+  ASSERT_TRUE(among_others.best().has_heading());
+  EXPECT_GT(among_others.estimate().box.axes.col(0).x(), 0.99);
+  const auto across_sigma = [](const Track& track) { return std::sqrt(track.estimate().velocity_covariance(1, 1)); };
+  EXPECT_NEAR(among_others.body().velocity().y(), 0.0, 0.2);
+  EXPECT_LT(across_sigma(among_others), 0.7 * across_sigma(alone));
+}
+
+TEST(Track, WhatCrossesTheTrafficDoesSo) {
+  // Sides are believed against what others do.
+  HeadingPrior headings;
+  for (const double x : {10.0, 15.0, 20.0, 25.0, 30.0}) {
+    headings.add({x, 6.0, 0.0}, Vector3d::UnitX());
+  }
+  const TrackConfig config;
+  const Vector3d velocity(0.0, 6.0, 0.0);
+  Vector3d centre(18.0, -8.0, 0.0);
+  std::optional<Track> track;
+  for (int scan = 0; scan < 12; ++scan) {
+    Detection detection = car_at(centre, velocity, static_cast<std::uint64_t>(scan) + 1);
+    detection.headings = &headings;
+    if (track) {
+      track->correct(detection, 0.1 * scan, config);
+    } else {
+      track.emplace(detection, 0.0, config);
+    }
+    centre += 0.1 * velocity;
+  }
+  EXPECT_GT(track->estimate().box.axes.col(0).y(), 0.99);
+  EXPECT_LT((track->body().velocity() - velocity).norm(), 0.5);
 }
 
 TEST(Track, SidesThatComeIntoViewCorrectAHeadingByMotion) {
