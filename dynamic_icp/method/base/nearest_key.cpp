@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,6 +32,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }
 
 std::size_t key_distance(std::string_view typed, std::string_view key) {
+  constexpr std::size_t kLongest = 100;  // no key is longer, and what has megabytes takes minutes
+  typed = typed.substr(0, kLongest);
   const std::size_t dot = key.rfind('.');
   const std::string_view last = dot == std::string_view::npos ? key : key.substr(dot + 1);
   return std::min(edit_distance(typed, key), edit_distance(typed, last));
@@ -39,10 +42,16 @@ std::size_t key_distance(std::string_view typed, std::string_view key) {
 }  // namespace
 
 std::string_view nearest_key(std::string_view typed, std::span<const std::string> keys) {
-  const auto nearest = std::min_element(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
-    return key_distance(typed, a) < key_distance(typed, b);
-  });
-  return nearest == keys.end() ? std::string_view() : std::string_view(*nearest);
+  std::string_view nearest;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const std::string& key : keys) {
+    const std::size_t distance = key_distance(typed, key);
+    if (distance < least) {
+      least = distance;
+      nearest = key;
+    }
+  }
+  return nearest;
 }
 
 std::string_view close_key(std::string_view typed, std::span<const std::string> keys) {

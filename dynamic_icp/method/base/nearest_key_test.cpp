@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/base/nearest_key.hpp"
 
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -18,6 +19,8 @@ TEST(NearestKey, TakesTheFewestChanges) {
   EXPECT_EQ(nearest_key("sise_m", keys), "grid.size_m");
   EXPECT_EQ(nearest_key("", std::vector<std::string>{"ab", "cd"}), "ab");
   EXPECT_EQ(nearest_key("speed", {}), "");
+  EXPECT_EQ(nearest_key("speed" + std::string(100'000'000, 's'), keys), "speed_mps")
+      << "of endless words the beginning counts";
 }
 
 TEST(ParseNumber, TakesWholeTextsOnly) {
