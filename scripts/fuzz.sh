@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-60}
 [[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "usage: scripts/fuzz.sh [SECONDS] [TARGET...]" >&2; exit 2; }
 shift $(($# > 0 ? 1 : 0))
-known=(npy npz pcd ply tum xyzd records aevascenes columns csv texts rosbag mcap db3 messages live scans)
+known=(npy npz pcd ply tum xyzd records aevascenes columns csv texts rosbag mcap db3 messages settings live scans)
 targets=("$@")
 [[ $# -eq 0 ]] && targets=("${known[@]}")
 for target in "${targets[@]}"; do

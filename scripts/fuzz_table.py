@@ -33,6 +33,8 @@ READERS = {
     "messages": ["recording/messages/" + name
                  for name in ("messages", "cloud_columns", "ros_messages", "foxglove_protobuf", "foxglove_json",
                               "wire_cursor", "protobuf_cursor")],
+    "settings": ["recording/formats/config_file", "recording/formats/yaml_", "recording/runs/calibration_file",
+                 "tools/benchmark/manifest"],
     "live": ["recording/live/access", "recording/live/protocol"],
     "scans": ["method/"],
 }
