@@ -18,6 +18,8 @@ namespace {
 
 constexpr double kSteepest_rad = 0.35;  // against the last ground
 constexpr std::size_t kMemory = 9;      // scans
+constexpr double kFewGround = 0.25;     // at least this share of them shows the ground ...
+constexpr double kSameHeight_m = 0.3;   // ... whose height changes by no more meanwhile
 
 // Heights are sorted into bins in cells of the ground.
 constexpr double kCell_m = 6.0;
@@ -42,10 +44,18 @@ const Ground& GroundFilter::update(const Eigen::Vector3d& normal, double offset_
     last_[next_] = plane;
     next_ = (next_ + 1) % kMemory;
   }
+  // What bounds a scene besides the ground passes below the ground near the carrier, so it is farther from the sensor.
+  std::array<double, kMemory> values;
+  std::transform(last_.begin(), last_.end(), values.begin(), [](const Plane& one) { return one.height_m; });
+  const double highest_m = quantile_among(std::span(values).first(last_.size()), kFewGround) + kSameHeight_m;
   const auto median_of = [&](const auto& part) {
-    std::array<double, kMemory> values;
-    std::transform(last_.begin(), last_.end(), values.begin(), part);
-    return quantile_among(std::span(values).first(last_.size()), 0.5);
+    std::size_t count = 0;
+    for (const Plane& one : last_) {
+      if (one.height_m <= highest_m) {
+        values[count++] = part(one);
+      }
+    }
+    return quantile_among(std::span(values).first(count), 0.5);
   };
   Eigen::Vector3d up;
   for (int axis = 0; axis < 3; ++axis) {

@@ -27,8 +27,8 @@ struct Ground {
   [[nodiscard]] Eigen::Vector3d up() const { return level.col(2); }
 };
 
-/// The ground from scan to scan. A scan may take something else for it now and then: direction and height are the
-/// medians over the last ones.
+/// The ground from scan to scan. Scans may take something else for it, an embankment for instance: direction and height
+/// are the medians over those of the last ones that show the plane nearest to the sensor.
 class GroundFilter {
  public:
   /// The ground where a scan from `sensor_world` (m) shows a plane of points x with `normal` . x = `offset_m` (world).

@@ -66,6 +66,20 @@ TEST(GroundFilter, AFewOtherPlanesDoNotMoveIt) {
   }
 }
 
+TEST(GroundFilter, OfPlanesThatScansAlternateBetweenTheNearestIsTheGround) {
+  // Most scans show an embankment beside the road: all is above that plane too, but it is farther from the sensor.
+  const Vector3d embankment = exp_so3({0.2, 0.0, 0.0}).col(2);
+  GroundFilter filter;
+  for (int scan = 0; scan < 30; ++scan) {
+    const bool is_ground = scan % 3 == 0;
+    filter.update(is_ground ? Vector3d(Vector3d::UnitZ()) : embankment, is_ground ? -2.0 : -4.2, {0, 0, 0});
+    if (scan > 2) {  // of three a quarter is none
+      EXPECT_LT(angle_between(filter.ground().up(), Vector3d::UnitZ()), 1e-9) << "scan " << scan;
+      EXPECT_NEAR(*filter.ground().offset_m, -2.0, 1e-9) << "scan " << scan;
+    }
+  }
+}
+
 TEST(GroundFilter, AWallIsNoGround) {
   GroundFilter filter;
   const Ground before = filter.update(exp_so3({0.05, 0.02, 0.0}).col(2), -1.8, {0, 0, 0});
