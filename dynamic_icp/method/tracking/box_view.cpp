@@ -27,6 +27,7 @@ constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end
 constexpr double kMaxGap_m = 0.5;
 constexpr double kFaceWidth_m = 0.5;    // what is seen so wide at an end that looks at the sensor is a face
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
+constexpr double kCarHeight_m = 1.8;    // what is higher has no hood, or a short one
 constexpr double kFullHeight = 0.4;  // below this share of their height bodies reach as far as anywhere: hoods, bumpers
 
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there and `lower_m`
@@ -113,7 +114,8 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   // Over something nearer often the cabin of a car is seen, and neither its hood nor its boot.
   const double ground =
       detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
-  const double full = ground + kFullHeight * (views[2].seen.high - ground);
+  const double height = views[2].seen.high - ground;
+  const double full = height < kCarHeight_m ? ground + kFullHeight * height : views[2].seen.high;
   const auto is_end = [&](const EndView& end, const Vector3d& outward) {
     const double facing = outward.dot((detection.sensor - end.middle).normalized());
     if (end.width > kFaceWidth_m && facing > kLooksAtSensor) {

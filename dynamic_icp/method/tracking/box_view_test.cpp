@@ -71,6 +71,7 @@ TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
     raw.points = cabin;
     for (double x = -4.0; x <= 4.0; x += 0.02) {
       raw.points.emplace_back(2.0 * x, -20.0, 0.0);  // behind all
+      raw.points.emplace_back(x, -4.0, kGround_m);
       for (double z = kGround_m; z < -0.45 && is_hidden; z += 0.02) {
         raw.points.emplace_back(x, -5.0, z);
       }
@@ -86,6 +87,28 @@ TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
     EXPECT_NE(along.low.is_true, is_hidden);
     EXPECT_TRUE(left.high.is_true) << "the side is seen";
   }
+}
+
+TEST(BoxView, OfALorryTheUpperPartEndsWhereTheLowerOneDoes) {
+  // The same as above, of what is higher than any car.
+  const std::vector<Vector3d> upper = face_points({-4.0, -8.0, -0.5}, {4.0, -8.0, 1.0});
+  RawScan raw;
+  raw.points = upper;
+  for (double x = -6.0; x <= 6.0; x += 0.02) {
+    raw.points.emplace_back(2.0 * x, -20.0, 0.0);
+    for (double z = -1.5; z < -0.4; z += 0.02) {
+      raw.points.emplace_back(x, -5.0, z);
+    }
+  }
+  raw.doppler.assign(raw.points.size(), 0.0);
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+  Detection detection;
+  detection.ground.offset_m = -1.5;
+  detection.view = &image;
+  const auto [along, left, up] =
+      views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, upper, {5.0, -5.0, 0.0}, detection);
+  EXPECT_TRUE(along.high.is_true);
+  EXPECT_TRUE(along.low.is_true);
 }
 
 TEST(BoxView, AFaceIsAnEndThoughSomethingHidesWhatIsBesideIt) {

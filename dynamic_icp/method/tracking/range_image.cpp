@@ -70,21 +70,23 @@ struct Coordinates {
 
 // The kernels keep what they sum up to themselves until the end: a store through a pointer could change anything else.
 
-/// The places of `count` points in the image. Returns the highest row among them.
-int find_places(const Coordinates& at, std::size_t count, std::uint32_t* places) {
-  int highest = 0;
+/// The places of `count` points in the image. Returns the rows between which they are.
+RangeImage::Rows find_places(const Coordinates& at, std::size_t count, std::uint32_t* places) {
+  RangeImage::Rows rows;
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     const std::size_t n = count;
     std::uint32_t* const place = places;
     int top = 0;
+    int bottom = kRows;
     for (std::size_t i = 0; i < n; ++i) {
       const Cell cell = cell_of(at.x[i], at.y[i], at.z[i]);
       place[i] = static_cast<std::uint32_t>(cell.column * kRows + cell.row);
       top = std::max(top, cell.row);
+      bottom = std::min(bottom, cell.row);
     }
-    highest = top;
+    rows = {bottom, top};
   });
-  return highest;
+  return rows;
 }
 
 /// The squared ranges of `count` points, m^2.
@@ -163,7 +165,7 @@ void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, 
   sectors_.resize(Workers::block_count(rows, kBlock));
   places_.resize(rows);
   squared_.resize(rows);
-  highest_of_block_.resize(Workers::block_count(rows, kBlock));
+  rows_of_block_.resize(Workers::block_count(rows, kBlock));
   workers.for_blocks(rows, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     Coordinates at;
@@ -178,14 +180,18 @@ void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, 
       at.take(&scan.directions()[begin], count);
       take_back_motion(at, &scan.times()[begin], velocity_sensor, count, &squared_[begin]);
     }
-    highest_of_block_[block] = find_places(at, count, &places_[begin]);
+    rows_of_block_[block] = find_places(at, count, &places_[begin]);
   });
   for (std::size_t row = 0; row < rows; ++row) {
     float& nearest = nearest_squared_[places_[row]];
     nearest = std::min(nearest, squared_[row]);
   }
   find_seen_columns();
-  highest_row_ = highest_of_block_.empty() ? 0 : *std::max_element(highest_of_block_.begin(), highest_of_block_.end());
+  seen_rows_ = {kRows, 0};
+  for (const Rows& of_block : rows_of_block_) {
+    seen_rows_.lowest = std::min(seen_rows_.lowest, of_block.lowest);
+    seen_rows_.highest = std::max(seen_rows_.highest, of_block.highest);
+  }
 }
 
 void RangeImage::find_seen_columns() {
@@ -228,7 +234,7 @@ bool RangeImage::are_mirrored(std::span<const std::uint32_t> rows) const {
   return static_cast<double>(rows.size()) < kFewBeside * static_cast<double>(all);
 }
 
-bool RangeImage::is_above_all(const Eigen::Vector3d& point) const { return cell_of(point).row > highest_row_; }
+bool RangeImage::is_above_all(const Eigen::Vector3d& point) const { return cell_of(point).row > seen_rows_.highest; }
 
 /// Whether something is seen in a column, or on both sides of it: lines of sight may be farther apart than columns.
 bool RangeImage::is_in_view(int column) const {
@@ -240,7 +246,7 @@ bool RangeImage::is_in_view(int column) const {
 
 bool RangeImage::hides(const Eigen::Vector3d& point, double clearance_m) const {
   const Cell cell = cell_of(point);
-  if (column_seen_.empty() || !is_in_view(cell.column)) {
+  if (column_seen_.empty() || !is_in_view(cell.column) || cell.row < seen_rows_.lowest) {
     return true;
   }
   // Of two cells above each other the one that holds more of what is seen above the point: below may be the ground.

@@ -20,8 +20,8 @@ namespace dynamic_icp::tracking {
 /// Tells the true end of a body from the place where something nearer begins to hide it.
 ///
 /// Made for bodies on the ground around the sensor: what is seen more than 46 degrees above or below its horizontal
-/// plane shares the outermost cells, and the edge of the field of view is known sideways and as the highest that was
-/// seen anywhere.
+/// plane shares the outermost cells, and the edge of the field of view is known sideways and as the lowest and the
+/// highest that was seen anywhere.
 class RangeImage {
  public:
   /// Where nothing is seen.
@@ -36,8 +36,8 @@ class RangeImage {
   void draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers);
 
   /// Whether what is at `point` (m, sensor frame when that direction was measured) is hidden, or would be: something at
-  /// least `clearance_m` nearer is seen in its direction, or nothing is seen above and below it either, as beyond the
-  /// edge of the field of view. A negative clearance: also by what is so much farther away.
+  /// least `clearance_m` nearer is seen in its direction, or nothing is seen above and below it either, or nowhere so
+  /// low, as beyond the edge of the field of view. A negative clearance: also by what is so much farther away.
   [[nodiscard]] bool hides(const Eigen::Vector3d& point, double clearance_m) const;
 
   /// Whether nothing in the whole scan is seen as high as `point` (m, sensor frame): it may be above the field of view.
@@ -71,13 +71,19 @@ class RangeImage {
     }
   }
 
+  /// Rows of the image.
+  struct Rows {
+    int lowest = 0;
+    int highest = 0;
+  };
+
   /// Width of a cell at a distance of one metre, m: what is closer together may share one.
   static double cell_width();
 
  private:
   std::vector<float> nearest_squared_;  ///< m^2, column by column; infinite where nothing is seen
   std::vector<char> column_seen_;
-  int highest_row_ = 0;
+  Rows seen_rows_;
   std::vector<Patch> patches_;
   std::vector<Patch> sectors_;
 
@@ -88,7 +94,7 @@ class RangeImage {
   // Of each row of the scan, as it was measured
   std::vector<std::uint32_t> places_;  ///< in the image
   std::vector<float> squared_;         ///< of the range, m^2
-  std::vector<int> highest_of_block_;  ///< row of the image
+  std::vector<Rows> rows_of_block_;
 };
 
 }  // namespace dynamic_icp::tracking

@@ -56,6 +56,15 @@ TEST(RangeImage, BeyondTheFieldOfViewAllIsHidden) {
   EXPECT_TRUE(RangeImage(Scan{}, Vector3d::Zero(), Workers(1)).hides(at(0.0, 10.0), 1.0));
 }
 
+TEST(RangeImage, BelowAllThatIsSeenAllIsHidden) {
+  RawScan raw;
+  add_wall(raw, -60.0, 60.0, 50.0);  // level: nothing is seen below
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+  EXPECT_FALSE(image.hides({10.0, 0.0, 0.0}, 1.0));
+  EXPECT_TRUE(image.hides({10.0, 0.0, -3.0}, 1.0));
+  EXPECT_FALSE(image.hides({10.0, 0.0, 3.0}, 1.0)) << "above there may be sky";
+}
+
 TEST(RangeImage, BetweenLinesOfSightThatAreFarApartNothingIsHidden) {
   RawScan raw;
   for (double azimuth = -60.0; azimuth <= 60.0; azimuth += 0.6) {  // every other column or so

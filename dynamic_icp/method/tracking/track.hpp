@@ -53,8 +53,8 @@ class Track {
   void state(StateArchive& archive);
 
  private:
-  // Without heading, with that of the motion or of other vehicles, with either direction along the sides, and with that of
-  // other vehicles again.
+  // Without heading, with that of the motion or of other vehicles, with either direction along the sides, and with that
+  // of other vehicles again.
   static constexpr std::size_t kMaxHypotheses = 5;
 
   void add_headings(const Detection& detection, const BoxHistory& history, const TrackConfig& config);
