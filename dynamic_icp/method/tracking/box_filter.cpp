@@ -42,6 +42,8 @@ constexpr double kUniform = 0.29;        // standard deviation of what is anywhe
 constexpr double kWorstLog = -10.0;
 constexpr double kGroundSigma_m = 0.05;
 constexpr double kErrorAngle_rad = 0.1;  // within it points share errors of the Doppler, and across it these differ
+constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
+constexpr double kLengthPower = 0.75;    // of the height, in typical lengths
 constexpr double kWorstLength = 1.75;    // of the typical length: none was found longer
 constexpr double kNoBox = 0.05;          // bodies end by this share of their size nearer or farther than boxes do
 
@@ -347,6 +349,8 @@ double BoxFilter::span(int axis) const { return std::max(0.0, reach(high_face(ax
 /// Along, to the left and up, with what is not seen filled in by what is likely.
 std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
   const double height = span(2);
+  // Above the field of view there may be more.
+  const Belief tall{height, is_known(Face::kTop) ? 0.0 : kHiddenHeight_m * kHiddenHeight_m};
   const bool is_small = may_be_person();
   const bool is_person = !has_heading_ || is_small;
   // The width first: it varies least.
@@ -357,6 +361,8 @@ std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
   Belief length{span(0), 0.0};
   if (!is_person && !is_whole(0)) {
     length = at_least(typical_length(width.mean, height), span(0));
+    const double slope = kLengthPower * length.mean / std::max(height, kHiddenHeight_m);
+    length.variance += slope * slope * tall.variance;
   }
   if (!has_heading_ && !is_small) {
     // A part of a vehicle, whichever: as much of it again may be anywhere.
@@ -368,7 +374,7 @@ std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
   for (const int axis : {0, 1, 2}) {
     const Face high = high_face(axis);
     const Face low = low_face(axis);
-    const Belief size = axis == 0 ? length : axis == 1 ? width : Belief{height, 0.0};
+    const Belief size = axis == 0 ? length : axis == 1 ? width : tall;
     Extent& extent = extents[static_cast<std::size_t>(axis)];
     extent.size = size.mean;
     const double shape = kNoBox * kNoBox * size.mean * size.mean;  // m^2, of an end that is seen

@@ -154,6 +154,37 @@ TEST(BoxFilter, OfALorrySeenFromBehindTheLengthIsALikelyOne) {
   }
 }
 
+TEST(BoxFilter, WhereTheTopIsAboveTheViewTheLengthIsMoreUncertain) {
+  // The rear of the same lorry: up to its top, and to what would be the upper edge of the field of view.
+  const TrackConfig config;
+  const MovingBox lorry = moving_body(30, 0, 0.0, 12, kLorry);
+  const auto share_of_length = [&](double highest_m) {
+    View view = view_of({lorry}, 0.0, 0.0);
+    std::vector<std::uint32_t> rows;
+    for (const std::uint32_t row : rows_on(view, 0)) {
+      if (view.scan.points()[row].z() <= highest_m) {
+        rows.push_back(row);
+      }
+    }
+    RawScan raw;
+    raw.points.emplace_back(50.0, 10.0, highest_m);  // something behind it
+    raw.doppler.push_back(0.0);
+    for (std::size_t row = 0; row < view.scan.size(); ++row) {
+      if (view.scan.points()[row].z() <= highest_m) {
+        raw.points.push_back(view.scan.points()[row]);
+        raw.doppler.push_back(0.0);
+      }
+    }
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    make_detection(view.scan, view.radial, rows, SensorMotion{},
+                   GroundHeights({Eigen::Matrix3d::Identity(), -kSensorHeight_m}), &image, detection);
+    const BoxEstimate estimate = BoxFilter(detection, 0.0, {}, config).estimate();
+    return std::sqrt(estimate.centre_covariance(0, 0)) / estimate.box.size.x();
+  };
+  EXPECT_GT(share_of_length(0.5), 1.2 * share_of_length(10.0));
+}
+
 TEST(BoxFilter, WhatComesIntoViewChangesTheLengthAndNotTheMotion) {
   // A lorry comes out from behind a screen with its front first. The rear was never seen until the end of it.
   const TrackConfig config;

@@ -19,8 +19,10 @@ using Eigen::Vector3d;
 constexpr double kGrazing = 0.03;  // faces seen at a smaller angle show nothing
 constexpr double kEndOn = 0.25;    // part of an axis across the line of sight, below which it is end-on
 constexpr double kDimSpeed_mps = 0.5;
-constexpr double kDimReach_m = 1.5;  // beyond an end
-constexpr double kEndDepth_m = 0.3;  // points so near to the end of a span make the end
+constexpr double kFadingSpeed_mps = 1.0;  // below it, too, where the radial velocity falls ...
+constexpr double kFading = 0.9;           // ... to this share of it
+constexpr double kDimReach_m = 1.5;       // beyond an end
+constexpr double kEndDepth_m = 0.3;       // points so near to the end of a span make the end
 constexpr double kLookBeyond_m = 0.4;
 constexpr double kClearance_m = 1.0;
 constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
@@ -44,7 +46,8 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, c
   // Points of the body that hardly move along the line of sight are missing among the moving ones.
   const double here = sight.dot(W);
   const double next = (to_end + kDimReach_m * outward).normalized().dot(W);
-  const bool is_dim = std::min(std::abs(here), std::abs(next)) < kDimSpeed_mps || here * next < 0.0;
+  const bool fades = std::abs(next) < std::min(kFadingSpeed_mps, kFading * std::abs(here));
+  const bool is_dim = std::min(std::abs(here), std::abs(next)) < kDimSpeed_mps || here * next < 0.0 || fades;
   if (detection.view == nullptr) {
     return !is_dim;
   }
@@ -55,7 +58,8 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, c
     if (is_upward && detection.view->is_above_all(beyond)) {
       return false;
     }
-    if (detection.view->hides(beyond, is_dim ? -kClearance_m : kClearance_m)) {
+    // Behind a dim end the body itself may go on; within a cell it is the end that is seen.
+    if (detection.view->hides(beyond, is_dim && step > cell ? -kClearance_m : kClearance_m)) {
       return false;
     }
     if (lower_m > 0.0) {

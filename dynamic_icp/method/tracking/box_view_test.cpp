@@ -61,6 +61,28 @@ TEST(BoxView, EndsThatHardlyMoveAlongTheLineOfSightMayGoOn) {
   EXPECT_TRUE(along.high.is_true);
 }
 
+TEST(BoxView, WhatContinuesASlowBodyIsPartOfItThoughItSeemsToStand) {
+  // A side of which the points beyond one end are too slow along their lines of sight to be among the moving ones. With
+  // nothing there but what is far behind it is an end.
+  const std::vector<Vector3d> side = face_points({4.0, -8.0, -0.5}, {8.0, -8.0, 0.5});
+  const Vector3d velocity(1.6, 0.0, 0.0);  // 0.7 m/s along the line of sight to the near end, and less beyond
+  for (const bool continues : {true, false}) {
+    RawScan raw;
+    for (double x = continues ? 0.0 : 4.0; x <= 8.0; x += 0.02) {
+      raw.points.emplace_back(x, -8.0, 0.0);
+    }
+    for (double x = 0.0; x <= 40.0; x += 0.05) {
+      raw.points.emplace_back(x, -20.0, 0.0);
+      raw.points.emplace_back(x, -20.0, -2.0);
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.view = &image;
+    EXPECT_NE(views_along(Matrix3d::Identity(), {6.0, -8.0, 0.0}, side, velocity, detection)[0].low.is_true, continues);
+  }
+}
+
 TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
   // The cabin of a car beside the sensor, seen over a wall that is nearer and hides hood and boot; without the wall,
   // and nothing seen there, the cabin is all there is.
