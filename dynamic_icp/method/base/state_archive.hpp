@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <concepts>
 #include <cstddef>
@@ -55,10 +56,13 @@ class StateArchive {
   void each(std::vector<Element>& elements, const std::type_identity_t<Element>& blank, const StateOf& state_of) {
     const std::size_t size = size_of(elements.size());
     if (reads_) {
-      elements.assign(size, blank);
+      elements.clear();
     }
-    for (Element& element : elements) {
-      state_of(element);
+    for (std::size_t i = 0; i < size; ++i) {  // one by one: what is said to be there may not be, and would take memory
+      if (i == elements.size()) {
+        elements.push_back(blank);
+      }
+      state_of(elements[i]);
     }
   }
   template <class Element, class StateOf>
@@ -114,12 +118,17 @@ class StateArchive {
 
   template <class Element>
   void value(std::vector<Element>& elements) {
-    elements.resize(size_of(elements.size()));
     if constexpr (std::is_arithmetic_v<Element>) {
+      elements.resize(size_of(elements.size(), sizeof(Element)));
       bytes(elements.data(), elements.size() * sizeof(Element));
     } else {
-      for (Element& element : elements) {
-        value(element);
+      const std::size_t size = size_of(elements.size());
+      elements.resize(std::min(size, elements.size()));
+      for (std::size_t i = 0; i < size; ++i) {
+        if (i == elements.size()) {
+          elements.emplace_back();
+        }
+        value(elements[i]);
       }
     }
   }
@@ -147,7 +156,7 @@ class StateArchive {
   void value(Eigen::Matrix<Number, rows, columns, options, max_rows, max_columns>& matrix) {
     if constexpr (rows == Eigen::Dynamic || columns == Eigen::Dynamic) {
       const std::size_t height = size_of(static_cast<std::size_t>(matrix.rows()));
-      const std::size_t width = size_of(static_cast<std::size_t>(matrix.cols()), height);
+      const std::size_t width = size_of(static_cast<std::size_t>(matrix.cols()), height * sizeof(Number));
       matrix.resize(static_cast<Eigen::Index>(height), static_cast<Eigen::Index>(width));
     }
     bytes(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(Number));

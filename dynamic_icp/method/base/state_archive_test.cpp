@@ -157,6 +157,29 @@ TEST(StateArchive, EachDamagedByteAndEachCutIsFound) {
   EXPECT_THROW(read(bytes + '\0'), DataError);
 }
 
+int parts_made = 0;
+
+struct CountedPart : Part {
+  CountedPart() { ++parts_made; }
+};
+
+// The checksum of such bytes is right: 800 elements of nine bytes are said to be in 800 bytes.
+TEST(StateArchive, MakesNoMoreElementsThanThereAreBytesFor) {
+  StateArchive lying;
+  std::string text(800, '\0');
+  lying(text);
+  const std::string bytes = lying.take();
+  std::vector<CountedPart> parts;
+  EXPECT_THROW(StateArchive{bytes}(parts), DataError);
+  EXPECT_LE(parts_made, 800 / 9 + 1);
+  Eigen::MatrixXd matrix;
+  std::uint64_t rows = 100;
+  lying(rows, text);
+  const std::string wide = lying.take();
+  EXPECT_THROW(StateArchive{wide}(matrix), DataError) << "100 x 800 numbers in 808 bytes";
+  EXPECT_EQ(matrix.size(), 0);
+}
+
 // The checksum of such bytes is right.
 TEST(StateArchive, ReadsNoMoreThanIsThereAndLeavesNothing) {
   StateArchive lying;

@@ -170,7 +170,8 @@ void OutputFolder::look_for_checkpoint(bool take_over) {
   const StagedNames names = within_ ? StagedNames::within(final_) : StagedNames::beside(final_);
   for (const StagedNames::Found& left : names.found()) {
     std::error_code ignored;
-    if (left.state != Staged::kPartial || !has_checkpoint(left.path, kind_) ||
+    if (left.state != Staged::kPartial || fs::symlink_status(left.path, ignored).type() != fs::file_type::directory ||
+        !has_checkpoint(left.path, kind_) ||
         fs::exists(names.path(Staged::kReplaced, left.number), ignored)) {  // was about to come into place
       continue;
     }

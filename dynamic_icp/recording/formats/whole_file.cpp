@@ -9,6 +9,7 @@
 
 #include <fcntl.h>
 #include <fmt/format.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
@@ -108,7 +109,11 @@ OutputFile::OutputFile(const std::filesystem::path& path, const std::filesystem:
 }
 
 OutputFile OutputFile::resume(const std::filesystem::path& path, std::uintmax_t length) {
-  OutputFile file(path, path, 0);
+  OutputFile file(path, path, O_NOFOLLOW | O_NONBLOCK);  // a pipe that nobody reads would be waited for
+  struct stat status = {};
+  if (::fstat(file.descriptor_, &status) != 0 || !S_ISREG(status.st_mode)) {
+    throw DataError(fmt::format("{}: is no regular file", path.string()));
+  }
   const off_t there = ::lseek(file.descriptor_, 0, SEEK_END);
   if (there < 0) {
     file.fail("read");

@@ -22,7 +22,8 @@ class OutputFile {
   explicit OutputFile(const std::filesystem::path& path);
   /// A file that is to be renamed: messages name the one that it will be.
   OutputFile(const std::filesystem::path& path, const std::filesystem::path& final_name);
-  /// Resumes a file after its first `length` bytes and cuts off the rest. DataError where it is shorter.
+  /// Resumes a file after its first `length` bytes and cuts off the rest. DataError where it is shorter, and where it
+  /// is a link or no regular file.
   static OutputFile resume(const std::filesystem::path& path, std::uintmax_t length);
   ~OutputFile();
   OutputFile(OutputFile&& other) noexcept;

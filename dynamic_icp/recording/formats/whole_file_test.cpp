@@ -118,6 +118,13 @@ TEST_F(WholeFile, AFileGoesOnAfterAGivenLength) {
   fs::remove(folder_ / "a");
   expect_refusal([&] { OutputFile::resume(folder_ / "a", 0); }, "cannot open");
   EXPECT_EQ(entries(), 0U);
+  write_whole_file(folder_ / "other", "of somebody");
+  fs::create_symlink(folder_ / "other", folder_ / "a");
+  expect_refusal([&] { OutputFile::resume(folder_ / "a", 0); }, "cannot open");
+  EXPECT_EQ(read_whole_file(folder_ / "other"), "of somebody");
+  fs::remove(folder_ / "a");
+  ASSERT_EQ(::mkfifo((folder_ / "a").c_str(), 0600), 0);
+  expect_refusal([&] { OutputFile::resume(folder_ / "a", 0); }, "cannot open");
 }
 
 TEST_F(WholeFile, TwoWritersDoNotMeet) {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/own_files.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::runs {
@@ -51,6 +52,16 @@ std::optional<Checkpoint> checkpoint_in(const fs::path& folder,
   }
 }
 
+/// A checkpoint is trusted as the memory of the program is, and the files beside it are written on.
+void refuse_foreign(const fs::path& final, const fs::path& path) {
+  try {
+    formats::refuse_foreign_files(path);
+  } catch (const DataError& error) {
+    throw DataError(
+        fmt::format("{}: cannot resume the run: {}; remove it to begin anew", final.string(), error.what()));
+  }
+}
+
 void refuse_difference(const fs::path& folder, const std::optional<std::string>& different) {
   if (different) {
     throw DataError(fmt::format("{}: cannot resume the run: {}", folder.string(), *different));
@@ -68,6 +79,7 @@ bool is_complete(const fs::path& folder, const nlohmann::json& about, const nloh
 
 Continuation after_killed(const formats::OutputFolder& output, const fs::path& final, const std::string& identity,
                           const std::function<void(const std::string& text)>& notice) {
+  refuse_foreign(final, output.path());
   Continuation result;
   result.from = checkpoint_in(output.path(), notice);
   if (result.from) {
@@ -94,6 +106,12 @@ Continuation after_written(const formats::OutputFolder& output, const fs::path& 
   if (result.is_complete) {
     return result;
   }
+  for (const std::string_view name : kWrittenAlong) {
+    std::error_code missing;
+    if (fs::symlink_status(final / name, missing).type() != fs::file_type::not_found) {
+      refuse_foreign(final, final / name);
+    }
+  }
   result.from = checkpoint_in(final, notice);
   if (result.from) {
     refuse_difference(final, difference(result.from->identity, identity));
@@ -119,6 +137,9 @@ Continuation continuation(const formats::OutputFolder& output, const fs::path& f
                                                  : Continuation{};
   } catch (const fs::filesystem_error& error) {
     throw DataError(fmt::format("{}: cannot resume the run: {}", final.string(), error.code().message()));
+  } catch (const nlohmann::json::exception&) {
+    throw DataError(
+        fmt::format("{}: cannot resume the run: its run.json or checkpoint is not what a run writes", final.string()));
   }
 }
 

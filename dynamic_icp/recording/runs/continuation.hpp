@@ -23,7 +23,8 @@ struct Continuation {
 /// removed. A damaged checkpoint is told by `notice`, and the run begins anew.
 ///
 /// Throws DataError naming the setting where the earlier run is another one than that of `identity` (run_identity); one
-/// that is whole may be replaced with `replace`.
+/// that is whole may be replaced with `replace`. So it does where something of what is left belongs to another user, or
+/// is a link or a pipe.
 Continuation continuation(const formats::OutputFolder& output, const std::filesystem::path& final,
                           const std::string& identity, bool replace,
                           const std::function<void(const std::string& text)>& notice);

@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
@@ -296,6 +298,62 @@ TEST_F(ResumedRun, ADamagedCheckpointAndFilesThatAreTooShortBeginAnew) {
     EXPECT_EQ(differing(files_in(settings_.output), whole), kNone) << at;
     fs::remove_all(settings_.output);
     fs::rename(kept, folder_.path() / ".out.partial-1");
+  }
+}
+
+TEST_F(ResumedRun, ThroughLinksAndPipesNothingIsWritten) {
+  settings_.resume = true;
+  folder_.write("other", "of somebody");
+  for (const char* const name : {kCheckpointFile, "frames.jsonl", "objects.jsonl"}) {
+    for (const bool is_link : {true, false}) {
+      if (!is_link && name == std::string_view(kCheckpointFile)) {
+        continue;  // no checkpoint at all: the run begins anew
+      }
+      run_until(3);
+      fs::remove(left() / name);
+      if (is_link) {
+        fs::create_symlink(folder_.path() / "other", left() / name);
+      } else {
+        ASSERT_EQ(::mkfifo((left() / name).c_str(), 0600), 0);
+      }
+      EXPECT_NE(refusal().find(std::string(name) + (is_link ? ": is a link" : ": is a pipe")), std::string::npos)
+          << refusal();
+      EXPECT_EQ(formats::read_whole_file(folder_.path() / "other"), "of somebody");
+      fs::remove_all(left());
+    }
+  }
+  run_until(3);
+  fs::rename(left() / "labels", folder_.path() / "kept");
+  folder_.write("kept/notes", "of somebody");
+  fs::create_directory_symlink(folder_.path() / "kept", left() / "labels");
+  EXPECT_NE(refusal().find("labels: is a link"), std::string::npos) << refusal();
+  EXPECT_TRUE(fs::exists(folder_.path() / "kept" / "notes"));
+}
+
+TEST_F(ResumedRun, WhatAnotherUserLeftIsRefused) {
+  run_until(3);
+  if (::chown((left() / kCheckpointFile).c_str(), ::geteuid() + 1, static_cast<gid_t>(-1)) != 0) {
+    GTEST_SKIP() << "may not give files away";
+  }
+  settings_.resume = true;
+  EXPECT_NE(refusal().find("belongs to another user"), std::string::npos) << refusal();
+}
+
+TEST_F(ResumedRun, ACheckpointOfNoScanOrNoRunIsRefused) {
+  run_until(3);
+  settings_.resume = true;
+  const Checkpoint written = read_checkpoint(left());
+  for (const std::size_t next : {std::size_t{0}, std::size_t{6}, std::size_t{1} << 62U}) {
+    Checkpoint changed = written;
+    changed.next = next;
+    write_checkpoint(left(), changed);
+    EXPECT_NE(refusal().find("expected 1 to 5"), std::string::npos) << refusal();
+  }
+  for (const char* const identity : {"", "{", "{\"version\": [}"}) {
+    Checkpoint changed = written;
+    changed.identity = identity;
+    write_checkpoint(left(), changed);
+    EXPECT_NE(refusal().find("cannot resume the run: its run.json or checkpoint"), std::string::npos) << refusal();
   }
 }
 
