@@ -88,6 +88,9 @@ struct FollowedMcap::State {
   /// Takes over what the scan saw.
   void take_seen() {
     for (const McapScan::Seen& seen : scan.take_seen()) {
+      if (passes != nullptr && !passes(scan.channels().channels().at(seen.entry.topic))) {
+        continue;
+      }
       come.push_back({seen.entry, bytes->arrival(std::min(seen.end, bytes->size()))});
     }
     static_cast<void>(bytes->arrival(scan.at()));  // what is known of the time before is not needed any more
@@ -117,6 +120,7 @@ struct FollowedMcap::State {
   std::shared_ptr<const McapPieces> pieces;
   McapScan scan;
   std::vector<Come> come;  ///< since they were taken
+  bool (*passes)(const Topic& topic) = nullptr;
   std::shared_ptr<SoFar> bag;
   bool is_over = false;
   std::string cut;
@@ -124,6 +128,8 @@ struct FollowedMcap::State {
 
 FollowedMcap::FollowedMcap(std::unique_ptr<GrowingBytes> bytes) : state_(std::make_unique<State>(std::move(bytes))) {}
 FollowedMcap::~FollowedMcap() = default;
+
+void FollowedMcap::keep_only(bool (*passes)(const Topic& topic)) { state_->passes = passes; }
 
 void FollowedMcap::advance(std::chrono::milliseconds longest, std::uint64_t most_records) {
   State& state = *state_;
@@ -194,6 +200,12 @@ std::vector<FollowedMcap::NewMessage> FollowedMcap::take_new() {
 std::size_t FollowedMcap::come() const { return state_->come.size(); }
 
 const std::filesystem::path& FollowedMcap::path() const { return state_->bytes->path(); }
+
+std::uint64_t FollowedMcap::kept() const { return state_->bytes->kept(); }
+
+void FollowedMcap::forget_before_new() {
+  forget_before(state_->come.empty() ? std::nullopt : std::optional(state_->come.front().entry));
+}
 
 void FollowedMcap::forget_before(const std::optional<MessageEntry>& entry) {
   state_->bytes->forget_before(entry ? entry->place : state_->scan.at());

@@ -33,6 +33,9 @@ class FollowedMcap {
     std::optional<Arrival> arrival;  ///< of its last byte; nothing where it was there before anybody looked
   };
 
+  /// From now on messages of other topics count as none; null: there are no others.
+  void keep_only(bool (*passes)(const Topic& topic));
+
   /// Waits for further records, but not longer than that, and takes what is there, but not more than so many. Throws
   /// DataError where they cannot come, or are damaged (Damage, which names the byte): what came before stays.
   void advance(std::chrono::milliseconds longest,
@@ -57,6 +60,12 @@ class FollowedMcap {
   /// have are left out. The first time these are all: `come` of them are in the bag.
   std::vector<NewMessage> take_new();
   [[nodiscard]] std::size_t come() const;
+
+  /// Bytes of a stream that are kept to be read again; of a file none.
+  [[nodiscard]] std::uint64_t kept() const;
+
+  /// What comes before the messages that were not taken yet is not read again.
+  void forget_before_new();
 
   /// What comes before a message is not read again; without one, nothing that has come.
   void forget_before(const std::optional<MessageEntry>& entry);

@@ -149,6 +149,11 @@ class GrowingStream final : public GrowingBytes {
     changed_.notify_all();
   }
 
+  [[nodiscard]] std::uint64_t kept() const override {
+    const std::lock_guard lock(mutex_);
+    return size() - begin_;
+  }
+
   void drain() override { is_drained_ = true; }
 
  private:

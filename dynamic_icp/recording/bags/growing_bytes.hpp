@@ -39,6 +39,9 @@ class GrowingBytes : public ReadableBytes {
   /// Bytes before a place are not read again, and need not be kept.
   virtual void forget_before(std::uint64_t /*place*/) {}
 
+  /// Bytes that are kept only because they may be read again.
+  [[nodiscard]] virtual std::uint64_t kept() const { return 0; }
+
   /// Bytes behind those that are there are not wanted; who writes them should not notice.
   virtual void drain() {}
 

@@ -124,12 +124,19 @@ void McapChannels::add_schema(ByteReader content) {
   const auto id = content.number<std::uint16_t>();
   std::string type = plain_type(content.text());
   content.text();  // encoding of the schema: that of the messages tells enough
-  schemas_.try_emplace(id, Schema{std::move(type), std::string(content.text())});
+  const std::string_view data = content.text();
+  if (!schemas_.contains(id)) {
+    keep(content, type.size() + data.size());
+    schemas_.emplace(id, Schema{std::move(type), std::string(data)});
+  }
 }
 
 void McapChannels::add_channel(ByteReader content) {
   const auto id = content.number<std::uint16_t>();
   const auto schema = content.number<std::uint16_t>();
+  if (channels_.contains(id)) {
+    return;
+  }
   Topic topic;
   topic.name = content.text();
   topic.encoding_name = content.text();
@@ -139,10 +146,20 @@ void McapChannels::add_channel(ByteReader content) {
     if (found == schemas_.end()) {
       throw content.damage(fmt::format("a channel of schema {}, which does not exist", schema));
     }
+    keep(content, found->second.type.size() + found->second.data.size());
     topic.type = found->second.type;
     topic.schema = found->second.data;
   }
-  channels_.try_emplace(id, std::move(topic));
+  keep(content, topic.name.size() + topic.encoding_name.size());
+  channels_.emplace(id, std::move(topic));
+}
+
+void McapChannels::keep(const ByteReader& content, std::uint64_t bytes) {
+  kept_ += bytes;
+  if (kept_ > kMostBytes) {
+    throw content.damage(
+        fmt::format("the names and descriptions of its topics have more than {} MiB", kMostBytes >> 20U));
+  }
 }
 
 }  // namespace dynamic_icp::bags

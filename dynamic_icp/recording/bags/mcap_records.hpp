@@ -84,9 +84,12 @@ struct McapChunkIndex {
 
 McapChunkIndex mcap_chunk_index(ByteSource& source, const McapRecord& record);
 
-/// Schemas and channels, wherever they stand.
+/// Schemas and channels, wherever they stand. Each channel has a copy of the description of its type: a small file, and
+/// a stream that never ends, may ask for any amount of memory, and are refused beyond `kMostBytes`.
 class McapChannels {
  public:
+  static constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20U;
+
   void add_schema(ByteReader content);
 
   /// Throws Damage where its schema is unknown.
@@ -102,6 +105,10 @@ class McapChannels {
     std::string data;
   };
 
+  /// Throws Damage where all that is kept of them becomes more than any recording describes.
+  void keep(const ByteReader& content, std::uint64_t bytes);
+
+  std::uint64_t kept_ = 0;  ///< bytes of names and descriptions
   std::map<std::uint16_t, Schema> schemas_;
   std::map<std::uint64_t, Topic> channels_;
 };

@@ -4,13 +4,16 @@
 // files are read by @mcap/core in tests/interop.
 #include "dynamic_icp/recording/bags/mcap_writer.hpp"
 
+#include <filesystem>
 #include <optional>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 #include <zstd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/bags/bag.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
@@ -316,6 +319,34 @@ TEST(McapWriter, KeepsOneChunkInMemory) {
   }
   writer.finish();
   EXPECT_LT(largest, settings.chunk_bytes + message.size() + 1000);
+}
+
+// 4 MB that would become 64 GB: each channel has a copy of the description of its type.
+TEST(McapReader, DescriptionsOfTopicsTakeABoundedAmountOfMemory) {
+  const std::filesystem::path path =
+      std::filesystem::temp_directory_path() / ("mcap_descriptions-" + std::to_string(::getpid()) + ".mcap");
+  for (const std::size_t channels : {200U, 300U}) {
+    std::string file;
+    McapWriter writer([&](std::string_view bytes) { file += bytes; }, small_chunks(0));
+    const std::uint16_t schema = writer.add_schema({"a.Type", "protobuf", std::string(1U << 20U, 'x')});
+    for (std::size_t k = 0; k < channels; ++k) {
+      writer.add_channel({schema, "/topic" + std::to_string(k), "protobuf", {}});
+    }
+    writer.finish();
+    formats::write_whole_file(path, file);
+    if (channels == 200U) {
+      EXPECT_EQ(open_bag(path)->topics().size(), channels);
+      continue;
+    }
+    try {
+      open_bag(path);
+      ADD_FAILURE() << "must throw";
+    } catch (const DataError& error) {
+      EXPECT_NE(std::string(error.what()).find("descriptions of its topics have more than 256 MiB"), std::string::npos)
+          << error.what();
+    }
+  }
+  std::filesystem::remove(path);
 }
 
 }  // namespace

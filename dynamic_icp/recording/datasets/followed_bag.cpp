@@ -22,7 +22,14 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kAskWhetherToStop{20};
 constexpr std::uint64_t kAll = std::numeric_limits<std::uint64_t>::max();
+constexpr std::uint64_t kMostBeforeOpen = std::uint64_t{4} << 30U;  // bytes of a stream
+constexpr std::size_t kMostMessagesBeforeOpen = 16'000'000;
 constexpr std::uint64_t kLateTopic = 3;  // times as many clouds of another topic: a topic that is missing stays so
+
+/// Of what else comes nothing is kept.
+bool is_used(const bags::Topic& topic) {
+  return messages::is_cloud(topic) || messages::is_transforms(topic) || messages::is_pose(topic);
+}
 
 class FollowedBag final : public FollowedDataset {
  public:
@@ -42,6 +49,7 @@ class FollowedBag final : public FollowedDataset {
           "truth-topic needs a recording that can be read again; of a stream state the file of the ground "
           "truth");
     }
+    mcap_->keep_only(is_used);
   }
 
   bool wait_for(std::size_t index, const std::function<bool()>& stop) override {
@@ -135,6 +143,20 @@ class FollowedBag final : public FollowedDataset {
     }
     if (dataset_) {
       take_new();
+    } else {
+      wait_on();
+    }
+  }
+
+  /// Keeps what it will be opened with, but not without end.
+  void wait_on() {
+    mcap_->forget_before_new();
+    if (mcap_->kept() > kMostBeforeOpen || mcap_->come() > kMostMessagesBeforeOpen) {
+      throw DataError(
+          fmt::format("{}: {} MiB and {} messages of clouds, poses and transforms came and had to be kept before its "
+                      "first {} clouds of points did, expected at most {} MiB and {}",
+                      name_.string(), mcap_->kept() >> 20U, mcap_->come(), first_, kMostBeforeOpen >> 20U,
+                      kMostMessagesBeforeOpen));
     }
   }
 

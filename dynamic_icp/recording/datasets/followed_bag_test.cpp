@@ -332,6 +332,43 @@ TEST_F(FollowedBagTest, AFileThatGoesAwayShrinksOrIsReplacedIsAnError) {
       << shorter;
 }
 
+TEST_F(FollowedBagTest, NothingIsKeptOfAStreamBeforeItsFirstCloud) {
+  std::vector<Message> messages;
+  for (int k = 0; k < 40; ++k) {
+    messages.push_back({3, at_ns(-5.0 + 0.1 * k), std::string(1'000'000, 'i')});
+  }
+  const std::size_t before = messages.size();
+  const std::vector<Message> rest = drive();
+  messages.insert(messages.end(), rest.begin(), rest.end());
+  const std::string content = by_hand::mcap_file(channels_of_drive(), messages, layout_of("unchunked"));
+  const Followed followed = follow_stream(content);
+  EXPECT_EQ(followed.fault, "");
+  expect_as_finished(followed.scans, content);
+
+  std::array<int, 2> ends = {};
+  ASSERT_EQ(::pipe(ends.data()), 0);
+  std::thread writer([&, end = ends[1]] {
+    messages.resize(before);
+    const std::string cut = by_hand::mcap_file(channels_of_drive(), messages, layout_of("unchunked"));
+    for (std::size_t at = 0; at < cut.size();) {
+      const ::ssize_t written = ::write(end, cut.data() + at, std::min<std::size_t>(100'000, cut.size() - at));
+      ASSERT_GT(written, 0);
+      at += static_cast<std::size_t>(written);
+    }
+    ::close(end);
+  });
+  bags::FollowedMcap mcap(bags::growing_stream(ends[0], "a stream"));
+  mcap.keep_only([](const bags::Topic& topic) { return topic.name == "/lidar"; });
+  while (!mcap.is_over()) {
+    mcap.advance(std::chrono::milliseconds(20), 1);
+    mcap.forget_before_new();
+  }
+  writer.join();
+  ::close(ends[0]);
+  EXPECT_EQ(mcap.come(), 0U);
+  EXPECT_LT(mcap.kept(), 4'000'000U) << "of 40 MB: the last blocks";
+}
+
 TEST_F(FollowedBagTest, WaitingEndsWhenItIsToStopOrNothingComes) {
   const std::string content = by_hand::mcap_file(channels_of_drive(), drive(), layout_of("none"));
   write_file(file(), content.substr(0, 40));

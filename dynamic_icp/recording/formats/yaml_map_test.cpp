@@ -263,7 +263,7 @@ TEST(YamlMap, RefusesWhatIsNoMapOrNoYaml) {
   EXPECT_NE(message_of([] { yaml_of("- 1\n"); }).find("line 1: holds a list of 1, expected a map"), std::string::npos);
   EXPECT_NE(message_of([] { yaml_of("\n5\n"); }).find("line 2: holds '5'"), std::string::npos);
   EXPECT_NE(message_of([] { yaml_of("a: 1\n[1]: 2\n"); }).find("line 2: a key is a list of 1"), std::string::npos);
-  const auto fault_of = [](const char* text) -> std::string {
+  const auto fault_of = [](const std::string& text) -> std::string {
     try {
       yaml_of(text);
     } catch (const DataError& error) {
@@ -275,6 +275,8 @@ TEST(YamlMap, RefusesWhatIsNoMapOrNoYaml) {
   for (const char* text : {",a: 1\n", ",b  1a&:\n"}) {  // of which yaml-cpp makes documents without end
     EXPECT_EQ(fault_of(text), "file.yaml: line 1: is no YAML: nothing begins so");
   }
+  EXPECT_EQ(fault_of("#" + std::string(8U << 20U, '[')),
+            "file.yaml: has 8388609 bytes, expected at most 8388608 of YAML");
   for (const char* text : {"a: {b: 1\n", "a: *nobody\n", "a: 1\n\x04 b: 2\n", "a: \xC3\n", "a: \xC0\x80\n",
                            "a: \xED\xA0\x80\n", "a: \xF5\x80\x80\x80\n", "a: \x80\n", "a: \xFF\n"}) {
     EXPECT_EQ(fault_of(text).rfind("file.yaml: line ", 0), 0u) << fault_of(text);

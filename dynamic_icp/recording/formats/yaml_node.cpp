@@ -107,6 +107,10 @@ std::string found(const YAML::Node& node) {
 }
 
 YAML::Node parse_document(std::string_view text, const std::filesystem::path& origin) {
+  if (text.size() > kMaxYamlBytes) {
+    throw DataError(
+        fmt::format("{}: has {} bytes, expected at most {} of YAML", origin.string(), text.size(), kMaxYamlBytes));
+  }
   const auto control = std::find_if(text.begin(), text.end(), [](char c) {
     return static_cast<unsigned char>(c) < 0x20 && c != '\n' && c != '\r' && c != '\t';
   });

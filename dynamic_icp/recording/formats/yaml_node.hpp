@@ -15,6 +15,9 @@
 // The side of yaml_map.hpp that sees the YAML library.
 namespace dynamic_icp::formats {
 
+/// Longer documents are refused: the parser takes up to 240 bytes for each of theirs.
+constexpr std::size_t kMaxYamlBytes = std::size_t{8} << 20U;
+
 /// "<origin>: line <line>".
 std::string place(const std::filesystem::path& origin, int line);
 
@@ -24,7 +27,7 @@ int line_of(const YAML::Node& node);
 std::string found(const YAML::Node& node);
 
 /// The node of a text that holds one document; undefined where it holds nothing. Throws DataError where the text is
-/// not UTF-8 or no YAML.
+/// too long, not UTF-8 or no YAML.
 YAML::Node parse_document(std::string_view text, const std::filesystem::path& origin);
 
 /// Sets fields from nested maps; every key may be set once, whether nested or dotted.
