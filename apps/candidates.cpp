@@ -10,6 +10,7 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/nearest_key.hpp"
 #include "dynamic_icp/tools/benchmark/variants.hpp"
 
 #include "apps/method_options.hpp"
@@ -29,8 +30,8 @@ std::vector<std::string> chosen_names(const std::string& option, const std::stri
   for (std::string name; std::getline(names, name, ',');) {
     const bool is_known = std::find(known.begin(), known.end(), name) != known.end();
     if (!is_known && !(none_allowed && name == "none")) {
-      throw UsageError(fmt::format("{}: unknown name '{}'; known are: all, {}{}", option, name,
-                                   none_allowed ? "none, " : "", fmt::join(known, ", ")));
+      throw UsageError(fmt::format("{}: unknown name '{}'{}; known are: all, {}{}", option, name,
+                                   did_you_mean(name, known), none_allowed ? "none, " : "", fmt::join(known, ", ")));
     }
     wanted.push_back(name);
   }

@@ -64,6 +64,7 @@ TEST_F(CommandLine, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("run " + in + out + " -z 5", "'run' has no option '-z'; see");
   expect_usage_error("run " + in + out + " more words", "'run' takes no further arguments: 'more', 'words'");
   expect_usage_error("run " + in + out + " --method kis-icp", "unknown method 'kis-icp' (did you mean 'kiss-icp'?)");
+  expect_usage_error("run " + in + out + " --method KISS", "(did you mean 'kiss-icp'?)");
   expect_usage_error("run " + in + out + " --preset papr", "(did you mean 'paper'?)");
   expect_usage_error("run " + in + out + " --format npzz", "(did you mean 'npz'?)");
   expect_usage_error("convert " + in + out + " --to dcip", "(did you mean 'dicp'?)");
@@ -79,6 +80,7 @@ TEST_F(CommandLine, WrongUseIsStatusTwoAndNamesTheRemedy) {
   expect_usage_error("run " + in + " --out x", "no option '--out'; did you mean '--output'");
   expect_usage_error("run " + in + " -output x", "no option '-output'; did you mean '--output'");
   expect_usage_error("help rnu", "(did you mean 'run'?)");
+  expect_usage_error("run " + in + out + " --set window.knot=1", "did you mean 'window.knot_spacing_s'");
   expect_usage_error("run " + in + out + " --set voxel_sise_m=1", "did you mean 'preprocess.voxel.voxel_size_m'");
   expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m=-1", "0 to 100 m");
   expect_usage_error("run " + in + out + " --set preprocess.voxel.voxel_size_m", "expected key=value");

@@ -72,6 +72,15 @@ def as_channel(name: str, values: Optional[ArrayLike], dtype: Any) -> Optional[N
     return np.ascontiguousarray(array, dtype=dtype)
 
 
+def whole_number(name: str, value: Any) -> int:
+    """An argument that counts something; its range is checked by the extension module."""
+    try:
+        return operator.index(value)
+    except TypeError:
+        found = f"{value!r} of type {type(value).__name__}"
+        raise _core.UsageError(f"{name} is {found}, expected a whole number") from None
+
+
 def text_of(value: object) -> str:
     """A value as a configuration file writes it."""
     if isinstance(value, (bool, np.bool_)):

@@ -11,9 +11,19 @@ from typing import Any, Callable, Mapping, Optional, Union
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import PathLike, Stamp, as_array, setting_texts
+from ._arrays import PathLike, Stamp, as_array, setting_texts, whole_number
 from ._frame import Frame
 from ._scan import Scan
+
+
+# Options of the program that have another name as arguments.
+OF_THE_PROGRAM = {
+    "max_frames": "max_scans",
+    "frames": "max_scans",
+    "force": "replace",
+    "quiet": "progress",
+    "config": "settings",
+}
 
 
 def method_settings(
@@ -28,8 +38,13 @@ def method_settings(
     known = [key for key, *_ in _core.configuration_keys(method, preset)]
     arguments = list(inspect.signature(function).parameters)
     for name in more:
+        if any(key == name or key.endswith("." + name) for key in known):
+            continue
         meant = difflib.get_close_matches(name, arguments, n=1, cutoff=0.8)
-        if meant and not any(key == name or key.endswith("." + name) for key in known):
+        other = OF_THE_PROGRAM.get(name) or OF_THE_PROGRAM.get(f"{name}s")
+        if other in arguments:
+            meant = [other]
+        if meant:
             raise _core.UsageError(f"unknown argument '{name}'; did you mean '{meant[0]}'?")
     return setting_texts(settings, more, known)
 
@@ -102,6 +117,7 @@ class Odometry:
         settings: Optional[Mapping[str, Any]] = None,
         **more: Any,
     ) -> None:
+        threads = whole_number("threads", threads)
         self._words = f"preset={preset!r}, method={method!r}, threads={threads}"
         self._core = _core.Odometry(
             method=method,

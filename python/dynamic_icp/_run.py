@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+import inspect
 import json
 import os
 import pathlib
@@ -14,10 +15,11 @@ from functools import partial
 from typing import Any, Callable, Mapping, Optional, Union
 
 from . import _core
-from ._arrays import FloatArray, PathLike
+from ._arrays import FloatArray, PathLike, whole_number
 from ._frame import Frame
 from ._odometry import method_settings
 from ._recording import Recording, input_texts
+from ._recording import open as open_recording
 from ._show import COLOURS, HtmlTable, needed
 from ._trajectory import Trajectory, read_trajectory
 
@@ -192,6 +194,11 @@ def run(
         path = path.path
     kept = tempfile.TemporaryDirectory(prefix="dynamic-icp-") if output is None else None
     folder = os.path.join(kept.name, "run") if kept is not None else os.fspath(output or "")
+    for name in more:
+        if name in inspect.signature(open_recording).parameters:
+            raise _core.UsageError(
+                f"'{name}' is said of the recording: run(open(path, {name}=...)) or input={{'{name}': ...}}"
+            )
     options = {
         "method": method,
         "preset": preset,
@@ -200,9 +207,9 @@ def run(
         "output": folder,
         "ground_truth": _text(ground_truth),
         "replace": replace,
-        "threads": threads,
-        "start": start,
-        "max_scans": max_scans,
+        "threads": whole_number("threads", threads),
+        "start": whole_number("start", start),
+        "max_scans": None if max_scans is None else whole_number("max_scans", max_scans),
         "save_labels": save_labels,
         "map_file": _text(save_map),
         "map_voxel": map_voxel,

@@ -11,9 +11,15 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from . import _core
-from ._arrays import FloatArray, as_array, setting_texts
+from ._arrays import FloatArray, as_array, setting_texts, whole_number
 from ._frame import EgoVelocity
 from ._scan import Scan
+
+
+def _a_scan(scan: object) -> Scan:
+    if not isinstance(scan, Scan):
+        raise _core.UsageError(f"scan is of type {type(scan).__name__}, expected a Scan: Scan(points, doppler) makes one")
+    return scan
 
 
 def ego_velocity(
@@ -41,7 +47,8 @@ def ego_velocity(
         Settings of the stage, e.g. inlier_threshold_mps; docs/configuration.md.
     """
     given = None if prior is None else as_array("prior", prior).astype(np.float64)
-    return EgoVelocity(**_core.ego_velocity(scan, method, given, setting_texts(settings, more), threads))
+    count = whole_number("threads", threads)
+    return EgoVelocity(**_core.ego_velocity(_a_scan(scan), method, given, setting_texts(settings, more), count))
 
 
 def velocity_filter(
@@ -64,7 +71,7 @@ def velocity_filter(
         m/s, r_i = s_i + u_i . velocity; NaN for points that are no measurements.
     """
     given = as_array("velocity", velocity).astype(np.float64)
-    moving, compensated = _core.velocity_filter(scan, given, tau_0, kappa)
+    moving, compensated = _core.velocity_filter(_a_scan(scan), given, tau_0, kappa)
     return moving.astype(bool), compensated
 
 
@@ -135,7 +142,13 @@ def hdbscan(
     given = as_array("points", points)
     if given.ndim == 2 and given.shape[1] == 2 and given.dtype in (np.float32, np.float64):
         given = np.column_stack([given, np.zeros(len(given), given.dtype)])
-    members = _core.hdbscan(given, min_cluster_size, min_samples, allow_single_cluster, threads)
+    members = _core.hdbscan(
+        given,
+        whole_number("min_cluster_size", min_cluster_size),
+        whole_number("min_samples", min_samples),
+        allow_single_cluster,
+        whole_number("threads", threads),
+    )
     tree = CondensedTree(**members.pop("tree"))
     return Clusters(**members, tree=tree)
 
@@ -210,7 +223,8 @@ def normals(points: ArrayLike, *, radius: float = 2.0, max_neighbours: int = 30,
     array of shape (N, 3)
         Unit vectors of either sign; NaN where the neighbourhood is no plane or the point is not finite.
     """
-    return _core.normals(as_array("points", points), radius, max_neighbours, threads)
+    count = whole_number("max_neighbours", max_neighbours)
+    return _core.normals(as_array("points", points), radius, count, whole_number("threads", threads))
 
 
 def deskew(points: ArrayLike, times: ArrayLike, twist: ArrayLike) -> FloatArray:

@@ -165,6 +165,12 @@ def test_messages_are_those_of_the_program(folder, tmp_path):
         dynamic_icp.Odometry(thread=2)
     with pytest.raises(dynamic_icp.UsageError, match="unknown argument 'save_label'; did you mean 'save_labels'"):
         dynamic_icp.run(folder, tmp_path / "none", save_label=True)
+    with pytest.raises(dynamic_icp.UsageError, match="unknown argument 'max_frames'; did you mean 'max_scans'"):
+        dynamic_icp.run(folder, tmp_path / "none", max_frames=3)
+    with pytest.raises(dynamic_icp.UsageError, match="'doppler_sign' is said of the recording"):
+        dynamic_icp.run(folder, tmp_path / "none", doppler_sign="towards")
+    with pytest.raises(dynamic_icp.UsageError, match="threads is '4' of type str, expected a whole number"):
+        dynamic_icp.Odometry(threads="4")
     with pytest.raises(ValueError, match="may be any of"):
         dynamic_icp.Odometry("paper", max_iterations=5)
 

@@ -36,6 +36,10 @@ def test_wrong_words_are_named(static_scan):
         dynamic_icp.ego_velocity(static_scan, prior=[1.0, 2.0])
     with pytest.raises(ValueError, match="no_such_key"):
         dynamic_icp.ego_velocity(static_scan, no_such_key=1)
+    with pytest.raises(dynamic_icp.UsageError, match="scan is of type ndarray, expected a Scan"):
+        dynamic_icp.ego_velocity(static_scan.points)
+    with pytest.raises(dynamic_icp.UsageError, match="min_samples is 2.5 of type float, expected a whole number"):
+        dynamic_icp.hdbscan(static_scan.points, min_samples=2.5)
 
 
 def test_the_velocity_filter_is_its_equation(static_scan):

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -31,12 +32,22 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
   return rows[a.size()][b.size()];
 }
 
-std::size_t key_distance(std::string_view typed, std::string_view key) {
-  constexpr std::size_t kLongest = 100;  // no key is longer, and what has megabytes takes minutes
-  typed = typed.substr(0, kLongest);
-  const std::size_t dot = key.rfind('.');
-  const std::string_view last = dot == std::string_view::npos ? key : key.substr(dot + 1);
-  return std::min(edit_distance(typed, key), edit_distance(typed, last));
+std::string in_small_letters(std::string_view text) {
+  std::string small(text);
+  std::ranges::transform(small, small.begin(),
+                         [](char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); });
+  return small;
+}
+
+/// Letters to change, twice; a part of a key is nearer than one with a single letter to change.
+std::size_t key_distance(std::string_view typed_as_is, std::string_view key_as_is) {
+  constexpr std::size_t kFewest = 3;     // letters that say something
+  constexpr std::size_t kLongest = 100;  // no key is longer, and what has megabytes would take minutes
+  const std::string typed = in_small_letters(typed_as_is.substr(0, kLongest));
+  const std::string key = in_small_letters(key_as_is);
+  const std::string_view last = std::string_view(key).substr(key.rfind('.') + 1);  // npos + 1 is 0
+  const std::size_t changes = 2 * std::min(edit_distance(typed, key), edit_distance(typed, last));
+  return typed.size() >= kFewest && key.find(typed) != std::string::npos ? std::min<std::size_t>(changes, 1) : changes;
 }
 
 }  // namespace
@@ -56,7 +67,8 @@ std::string_view nearest_key(std::string_view typed, std::span<const std::string
 
 std::string_view close_key(std::string_view typed, std::span<const std::string> keys) {
   const std::string_view nearest = nearest_key(typed, keys);
-  return !nearest.empty() && key_distance(typed, nearest) <= (nearest.size() + 2) / 3 ? nearest : std::string_view();
+  return !nearest.empty() && key_distance(typed, nearest) <= 2 * ((nearest.size() + 2) / 3) ? nearest
+                                                                                            : std::string_view();
 }
 
 std::string did_you_mean(std::string_view typed, std::span<const std::string> keys) {

@@ -8,9 +8,10 @@
 
 namespace dynamic_icp {
 
-/// The known key that was probably meant by what was typed: the one with the fewest letters to change, where two
-/// neighbours in each other's place are one change and the last part of a dotted key ("voxel_size_m") counts as the
-/// whole; the first of equals. Empty when there are no keys.
+/// The known key that was probably meant by what was typed: one of which that is a part of three letters or more
+/// ("voxel"), else the one with the fewest letters to change, where two neighbours in each other's place are one change
+/// and the last part of a dotted key ("voxel_size_m") counts as the whole; the first of equals. Capital letters are no
+/// change. Empty when there are no keys.
 std::string_view nearest_key(std::string_view typed, std::span<const std::string> keys);
 
 /// The same where it may well be a slip of the typist: no more than a third of its letters, rounded up, are to change.

@@ -23,6 +23,17 @@ TEST(NearestKey, TakesTheFewestChanges) {
       << "of endless words the beginning counts";
 }
 
+TEST(NearestKey, APartOfAKeyIsNearerThanAnotherWord) {
+  const std::vector<std::string> keys = {"sweep.levels", "filter.voxel.voxel_size_m", "window.knot_spacing_s",
+                                         "kiss-icp"};
+  EXPECT_EQ(nearest_key("voxel", keys), "filter.voxel.voxel_size_m");
+  EXPECT_EQ(nearest_key("window.knot", keys), "window.knot_spacing_s");
+  EXPECT_EQ(nearest_key("sweep.level", keys), "sweep.levels");
+  EXPECT_EQ(close_key("kiss", keys), "kiss-icp");
+  EXPECT_EQ(close_key("KISS-ICP", keys), "kiss-icp");
+  EXPECT_EQ(nearest_key("levels", std::vector<std::string>{"levels_of_all", "levels"}), "levels") << "the same word";
+}
+
 TEST(ParseNumber, TakesWholeTextsOnly) {
   EXPECT_EQ(parse_number<double>("-1.5e2"), -150.0);
   EXPECT_EQ(parse_number<int>("+7"), 7);

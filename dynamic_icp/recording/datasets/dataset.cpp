@@ -189,7 +189,7 @@ Match match_of(const fs::path& input, const OpenOptions& options) {
     throw DataError("standard input cannot be read twice: it can only be followed");
   }
   if (status.type() == fs::file_type::not_found) {
-    throw DataError(fmt::format("{}: no such file or folder", input.string()));
+    throw DataError(fmt::format("{}: no such file or folder", input.empty() ? "''" : input.string()));
   }
   if (fault) {  // a link to itself, a folder that must not be entered
     throw DataError(fmt::format("{}: cannot be opened: {}", input.string(), fault.message()));

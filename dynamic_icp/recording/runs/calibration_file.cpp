@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/yaml_map.hpp"
 
 namespace dynamic_icp::runs {
@@ -59,6 +60,9 @@ std::string calibration_text(const SensorCalibration& calibration) {
 
 SensorCalibration read_calibration(const std::filesystem::path& path) {
   const formats::YamlMap map = formats::YamlMap::load(path);
+  if (!map.has("line_elevations_rad")) {  // other files of a run have a version, too
+    throw UsageError(fmt::format("{}: has no line_elevations_rad: expected calibration.yaml of a run", path.string()));
+  }
   SensorCalibration result;
   static_cast<void>(map.whole_number("version", {1, 1}));
   FieldShape& shape = result.shape;

@@ -83,6 +83,8 @@ TEST_F(CalibrationFile, ReadsBackOneWithoutLines) {
 }
 
 TEST_F(CalibrationFile, RefusesWhatDoesNotFit) {
+  EXPECT_NE(refused("line_elevations_rad: [-0.1, 0, 0.125]\n", "").find("expected calibration.yaml of a run"),
+            std::string::npos);
   EXPECT_NE(refused("version: 1", "version: 2").find("calibration.yaml: line 3"), std::string::npos);
   EXPECT_NE(refused("scale_mps: 0.11", "scale_mps: -0.11").find("scale_mps"), std::string::npos);
   EXPECT_NE(refused("sigma_mps: [0.05]", "sigma_mps: [0.05, 1]").find("sigma_mps"), std::string::npos);
