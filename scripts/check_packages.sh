@@ -9,8 +9,9 @@ parts=("$@")
 [[ $# -eq 0 ]] && parts=(installed sources)
 mirror=http://deb.debian.org/debian
 
+command -v debootstrap >/dev/null || { echo "needs debootstrap (apt-get install debootstrap)" >&2; exit 1; }
 root=$(mktemp -d)
-trap 'rm -rf "$root"' EXIT
+trap 'rm -rf "$root" "$root.log"' EXIT
 debootstrap --variant=minbase bookworm "$root" "$mirror" >"$root.log" 2>&1 || { cat "$root.log"; exit 1; }
 rm -f "$root.log"
 install -D -t "$root/packages" build/packages/*

@@ -6,7 +6,7 @@
 Simulates drives of different scenes and sensor errors and strings them together by links, again and again, into one recording
 of the wanted length. Where one drive follows another, the sensor jumps.
 
-usage: scripts/endurance.py FOLDER [--scans 100000] [--columns 75] [--program build/dynamic-icp]
+usage: scripts/endurance.py FOLDER [--scans 100000] [--columns 75] [--checkpoint S] [--program build/dynamic-icp]
 """
 import argparse
 import json
@@ -80,6 +80,7 @@ def main():
     parser.add_argument("folder", type=pathlib.Path)
     parser.add_argument("--scans", type=int, default=100_000)
     parser.add_argument("--columns", type=int, default=75, help="columns of a scan; fewer take less time")
+    parser.add_argument("--checkpoint", type=float, help="seconds between two checkpoints; as the program does where not stated")
     parser.add_argument("--program", default="build/dynamic-icp")
     arguments = parser.parse_args()
     program = str(pathlib.Path(arguments.program).resolve())
@@ -89,7 +90,8 @@ def main():
     run = arguments.folder / "run"
     start = time.time()
     with open(arguments.folder / "messages.txt", "w") as messages:
-        process = subprocess.Popen([program, "run", recording, "--output", run, "--force", "--quiet"], stderr=messages)
+        words = [] if arguments.checkpoint is None else ["--checkpoint", str(arguments.checkpoint)]
+        process = subprocess.Popen([program, "run", recording, "--output", run, "--force", "--quiet", *words], stderr=messages)
         memory = Memory(process)
         memory.start()
         status = process.wait()

@@ -2,7 +2,7 @@
 """Lets the machine fail under the program, in every way that it can, and looks at what is left; see docs/robustness.md.
 
 usage: faults.py PROGRAM [--library failing_calls.so] [--parts calls,kills,resume,disk,limits,inputs] [--commands NAME,...]
-                 [--places N] [--kills N] [--seed N]
+                 [--calls open,read,write,fsync,rename,mkdir,malloc] [--places N] [--kills N] [--seed N]
 
 --places is how many calls of each kind fail in turn, spread evenly over those that a command makes (0: every one).
 Prints a table; status 1 where anything was not as it must be.
@@ -99,7 +99,7 @@ def calls(work, command, findings, options):
     """One call of the C library fails: the n-th of its kind, and with a full disk all that follow."""
     report = work.folder / "report"
     common = {"LD_PRELOAD": str(options.library), "FAULT_REPORT": str(report)}
-    for call, errors in FAULTS.items():
+    for call, errors in ((call, FAULTS[call]) for call in options.calls.split(",")):
         report.unlink(missing_ok=True)
         # Of children of benchmark: the longest.
         common |= {"FAULT_CALL": call, "FAULT_UNDER": "" if call == "malloc" else str(work.folder)}
@@ -309,11 +309,15 @@ def main():
     parser.add_argument("--library", type=Path)
     parser.add_argument("--parts", default=",".join(PARTS))
     parser.add_argument("--commands", default="")
+    parser.add_argument("--calls", default=",".join(FAULTS))
     parser.add_argument("--places", type=int, default=3)
     parser.add_argument("--kills", type=int, default=3)
     parser.add_argument("--seed", type=int, default=1)
     options = parser.parse_args()
     parts = options.parts.split(",")
+    for name, words, known in (("--parts", parts, PARTS), ("--calls", options.calls.split(","), FAULTS)):
+        if unknown := [word for word in words if word not in known]:
+            parser.error(f"{name}: unknown {unknown[0]!r}, expected some of {','.join(known)}")
     if "calls" in parts and not options.library:
         parser.error("part calls needs --library")
     signal.signal(signal.SIGXFSZ, signal.SIG_DFL)  # Python ignores it, and children inherit that

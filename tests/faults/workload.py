@@ -81,6 +81,7 @@ class Workload:
             Command("run", ["run", drive, "--quiet", "--threads", "1", "--save-labels", "--save-map", "{out}/map.pcd", "--report", "--output", "{out}"]),
             Command("run-resume", ["run", longer, "--quiet", "--threads", "1", "--save-labels", "--save-map", "{out}/map.pcd", "--save-kitti",
                                    "{out}/poses.txt", "--checkpoint", "0", "--resume", "--output", "{out}"], resumes=True),
+            Command("run-live", ["run", drive, "--quiet", "--threads", "1", "--live", "0", "--output", "{out}"]),
             Command("run-mcap", ["run", drive, "--quiet", "--threads", "1", "--mcap", "{out}/run.mcap", "--output", "{out}"]),
             Command("convert-npz", ["convert", drive, "--to", "npz", "--quiet", "--output", "{out}"]),
             Command("convert-pcd", ["convert", drive, "--to", "pcd", "--quiet", "--output", "{out}"]),
