@@ -3,8 +3,12 @@
 #include "dynamic_icp/recording/formats/own_files.hpp"
 
 #include <cerrno>
+#include <cstdlib>
 #include <cstring>
+#include <optional>
+#include <string>
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -16,31 +20,59 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Whether it is a folder.
-bool check_entry(const fs::path& path) {
+/// Whom a file belongs to that is made in a folder; who runs the program where none can be made.
+uid_t owner_of_new_file(const fs::path& folder) {
+  std::string name = (folder / "owner.XXXXXX").string();
+  const int file = ::mkostemp(name.data(), O_CLOEXEC);
   struct stat status = {};
-  if (::lstat(path.c_str(), &status) != 0) {
-    throw DataError(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
+  const bool is_known = file >= 0 && ::fstat(file, &status) == 0;
+  if (file >= 0) {
+    ::close(file);
+    ::unlink(name.c_str());
   }
-  const bool is_folder = S_ISDIR(status.st_mode);
-  if (!is_folder && !S_ISREG(status.st_mode)) {
-    throw DataError(fmt::format("{}: is {}, expected a regular file or a folder", path.string(),
-                                S_ISLNK(status.st_mode) ? "a link" : "a pipe, socket or device"));
-  }
-  if (status.st_uid != ::geteuid()) {
-    throw DataError(fmt::format("{}: belongs to another user (uid {})", path.string(), status.st_uid));
-  }
-  return is_folder;
+  return is_known ? status.st_uid : ::geteuid();
 }
+
+class OwnerCheck {
+ public:
+  explicit OwnerCheck(const fs::path& folder) : folder_(folder) {}
+
+  /// Whether an entry is a folder; throws where it is not one's own.
+  bool check(const fs::path& path) {
+    struct stat status = {};
+    if (::lstat(path.c_str(), &status) != 0) {
+      throw DataError(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
+    }
+    const bool is_folder = S_ISDIR(status.st_mode);
+    if (!is_folder && !S_ISREG(status.st_mode)) {
+      throw DataError(fmt::format("{}: is {}, expected a regular file or a folder", path.string(),
+                                  S_ISLNK(status.st_mode) ? "a link" : "a pipe, socket or device"));
+    }
+    if (status.st_uid != ::geteuid() && status.st_uid != owner_of_new()) {
+      throw DataError(fmt::format("{}: belongs to another user (uid {})", path.string(), status.st_uid));
+    }
+    return is_folder;
+  }
+
+ private:
+  uid_t owner_of_new() {
+    owner_of_new_ = owner_of_new_ ? *owner_of_new_ : owner_of_new_file(folder_);
+    return *owner_of_new_;
+  }
+
+  const fs::path& folder_;
+  std::optional<uid_t> owner_of_new_;
+};
 
 }  // namespace
 
-void refuse_foreign_files(const fs::path& path) {
-  if (!check_entry(path)) {
+void refuse_foreign_files(const fs::path& path, const fs::path& folder) {
+  OwnerCheck owner(folder);
+  if (!owner.check(path)) {
     return;
   }
   for (fs::recursive_directory_iterator entry(path); entry != fs::recursive_directory_iterator(); ++entry) {
-    check_entry(entry->path());
+    owner.check(entry->path());
   }
 }
 

@@ -26,7 +26,7 @@ class OwnFiles : public ::testing::Test {
 
   [[nodiscard]] std::string refusal() const {
     try {
-      refuse_foreign_files(run_);
+      refuse_foreign_files(run_, folder_);
     } catch (const DataError& error) {
       return error.what();
     }
@@ -40,8 +40,8 @@ class OwnFiles : public ::testing::Test {
 
 TEST_F(OwnFiles, FilesAndFoldersOfOnesOwnPass) {
   EXPECT_EQ(refusal(), "");
-  EXPECT_NO_THROW(refuse_foreign_files(folder_ / "other"));
-  EXPECT_THROW(refuse_foreign_files(folder_ / "nothing"), DataError);
+  EXPECT_NO_THROW(refuse_foreign_files(folder_ / "other", folder_));
+  EXPECT_THROW(refuse_foreign_files(folder_ / "nothing", folder_), DataError);
 }
 
 TEST_F(OwnFiles, LinksAndPipesAreRefusedByName) {
@@ -52,7 +52,7 @@ TEST_F(OwnFiles, LinksAndPipesAreRefusedByName) {
   EXPECT_NE(refusal().find("1.bin: is a pipe"), std::string::npos) << refusal();
   fs::remove(inner_);
   fs::create_directory_symlink(run_, folder_ / "way");
-  EXPECT_THROW(refuse_foreign_files(folder_ / "way"), DataError) << "of the folder itself";
+  EXPECT_THROW(refuse_foreign_files(folder_ / "way", folder_), DataError) << "of the folder itself";
 }
 
 TEST_F(OwnFiles, ThoseOfAnotherUserAreRefusedByName) {
@@ -61,6 +61,7 @@ TEST_F(OwnFiles, ThoseOfAnotherUserAreRefusedByName) {
     GTEST_SKIP() << "may not give files away";
   }
   EXPECT_NE(refusal().find("1.bin: belongs to another user"), std::string::npos) << refusal();
+  EXPECT_EQ(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()), 2) << "nothing is left";
 }
 
 }  // namespace

@@ -53,9 +53,9 @@ std::optional<Checkpoint> checkpoint_in(const fs::path& folder,
 }
 
 /// A checkpoint is trusted as the memory of the program is, and the files beside it are written on.
-void refuse_foreign(const fs::path& final, const fs::path& path) {
+void refuse_foreign(const formats::OutputFolder& output, const fs::path& final, const fs::path& path) {
   try {
-    formats::refuse_foreign_files(path);
+    formats::refuse_foreign_files(path, output.path());
   } catch (const DataError& error) {
     throw DataError(
         fmt::format("{}: cannot resume the run: {}; remove it to begin anew", final.string(), error.what()));
@@ -79,7 +79,7 @@ bool is_complete(const fs::path& folder, const nlohmann::json& about, const nloh
 
 Continuation after_killed(const formats::OutputFolder& output, const fs::path& final, const std::string& identity,
                           const std::function<void(const std::string& text)>& notice) {
-  refuse_foreign(final, output.path());
+  refuse_foreign(output, final, output.path());
   Continuation result;
   result.from = checkpoint_in(output.path(), notice);
   if (result.from) {
@@ -109,7 +109,7 @@ Continuation after_written(const formats::OutputFolder& output, const fs::path& 
   for (const std::string_view name : kWrittenAlong) {
     std::error_code missing;
     if (fs::symlink_status(final / name, missing).type() != fs::file_type::not_found) {
-      refuse_foreign(final, final / name);
+      refuse_foreign(output, final, final / name);
     }
   }
   result.from = checkpoint_in(final, notice);
