@@ -4,7 +4,7 @@ import { bestOf } from '../src/panels/comparison.js';
 import { cumulative } from '../src/plots/distributions.js';
 import { tracePolyline } from '../src/plots/polyline.js';
 import { needsLogarithm } from '../src/plots/time_plots.js';
-import { createScale, roundStep, tickText, valueRange } from '../src/plots/scale.js';
+import { createScale, labelBeside, roundStep, tickText, valueRange } from '../src/plots/scale.js';
 
 test('steps are 1, 2 or 5 times a power of ten', () => {
   assert.deepEqual([roundStep(10, 5), roundStep(7, 5), roundStep(0.13, 4), roundStep(1000, 3)], [2, 2, 0.05, 500]);
@@ -51,6 +51,17 @@ const trace = (xs, ys) => {
   tracePolyline(xs, ys, { move: (x, y) => calls.push(['move', y]), line: (x, y) => calls.push(['line', y]), dot: (x, y) => calls.push(['dot', y]) });
   return calls;
 };
+
+test('the name of a level lies within the picture, wherever the level does', () => {
+  const letters = 13;
+  for (let line = 6; line <= 120; ++line) {
+    const { y, baseline } = labelBeside(line, letters);
+    const [top, bottom] = baseline === 'bottom' ? [y - letters, y] : [y, y + letters];
+    assert.ok(top >= 0, `${line}: from ${top}`);
+    assert.ok(bottom < line || top > line, `${line}: from ${top} to ${bottom}`);
+    assert.equal(baseline, line >= 15 ? 'bottom' : 'top', 'above its line where there is room');
+  }
+});
 
 test('a line breaks where values are missing, and a lone value is a dot', () => {
   const calls = trace([0, 10, 20, 30, 40], [1, 2, null, 4, null]);

@@ -5,10 +5,11 @@ import { drawnByProcessor } from '../processor.js';
 import { closest } from '../runs.js';
 import { cssColour } from '../theme.js';
 import { tracePolyline } from './polyline.js';
-import { createScale, tickText, valueRange } from './scale.js';
+import { createScale, labelBeside, tickText, valueRange } from './scale.js';
 
 const EDGE = { left: 44, right: 8, top: 6, bottom: 18 };
 const FONT = '11px system-ui, "DejaVu Sans", sans-serif';
+const LETTERS = 13; // px of their height
 
 /**
  * @typedef {object} Series
@@ -138,11 +139,12 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
       pen.stroke();
       pen.setLineDash([]);
       pen.textAlign = 'right';
-      pen.textBaseline = 'bottom';
+      const label = labelBeside(place, LETTERS);
+      pen.textBaseline = label.baseline;
       pen.lineWidth = 3; // letters stay readable over lines
       pen.strokeStyle = resolved('--background');
-      pen.strokeText(name, width - EDGE.right - 3, place - 2);
-      pen.fillText(name, width - EDGE.right - 3, place - 2);
+      pen.strokeText(name, width - EDGE.right - 3, label.y);
+      pen.fillText(name, width - EDGE.right - 3, label.y);
     }
   }
 

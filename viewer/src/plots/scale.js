@@ -58,6 +58,13 @@ export function createScale({ low, high, from, to, log = false, whole = false })
   };
 }
 
+const LABEL_GAP = 2; // px
+
+/** Where the name of a level stands: above its line, and below it where the picture ends before. @returns {{y: number, baseline: string}} */
+export function labelBeside(line, letters) {
+  return line - LABEL_GAP - letters >= 0 ? { y: line - LABEL_GAP, baseline: 'bottom' } : { y: line + LABEL_GAP + 1, baseline: 'top' };
+}
+
 /** The values a plot must show, widened to round numbers. */
 export function valueRange(lists, { log = false, fromZero = false, whole = false } = {}) {
   let low = Infinity;
