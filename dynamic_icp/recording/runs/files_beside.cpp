@@ -52,6 +52,17 @@ FilesBeside::FilesBeside(const RunSettings& settings, Fail fail)
   check_ending(settings.kitti_file, ".txt", "a file of KITTI poses");
 }
 
+void FilesBeside::refuse(const std::vector<fs::path>& inputs) const {
+  for (const std::optional<fs::path>* file : {&settings_.mcap_file, &settings_.kitti_file}) {
+    for (const fs::path& input : inputs) {
+      std::error_code missing;
+      if (*file && !input.empty() && fs::equivalent(**file, input, missing)) {
+        throw UsageError(fmt::format("'{}' is an input of the run; choose another name", (*file)->string()));
+      }
+    }
+  }
+}
+
 void FilesBeside::place(const formats::OutputFolder& output) {
   const auto destination = [&](const std::optional<fs::path>& file, const char* what) {
     return file ? map_destination(*file, settings_.output, output.path(), what) : fs::path();

@@ -6,6 +6,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "dynamic_icp/method/base/raw_scan.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
@@ -29,6 +30,9 @@ class FilesBeside {
   /// The settings must outlive it. `fail` is told what could not be made, and why. Throws UsageError when a file cannot
   /// be meant.
   FilesBeside(const RunSettings& settings, Fail fail);
+
+  /// What a run reads is not written over: throws UsageError where one of the files is among its inputs.
+  void refuse(const std::vector<std::filesystem::path>& inputs) const;
 
   /// Files in the folder of the run go to where that is put together. Throws as `map_destination` does.
   void place(const formats::OutputFolder& output);

@@ -2,9 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/runs/run_recording.hpp"
 
-#include <algorithm>
-#include <chrono>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -14,9 +11,6 @@
 #include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/base/version.hpp"
 #include "dynamic_icp/method/odometry/odometry.hpp"
-#include "dynamic_icp/recording/datasets/followed_dataset.hpp"
-#include "dynamic_icp/recording/datasets/read_ahead.hpp"
-#include "dynamic_icp/recording/datasets/scan_range.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/calibration_file.hpp"
@@ -25,45 +19,19 @@
 #include "dynamic_icp/recording/runs/files_beside.hpp"
 #include "dynamic_icp/recording/runs/latency.hpp"
 #include "dynamic_icp/recording/runs/live_view.hpp"
+#include "dynamic_icp/recording/runs/method_needs.hpp"
 #include "dynamic_icp/recording/runs/recording_check.hpp"
 #include "dynamic_icp/recording/runs/run_folder.hpp"
 #include "dynamic_icp/recording/runs/run_json.hpp"
 #include "dynamic_icp/recording/runs/run_truth.hpp"
 #include "dynamic_icp/recording/runs/run_writer.hpp"
+#include "dynamic_icp/recording/runs/scan_source.hpp"
 #include "dynamic_icp/recording/runs/usable_points.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
 
 namespace fs = std::filesystem;
-
-constexpr std::size_t kScansToCheck = 10;            // of a recording that grows, before the first is processed
-constexpr std::chrono::milliseconds kAskAgain{100};  // whether to stop, while scans are waited for
-
-std::optional<window::SensorCalibration> calibration_of(const RunSettings& settings) {
-  return settings.calibration ? std::optional(read_calibration(*settings.calibration)) : std::nullopt;
-}
-
-/// What the configuration says of sweeps; nothing where the method does not look at it.
-motion::SweepConfig* sweep_config(odometry::Config& config) {
-  auto* with_window = std::get_if<odometry::WindowOdometryConfig>(&config);
-  return with_window != nullptr ? &with_window->sweep : nullptr;
-}
-
-Needs needs_of(const RunSettings& settings) {
-  odometry::Config config = settings.config;
-  const motion::SweepConfig* sweep = sweep_config(config);
-  return {.doppler = odometry::needs_doppler(settings.method),
-          .sweep = sweep != nullptr && sweep->deskew && sweep->search && sweep->declared_duration_s == 0.0};
-}
-
-/// What those who watch a run are told that it is.
-std::string live_name(const fs::path& recording) {
-  return fmt::format("dynamic-icp {}: {}", version(),
-                     recording == datasets::kStandardInput
-                         ? "standard input"
-                         : fs::absolute(recording).lexically_normal().filename().string());
-}
 
 /// A run while it continues.
 class Run {
@@ -73,18 +41,17 @@ class Run {
         settings_(settings),
         callbacks_(callbacks),
         beside_(settings, [this](const std::string& text) { fail(text); }),
-        calibration_(calibration_of(settings)),
-        dataset_(open()),
-        scans_(datasets::select_scans(*dataset_, settings.start, scans_to_check())),
-        truth_(truth_for_run(*dataset_, scans_, settings.ground_truth)),
-        check_(check_recording(*dataset_, recording.settings, {scans_.begin, scans_.end, settings.threads},
+        calibration_(settings.calibration ? std::optional(read_calibration(*settings.calibration)) : std::nullopt),
+        source_(recording, settings, callbacks.stop, [this](const std::string& text) { warn(text); }),
+        dataset_(source_.dataset()),
+        scans_(source_.scans()),
+        truth_(truth_for_run(dataset_, source_.first_scans(), settings.ground_truth)),
+        check_(check_recording(dataset_, recording.settings,
+                               {source_.first_scans().begin, source_.first_scans().end, settings.threads},
                                needs_of(settings), callbacks.fix_in_words)) {
     result_.period_s = check_.period_s;
     result_.doppler = check_.doppler;
-    result_.scans_selected = scans_.size();
-    if (followed_ != nullptr) {  // what was checked is there; what comes is not known
-      scans_.end = settings.max_frames ? scans_.begin + *settings.max_frames : std::numeric_limits<std::size_t>::max();
-    }
+    result_.scans_selected = source_.first_scans().size();
     result_.sweep.search = check_.sweep;
     if (check_.sweep && check_.sweep->found_sweep()) {
       diagnosis::declare(*check_.sweep, *sweep_config(settings_.config));
@@ -93,17 +60,17 @@ class Run {
       throw UsageError(settings.follow ? "a run that follows a recording while it grows cannot be resumed"
                                        : "a run that writes an MCAP file cannot be resumed");
     }
-    identity_ = run_identity(recording, settings_, *dataset_, truth_.file);
+    identity_ = run_identity(recording, settings_, dataset_, truth_.file);
   }
 
   /// Whether it came to its end.
   bool write() {
-    std::vector<fs::path> inputs = {recording_.path, dataset_->scan_file(scans_.begin), truth_.file};
+    std::vector<fs::path> inputs = {recording_.path, dataset_.scan_file(scans_.begin), truth_.file};
     if (settings_.calibration) {
       inputs.push_back(*settings_.calibration);
     }
     inputs.insert(inputs.end(), settings_.inputs.begin(), settings_.inputs.end());
-    refuse_inputs(inputs);
+    beside_.refuse(inputs);
     using Leftover = formats::OutputFolder::Leftover;
     formats::OutputFolder output(settings_.output, run_result(), settings_.replace || settings_.resume, inputs,
                                  settings_.resume ? Leftover::kTakeOver : Leftover::kRemove);
@@ -126,31 +93,6 @@ class Run {
   RunResult take_result() { return std::move(result_); }
 
  private:
-  /// The most, before the first is processed; of a recording that grows as many whenever it is looked at.
-  [[nodiscard]] std::optional<std::size_t> scans_to_check() const {
-    return settings_.follow ? std::min(kScansToCheck, settings_.max_frames.value_or(kScansToCheck))
-                            : settings_.max_frames;
-  }
-
-  std::unique_ptr<datasets::Dataset> open() {
-    if (!settings_.follow) {
-      return datasets::open_input(recording_.path, recording_.settings);
-    }
-    datasets::FirstScans first{.begin = settings_.start, .count = *scans_to_check()};
-    if (settings_.follow_timeout_s) {
-      first.longest_silence = std::chrono::duration<double>(*settings_.follow_timeout_s);
-    }
-    const auto stop = [this] { return callbacks_.stop && callbacks_.stop(); };
-    std::unique_ptr<datasets::FollowedDataset> followed =
-        datasets::follow_input(recording_.path, recording_.settings, first, stop);
-    if (!followed) {
-      throw DataError(fmt::format("{}: stopped before its first {} scans had come", recording_.path.string(),
-                                  first.begin + first.count));
-    }
-    followed_ = followed.get();
-    return followed;
-  }
-
   void warn(const std::string& text) {
     result_.warnings.push_back(text);
     if (callbacks_.warning) {
@@ -203,24 +145,12 @@ class Run {
     result_.warnings.push_back(text);
   }
 
-  /// What a run reads is not written over by what is asked for beside it.
-  void refuse_inputs(const std::vector<fs::path>& inputs) const {
-    for (const std::optional<fs::path>* file : {&settings_.mcap_file, &settings_.kitti_file}) {
-      for (const fs::path& input : inputs) {
-        std::error_code missing;
-        if (*file && !input.empty() && fs::equivalent(**file, input, missing)) {
-          throw UsageError(fmt::format("'{}' is an input of the run; choose another name", (*file)->string()));
-        }
-      }
-    }
-  }
-
   /// All files of the run into the folder where it is put together; false when cancelled.
   bool write_files(formats::OutputFolder& output) {
     beside_.place(output);
     const FilesInRun files = beside_.in_run(output);
     std::unique_ptr<odometry::Odometry> odometry = make_odometry();
-    std::vector<std::string> assumptions = dataset_->assumptions();
+    std::vector<std::string> assumptions = dataset_.assumptions();
     for (const std::string& assumption : odometry->assumptions()) {
       assumptions.push_back(assumption);
     }
@@ -240,13 +170,13 @@ class Run {
       resumed = std::make_unique<RunWriter>(output.path(), settings_.save_labels);
     }
     RunWriter& writer = *resumed;
-    beside_.open(truth_.trajectory, messages_settings());
+    beside_.open(truth_.trajectory, messages_settings(settings_, check_.period_s));
     open_live_view();
     if (!process_scans(*odometry, writer, output)) {
       return false;
     }
     end_live_view();
-    find_truth_of_followed();
+    source_.complete(truth_, result_.scans_selected);
     if (const std::optional<window::SensorCalibration> learned = odometry->calibration()) {
       formats::write_whole_file(output.path() / "calibration.yaml", calibration_text(*learned));
     }
@@ -259,7 +189,7 @@ class Run {
     }
     const auto write_run_json = [&] {
       formats::write_whole_file(output.path() / "run.json",
-                                run_json(recording_, settings_, *dataset_, truth_.file, result_, files));
+                                run_json(recording_, settings_, dataset_, truth_.file, result_, files));
     };
     beside_.describe(result_);
     write_run_json();
@@ -274,7 +204,7 @@ class Run {
 
   [[nodiscard]] std::unique_ptr<odometry::Odometry> make_odometry() const {
     return odometry::make_odometry(
-        settings_.config, {dataset_->T_vehicle_sensor(), dataset_->doppler_kind(), calibration_}, settings_.threads);
+        settings_.config, {dataset_.T_vehicle_sensor(), dataset_.doppler_kind(), calibration_}, settings_.threads);
   }
 
   /// What was found and counted beside the odometry and the files of the run.
@@ -293,9 +223,9 @@ class Run {
       throw DataError(fmt::format("{}: cannot resume the run: its checkpoint is of scan {}, expected {} to {}",
                                   settings_.output.string(), from_->next, scans_.begin + 1, scans_.end - 1));
     }
-    if (checksum(dataset_->scan(from_->next - 1)) != from_->last_scan) {
+    if (checksum(dataset_.scan(from_->next - 1)) != from_->last_scan) {
       throw DataError(fmt::format("{}: cannot resume the run: {} is not what it was", settings_.output.string(),
-                                  dataset_->scan_file(from_->next - 1).string()));
+                                  dataset_.scan_file(from_->next - 1).string()));
     }
     const RunResult before = result_;
     std::string fault;
@@ -344,34 +274,26 @@ class Run {
 
   bool process_scans(odometry::Odometry& odometry, RunWriter& writer, formats::OutputFolder& output) {
     const std::size_t first = from_ ? from_->next : scans_.begin;
-    std::optional<datasets::ReadAhead> reader;
-    if (followed_ != nullptr) {
-      reader.emplace(*followed_, first, scans_.end);
-    } else {
-      reader.emplace(*dataset_, first, scans_.end);
-    }
+    source_.begin_at(first);
     report_progress(0);
     if (first > scans_.begin) {
       report_progress(first - scans_.begin);
     }
-    for (std::size_t i = first; has_next(*reader); ++i) {
+    for (std::size_t i = first; !stopped_ && source_.has_next(); ++i) {
       if (callbacks_.cancelled && callbacks_.cancelled()) {
         return false;
       }
-      std::optional<RawScan> next = next_of(*reader);
+      std::optional<RawScan> next = next_scan();
       if (!next) {
         break;
       }
       RawScan scan = std::move(*next);
-      if (!scan.warning.empty()) {
-        warn(scan.warning);
-      }
       odometry::Frame frame = odometry.process(scan);
       writer.add(i, frame);
       is_begun_ = true;
       usable_.add(frame);
       result_.sweep.add(frame, scan);
-      const double latency_ms = latencies_.add(reader->arrival());
+      const double latency_ms = latencies_.add(source_.arrival());
       beside_.add(scan, frame, latency_ms);
       if (callbacks_.frame) {
         callbacks_.frame(i, frame);
@@ -385,7 +307,8 @@ class Run {
         live_->add(std::move(scan), std::move(frame), latency_ms);
       }
     }
-    if (followed_ != nullptr) {
+    stopped_ = stopped_ || source_.was_stopped();
+    if (source_.grows()) {
       result_.scans_selected = usable_.scans();
       result_.latency = latencies_.summary();
     }
@@ -395,15 +318,11 @@ class Run {
 
   /// The next scan. Where a recording that grows fails after its first, that ends the run, with the results so far:
   /// they cannot be made again. Then nothing.
-  std::optional<RawScan> next_of(datasets::ReadAhead& reader) {
+  std::optional<RawScan> next_scan() {
     try {
-      RawScan scan = reader.next();
-      for (const std::string& note : reader.notes()) {
-        warn(note);
-      }
-      return scan;
+      return source_.next();
     } catch (const DataError& error) {
-      if (followed_ == nullptr || !is_begun_) {
+      if (!source_.grows() || !is_begun_) {
         throw;
       }
       fail(fmt::format("it ended early: {}", error.what()));
@@ -411,60 +330,10 @@ class Run {
     }
   }
 
-  /// Whether another scan is there; of a recording that grows once it is, unless the run is to stop before.
-  bool has_next(datasets::ReadAhead& reader) {
-    using Clock = std::chrono::steady_clock;
-    using Seconds = std::chrono::duration<double>;
-    const Clock::time_point begun = Clock::now();
-    while (followed_ != nullptr && !stopped_ && !reader.wait(kAskAgain)) {
-      if (callbacks_.stop && callbacks_.stop()) {
-        reader.stop();
-        stopped_ = true;
-      } else if (settings_.follow_timeout_s && Clock::now() - begun > Seconds(*settings_.follow_timeout_s)) {
-        reader.stop();
-        warn(fmt::format("no scan came for {} s: the run ends", *settings_.follow_timeout_s));
-        break;
-      }
-    }
-    return !stopped_ && !reader.done();
-  }
-
-  /// Of all that came: at the beginning there was less of it.
-  void find_truth_of_followed() {
-    if (followed_ == nullptr) {
-      return;
-    }
-    const std::string known = truth_.warning;
-    try {
-      followed_->finish();
-      if (settings_.ground_truth.empty()) {
-        truth_ = truth_for_run(*dataset_, {scans_.begin, scans_.begin + result_.scans_selected}, {});
-      }
-    } catch (const DataError& error) {
-      warn(fmt::format("no ground truth: {}", error.what()));
-    }
-    for (const std::string& note : followed_->take_notes()) {
-      warn(note);
-    }
-    if (truth_.warning != known) {
-      warn(truth_.warning);
-    }
-  }
-
   void report_progress(std::size_t done) const {
     if (callbacks_.progress) {
-      callbacks_.progress(done, followed_ == nullptr ? scans_.size() : 0);
+      callbacks_.progress(done, source_.total());
     }
-  }
-
-  [[nodiscard]] RunMessagesSettings messages_settings() {
-    const motion::SweepConfig* sweep = sweep_config(settings_.config);
-    RunMessagesSettings messages;
-    messages.sweep = sweep != nullptr ? *sweep : motion::SweepConfig{};
-    messages.tells_moving = settings_.method == "dynamic-icp";
-    messages.period_s = check_.period_s;
-    messages.threads = settings_.threads;
-    return messages;
   }
 
   /// An address that cannot be listened at is an error before the first scan.
@@ -472,7 +341,8 @@ class Run {
     if (!settings_.live) {
       return;
     }
-    live_.emplace(*settings_.live, live_name(recording_.path), truth_.trajectory, messages_settings());
+    live_.emplace(*settings_.live, fmt::format("dynamic-icp {}: {}", version(), source_.name()), truth_.trajectory,
+                  messages_settings(settings_, check_.period_s));
     if (callbacks_.listening) {
       callbacks_.listening(live_->authority());
     }
@@ -503,9 +373,9 @@ class Run {
   const RunCallbacks& callbacks_;
   FilesBeside beside_;
   std::optional<window::SensorCalibration> calibration_;
-  datasets::FollowedDataset* followed_ = nullptr;  ///< the same as dataset_, where it grows
-  std::unique_ptr<datasets::Dataset> dataset_;
-  datasets::ScanRange scans_;
+  ScanSource source_;
+  const datasets::Dataset& dataset_;
+  const datasets::ScanRange scans_;
   RunTruth truth_;
   RecordingCheck check_;
   std::optional<LiveView> live_;
