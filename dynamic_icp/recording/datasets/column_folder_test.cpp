@@ -175,7 +175,7 @@ TEST_F(ColumnFolder, ArraysThatHoldNoNumbersAreNamedWithWhatTheyAre) {
   };
   npz_of("<c8", "(2, 3)");
   expect_message("1.npz: no column for x");
-  expect_message("there are: doppler; array 'points': has the type '<c8', expected one of f4 f8");
+  expect_message("there are: doppler; array 'points': has the type '<c8', expected one of f2 f4 f8");
   npz_of("<f8", "(2,-3)");
   expect_message("array 'points': expected a whole number that is not negative at byte ");
 }

@@ -53,8 +53,8 @@ std::string numbers_at(const RawScan& scan, std::size_t row) {
 void refuse_foreign_numbers(const RawScan& scan, const fs::path& file, const formats::RecordLayout& layout) {
   if (const std::optional<std::size_t> row = foreign_row(scan)) {
     throw DataError(fmt::format("{}: record {} at byte {} {}: expected little-endian records of {} bytes ({})",
-                                file.string(), *row, *row * layout.bytes, numbers_at(scan, *row), layout.bytes,
-                                layout.name));
+                                file.string(), *row, *row * layout.stored_bytes(), numbers_at(scan, *row),
+                                layout.stored_bytes(), layout.name));
   }
 }
 

@@ -185,11 +185,7 @@ void set(InputSettings& settings, const std::string& name, const std::string& te
   } else if (name == "dtype") {
     const std::vector<std::string> known = record_types();
     if (std::find(known.begin(), known.end(), text) == known.end()) {
-      refuse(name, text,
-             fmt::format("one of: {}{}", fmt::join(known, ", "),
-                         text == "float16" ? "; write float32 with Python: numpy.fromfile(FILE, 'f2').astype('f4')"
-                                             ".tofile(FILE)"
-                                           : ""));
+      refuse(name, text, fmt::format("one of: {}", fmt::join(known, ", ")));
     }
     settings.open.dtype = text;
   } else {

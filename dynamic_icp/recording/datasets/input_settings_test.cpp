@@ -64,7 +64,6 @@ TEST(InputSettings, WrongTextsAreNamed) {
                        {"columns", "x,y,z,_,_"},
                        {"columns", "x,y,z,doppler,"},
                        {"dtype", "float"},
-                       {"dtype", "float16"},
                        {"columns", "x,x,z,doppler"},
                        {"columns", "x,y,z,doppler,x"},
                        {"columns", "azimuth_deg,elevation_rad,range,doppler"},

@@ -16,6 +16,7 @@
 
 #include "dynamic_icp/recording/datasets/likely_doppler.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/half_floats.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -281,14 +282,15 @@ std::optional<RecordShape> shape_of(std::string_view content) {
   return shape_of_numbers(numbers_of<double>(content), NpyType::kFloat64);
 }
 
-std::optional<UnclearInput> other_shape(const std::vector<fs::path>& files, std::size_t numbers, NpyType type) {
+std::optional<UnclearInput> other_shape(const std::vector<fs::path>& files, std::size_t numbers,
+                                        std::optional<NpyType> type) {
   const std::vector<std::uintmax_t> sizes = sizes_of(files);
   const std::string content = first_content(files);
   const std::optional<RecordShape> shape = shape_of(content);
   if (!shape || (shape->numbers == numbers && shape->type == type) || shape->numbers <= kMinNumbers) {
     return std::nullopt;
   }
-  const std::size_t expected_bytes = numbers * formats::size_of(type);
+  const std::size_t expected_bytes = numbers * (type ? formats::size_of(*type) : formats::kHalfBytes);
   const std::size_t as_expected = multiples(sizes, expected_bytes);
   const std::size_t as_seen = multiples(sizes, shape->bytes());
   if (as_expected == sizes.size() && shape->type == type && content.size() < kFewestRecords * expected_bytes) {

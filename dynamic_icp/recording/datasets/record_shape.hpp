@@ -30,12 +30,12 @@ struct RecordShape {
 /// 0 but below 1e-9) whatever they are taken for, or where no length stands out.
 std::optional<RecordShape> shape_of(std::string_view content);
 
-/// Why the files, scans of one recording, are no records of `numbers` numbers of this type, where sizes and content
-/// agree that they are of another shape, which it proposes. Nothing where nothing speaks against it, and where sizes
-/// allow x, y, z and Doppler in float32 and a velocity explains the Doppler of all points, such as those of beams that
-/// take turns.
+/// Why the files, scans of one recording, are no records of `numbers` numbers of this type (nothing: float16), where
+/// sizes and content agree that they are of another shape, which it proposes. Nothing where nothing speaks against it,
+/// and where sizes allow x, y, z and Doppler in float32 and a velocity explains the Doppler of all points, such as
+/// those of beams that take turns.
 std::optional<UnclearInput> other_shape(const std::vector<std::filesystem::path>& files, std::size_t numbers,
-                                        formats::NpyType type);
+                                        std::optional<formats::NpyType> type);
 
 /// Whether the sizes of all files, or of many from all over the recording, are multiples of a record's.
 bool sizes_fit(const std::vector<std::filesystem::path>& files, std::size_t bytes);

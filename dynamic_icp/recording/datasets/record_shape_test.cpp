@@ -9,6 +9,7 @@
 #include <tuple>
 
 #include "dynamic_icp/recording/datasets/likely_doppler.hpp"
+#include "dynamic_icp/recording/datasets/unclear_input.hpp"
 
 #include "testing/recording_by_hand.hpp"
 
@@ -51,6 +52,20 @@ std::string records(const Rows& rows) {
     }
   }
   return bytes;
+}
+
+/// Rounded towards zero: normal numbers of IEEE 754 binary16.
+std::string half_records(const Rows& rows) {
+  Rows bits = rows;
+  for (Row& row : bits) {
+    for (double& value : row) {
+      int exponent = 0;
+      const double fraction = std::frexp(std::abs(value), &exponent);  // in [0.5, 1)
+      value = (value < 0.0 ? 0x8000 : 0) +
+              (value == 0.0 ? 0.0 : 1024.0 * (exponent + 14) + std::floor(2048.0 * fraction) - 1024.0);
+    }
+  }
+  return records<std::uint16_t>(bits);
 }
 
 Rows each(Rows rows, const std::function<void(Row&, std::size_t)>& change) {
@@ -228,6 +243,35 @@ TEST_F(RecordShapes, TypesOfWholeNumbersAreReadAsStated) {
       EXPECT_EQ(scan.doppler[i], row[4]) << name;
     }
   }
+}
+
+// As a network on a graphics processor leaves them. Believed although the numbers repeat at the length of others.
+TEST_F(RecordShapes, HalfFloatsAreReadAsStated) {
+  const Rows points = hall({8.0, 0.5, 0.0}, 20, 60);
+  const Rows rows = each(points, [](Row& row, std::size_t i) {
+    row.insert(row.begin() + 3, {0.25 * static_cast<double>(i % 7), 1.0, 30.0, 2.0});
+  });
+  write("0.bin", half_records(rows));
+  const std::vector<std::string> names = {"x", "y", "z", "intensity", "_", "_", "_", "doppler"};
+  const auto dataset = open_dataset(folder_, {.columns = names, .dtype = "float16"});
+  const RawScan scan = dataset->scan(0);
+  ASSERT_EQ(scan.points.size(), points.size());
+  const std::vector<PointColumn> columns = dataset->columns(0);
+  ASSERT_EQ(columns.size(), 1U);
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const double read[] = {scan.points[i].x(), scan.points[i].y(), scan.points[i].z(), scan.doppler[i]};
+    for (std::size_t k = 0; k < 4; ++k) {
+      EXPECT_NEAR(read[k], points[i][k], std::abs(points[i][k]) / 1024.0);
+    }
+    EXPECT_EQ(columns[0].values[i], 0.25 * static_cast<double>(i % 7));
+  }
+  EXPECT_EQ(scan.warning, "");
+}
+
+TEST_F(RecordShapes, FloatsAreNotReadAsHalfFloats) {
+  write("0.bin", records<float>(each(hall({8.0, 0.5, 0.0}, 20, 60),
+                                     [](Row& row, std::size_t) { row.insert(row.begin() + 3, 1.0); })));
+  EXPECT_THROW(open_dataset(folder_, {.dtype = "float16"}), UnclearInput);
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ struct RecordType {
   NpyType type;
 };
 
+constexpr std::string_view kHalf = "float16";  // read as float32, which it becomes
 constexpr RecordType kTypes[] = {{"float32", NpyType::kFloat32}, {"float64", NpyType::kFloat64},
                                  {"int8", NpyType::kInt8},       {"int16", NpyType::kInt16},
                                  {"int32", NpyType::kInt32},     {"uint8", NpyType::kUint8},
@@ -37,6 +38,9 @@ constexpr RecordType kTypes[] = {{"float32", NpyType::kFloat32}, {"float64", Npy
 constexpr std::string_view kUnused = "_";
 
 NpyType type_of(const std::string& name) {
+  if (name == kHalf) {
+    return NpyType::kFloat32;
+  }
   const auto* const found =
       std::find_if(std::begin(kTypes), std::end(kTypes), [&](const RecordType& type) { return type.name == name; });
   if (found == std::end(kTypes)) {
@@ -89,6 +93,7 @@ std::shared_ptr<const StatedLayout> stated_layout(const OpenOptions& options) {
   layout.name = "as stated";
   layout.bytes = bytes * stated.names.size();
   layout.type = type;
+  layout.is_half = options.dtype == kHalf;
   layout.doppler = offsets.at(map.doppler.array);
   for (std::size_t k = 0; k < 3; ++k) {
     if (!map.point.at(k).whole) {
@@ -136,7 +141,7 @@ TimeUnit unit_of_times(const RecordRecording& recording, const StatedLayout& sta
   TimeUnit unit;
   for (const fs::path& file : recording.scans.files) {
     std::error_code fault;
-    if (fs::file_size(file, fault) >= stated.layout.bytes && !fault) {
+    if (fs::file_size(file, fault) >= stated.layout.stored_bytes() && !fault) {
       const std::vector<double> times = formats::read_points(file, stated.layout).times;
       return time_unit(stated.time, times_as_stored(times, stated.layout.type), period_s);
     }
@@ -151,6 +156,7 @@ std::vector<std::string> record_types() {
   for (const RecordType& type : kTypes) {
     names.emplace_back(type.name);
   }
+  names.emplace_back(kHalf);
   return names;
 }
 
@@ -159,8 +165,10 @@ bool states_records(const OpenOptions& options) { return !options.columns.empty(
 void read_as_stated(const OpenOptions& options, RecordRecording& recording) {
   const std::shared_ptr<const StatedLayout> stated = stated_layout(options);
   const std::vector<fs::path>& files = recording.scans.files;
-  if (const auto other = other_shape(files, stated->names.size(), stated->layout.type);
-      other && !is_believed(options, files, stated->layout.bytes, *other)) {
+  const RecordLayout& layout = stated->layout;
+  const std::optional<NpyType> type = layout.is_half ? std::nullopt : std::optional(layout.type);
+  if (const auto other = other_shape(files, stated->names.size(), type);
+      other && !is_believed(options, files, layout.stored_bytes(), *other)) {
     throw *other;
   }
   recording.layout_of = [stated](const fs::path&, Stamp) -> const RecordLayout& { return stated->layout; };

@@ -12,6 +12,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
+#include "dynamic_icp/recording/formats/half_floats.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
@@ -74,17 +75,21 @@ void for_column(const NpyArray& array, std::size_t column, const Use& use) {
 NpyArray parse_npy(std::string_view content, const std::string& origin) {
   NpyHeader header = parse_npy_header(content, origin);
   const std::string_view data = content.substr(header.data_offset);
-  const std::size_t expected = data_bytes(header.type, header.shape, origin);
+  const std::size_t item_bytes = header.is_half ? kHalfBytes : size_of(header.type);
+  const std::size_t expected = data_bytes(header.type, header.shape, origin) / size_of(header.type) * item_bytes;
   if (data.size() != expected) {
     throw DataError(fmt::format("{}: expected {} bytes of data for shape ({}) of {}, found {}", origin, expected,
-                                fmt::join(header.shape, ", "), code_of(header.type), data.size()));
+                                fmt::join(header.shape, ", "), header.is_half ? "f2" : code_of(header.type),
+                                data.size()));
   }
-  const std::size_t item_bytes = size_of(header.type);
   NpyArray array{header.type, std::move(header.shape), {}, origin};
   array.bytes =
       header.fortran_order && array.shape.size() > 1 ? in_c_order(data, array.shape, item_bytes) : std::string(data);
   if (header.big_endian) {
     reverse_items(array.bytes, item_bytes);
+  }
+  if (header.is_half) {
+    array.bytes = widened_halves(array.bytes);
   }
   return array;
 }

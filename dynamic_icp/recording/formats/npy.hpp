@@ -30,8 +30,9 @@ struct NamedArray {
 };
 
 /// Takes an array from memory; `origin` stands for the file in messages. Any byte order and both orders of indices are
-/// understood. Throws DataError naming what was expected: no NPY array, objects or records instead of numbers, a size
-/// that is not what the header says. Never takes more memory than a small multiple of the input.
+/// understood; float16 become float32. Throws DataError naming what was expected: no NPY array, objects or records
+/// instead of numbers, a size that is not what the header says. Never takes more memory than a small multiple of the
+/// input.
 NpyArray parse_npy(std::string_view content, const std::string& origin);
 
 /// The same from a file.

@@ -22,6 +22,8 @@ constexpr std::string_view kMagic = "\x93NUMPY";
 // In the order of NpyType.
 constexpr std::array<std::string_view, 10> kCodes = {"f4", "f8", "i1", "i2", "i4", "i8", "u1", "u2", "u4", "u8"};
 
+constexpr std::string_view kHalfCode = "f2";  // no type of its own: it becomes float32
+
 /// Takes the header's text, the literal of a Python dictionary, apart piece by piece.
 class LiteralReader {
  public:
@@ -125,13 +127,15 @@ void read_type(LiteralReader& reader, NpyHeader& header, std::string_view origin
     throw DataError(fmt::format("{}: holds Python objects, expected an array of numbers", origin));
   }
   const std::string_view order = described.substr(0, 1);
-  const std::string_view code =
+  const std::string_view stored =
       described == "|b1" ? "u1" : described.substr(std::min<std::size_t>(1, described.size()));
+  header.is_half = stored == kHalfCode;
+  const std::string_view code = header.is_half ? code_of(NpyType::kFloat32) : stored;
   const std::optional<NpyType> type = type_of_code(code);
   const bool ordered = order == "<" || order == ">" || (order == "|" && code.ends_with('1'));
   if (!type || !ordered) {
-    throw DataError(fmt::format("{}: has the type '{}', expected one of {} after '<' or '>'", origin, described,
-                                fmt::join(kCodes, " ")));
+    throw DataError(fmt::format("{}: has the type '{}', expected one of {} {} after '<' or '>'", origin, described,
+                                kHalfCode, fmt::join(kCodes, " ")));
   }
   header.type = *type;
   header.big_endian = order == ">";

@@ -67,6 +67,7 @@ auto with_type(NpyType type, const Use& use) {
 /// What stands before the data of an NPY file.
 struct NpyHeader {
   NpyType type = NpyType::kFloat64;
+  bool is_half = false;  ///< the numbers are stored as float16; `type` is float32, which they become
   bool big_endian = false;
   bool fortran_order = false;  ///< the first index runs fastest, not the last
   std::vector<std::size_t> shape;
@@ -77,9 +78,9 @@ struct NpyHeader {
 /// more than can be counted.
 std::size_t data_bytes(NpyType type, const std::vector<std::size_t>& shape, std::string_view origin);
 
-/// Reads the header of versions 1.0, 2.0 and 3.0. Booleans count as uint8. `origin` stands for the file in messages.
-/// Throws DataError naming the byte and what was expected there; Python objects, which only Python can decode, and
-/// tables of records are named as such.
+/// Reads the header of versions 1.0, 2.0 and 3.0. Booleans count as uint8, float16 become float32. `origin` stands for
+/// the file in messages. Throws DataError naming the byte and what was expected there; Python objects, which only
+/// Python can decode, and tables of records are named as such.
 NpyHeader parse_npy_header(std::string_view content, std::string_view origin);
 
 /// The header of version 1.0 for little-endian data in C order.

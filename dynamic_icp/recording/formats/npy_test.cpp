@@ -72,6 +72,8 @@ TEST(Npy, ReadsEveryTypeInBothByteOrders) {
   EXPECT_EQ(number("<f8", std::string("\x00\x00\x00\x00\x00\x00\x0a\xc0", 8)), -3.25);
   EXPECT_EQ(number(">f8", std::string("\xc0\x0a\x00\x00\x00\x00\x00\x00", 8)), -3.25);
   EXPECT_EQ(number("|b1", "\x01"), 1.0);
+  EXPECT_EQ(number("<f2", "\x80\xc2"), -3.25);
+  EXPECT_EQ(number(">f2", "\xc2\x80"), -3.25);
 }
 
 TEST(Npy, ReadsEveryVersionAndStyleOfHeader) {
@@ -100,6 +102,21 @@ TEST(Npy, BothOrdersOfIndicesGiveTheSameColumns) {
             std::string("\0\0\1\0\2\0\3\0\4\0\5\0\6\0\7\0", 16));
 }
 
+TEST(Npy, HalfFloatsBecomeFloats) {
+  // The matrix [1 2; 3 4].
+  const std::string numbers("\x00\x3c\x00\x40\x00\x42\x00\x44", 8);
+  const std::string columns("\x00\x3c\x00\x42\x00\x40\x00\x44", 8);
+  const NpyArray array = parse_npy(npy(1, header("<f2", "(2, 2)"), numbers), "a");
+  EXPECT_EQ(array.type, NpyType::kFloat32);
+  EXPECT_EQ(column_as_doubles(array, 1), (std::vector<double>{2.0, 4.0}));
+  EXPECT_EQ(parse_npy(npy(1, header("<f2", "(2, 2)", "True"), columns), "a").bytes, array.bytes);
+  EXPECT_EQ(column_as_doubles(parse_npy(npy_bytes(array), "a"), 0), (std::vector<double>{1.0, 3.0}));
+  EXPECT_TRUE(parse_npy(npy(1, header("<f2", "(0, 3)"), ""), "a").bytes.empty());
+  expect_fault(npy(1, header("<f2", "(2, 2)"), "1234567"), "expected 8 bytes of data for shape (2, 2) of f2, found 7");
+  expect_fault(npy(1, header("<f2", "(9000000000000000000,)"), ""), "impossible shape");
+  expect_fault(npy(1, header("|f2", "(1,)"), "12"), "has the type '|f2'");
+}
+
 TEST(Npy, EmptyArraysAreArrays) {
   EXPECT_TRUE(column_as_doubles(parse_npy(npy(1, header("<f4", "(0, 3)"), ""), "a"), 2).empty());
   EXPECT_TRUE(column_as_doubles(parse_npy(npy(1, header("<f4", "(0, 3)", "True"), ""), "a"), 2).empty());
@@ -111,7 +128,7 @@ TEST(Npy, WhatIsNotAnArrayOfNumbersIsRefused) {
   expect_fault(npy(1, header("|O", "(2, 1)"), "pickled"), "holds Python objects");
   expect_fault(npy(1, "{'descr': [('x', '<f4'), ('y', '<f4')], 'fortran_order': False, 'shape': (1,)}", "12345678"),
                "table of records");
-  expect_fault(npy(1, header("<U4", "(1,)"), std::string(16, 'x')), "has the type '<U4', expected one of f4 f8");
+  expect_fault(npy(1, header("<U4", "(1,)"), std::string(16, 'x')), "has the type '<U4', expected one of f2 f4 f8");
   expect_fault(npy(1, header("|f4", "(1,)"), "1234"), "has the type '|f4'");
   expect_fault(npy(1, header("", "(1,)"), "1234"), "has the type ''");
   expect_fault("", "no NPY array");

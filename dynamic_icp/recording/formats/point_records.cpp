@@ -7,6 +7,7 @@
 #include <cmath>
 
 #include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/half_floats.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
 #include "dynamic_icp/recording/formats/record_file.hpp"
 
@@ -122,15 +123,27 @@ std::vector<ChannelValues> channels_of(const RecordLayout& layout, std::size_t r
   return channels;
 }
 
+/// Calls `use` with all records of a file, block by block.
+template <class Use>
+void for_blocks(RecordFile& file, const RecordLayout& layout, const Use& use) {
+  for (std::string_view block = file.next(); !block.empty(); block = file.next()) {
+    if (layout.is_half) {
+      use(std::string_view(widened_halves(block)));
+    } else {
+      use(block);
+    }
+  }
+}
+
 RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout) {
-  RecordFile file(path, layout.bytes);
+  RecordFile file(path, layout.stored_bytes());
   RawScan raw;
   raw.points.resize(file.records());
   raw.doppler.resize(file.records());
   raw.times.resize(layout.time_type == RecordTime::kNone ? 0 : file.records());
   std::vector<ChannelValues> channels = channels_of(layout, file.records());
   std::size_t row = 0;
-  for (std::string_view block = file.next(); !block.empty(); block = file.next()) {
+  for_blocks(file, layout, [&](std::string_view block) {
     if (!raw.times.empty()) {
       read_times(block, layout, raw.times.data() + row);
     }
@@ -139,7 +152,7 @@ RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout)
     for (ChannelValues& channel : channels) {
       append_field(block, layout, *channel.field, channel.values);
     }
-  }
+  });
   const bool counts_nanoseconds =
       layout.time_type == RecordTime::kSecondsOrNanoseconds &&
       std::any_of(raw.times.begin(), raw.times.end(), [](double t) { return t > kLongestScanSeconds; });
@@ -154,12 +167,10 @@ RawScan points_of(const std::filesystem::path& path, const RecordLayout& layout)
 }
 
 std::vector<double> field_of(const std::filesystem::path& path, const RecordLayout& layout, const RecordField& field) {
-  RecordFile file(path, layout.bytes);
+  RecordFile file(path, layout.stored_bytes());
   std::vector<double> values;
   values.reserve(file.records());
-  for (std::string_view block = file.next(); !block.empty(); block = file.next()) {
-    append_field(block, layout, field, values);
-  }
+  for_blocks(file, layout, [&](std::string_view block) { append_field(block, layout, field, values); });
   return values;
 }
 

@@ -43,13 +43,17 @@ struct RecordField {
 
 struct RecordLayout {
   std::string_view name;
-  std::size_t bytes = 0;    ///< of one record
+  std::size_t bytes = 0;    ///< of one record, as it is read
   std::size_t doppler = 0;  ///< its offset
   RecordTime time_type = RecordTime::kNone;
   std::size_t time = 0;  ///< its offset
   std::span<const RecordField> fields = {};
   std::array<std::size_t, 3> point = {0, 4, 8};  ///< offsets of x, y, z
   NumberType type = NumberType::kFloat32;        ///< of x, y, z and the Doppler
+  bool is_half = false;  ///< all numbers are float32 that are stored as float16, in half of the bytes
+
+  /// Of one record in the file.
+  [[nodiscard]] std::size_t stored_bytes() const { return is_half ? bytes / 2 : bytes; }
 };
 
 // The layouts by their names.
