@@ -125,6 +125,15 @@ std::string as_options(const std::vector<std::pair<std::string, std::string>>& s
   return options;
 }
 
+std::string with_options(const datasets::UnclearInput& error) {
+  std::string text = with_options(error.what(), error.proposal());
+  const bool is_list = text.find('\n') != std::string::npos;
+  for (const datasets::UnclearInput::Settings& other : error.others()) {
+    text += fmt::format("{} {}", is_list ? "\nor" : ", or with", as_options(other));
+  }
+  return text;
+}
+
 std::string with_options(const std::string& what, const datasets::UnclearInput::Settings& proposal) {
   if (proposal.empty()) {
     return what;

@@ -32,6 +32,9 @@ std::string as_options(const std::vector<std::pair<std::string, std::string>>& s
 /// What stands in the way of reading an input, with the options that help, if there are any.
 std::string with_options(const std::string& what, const datasets::UnclearInput::Settings& proposal);
 
+/// The same with all that may be meant, the likeliest first.
+std::string with_options(const datasets::UnclearInput& error);
+
 /// The options that fix what is found of an input that was opened with these settings, to be stated instead of or
 /// beside those; "" where none do.
 std::string fixing_options(const diagnosis::Finding& finding, const datasets::InputSettings& settings);

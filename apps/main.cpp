@@ -112,7 +112,7 @@ int run_or_report(int argc, char** argv) {
   } catch (const dynamic_icp::formats::EarlierResult& error) {
     return report(fmt::format("{}; use --force to replace it", error.what()), kDataOrMachineFailed);
   } catch (const dynamic_icp::datasets::UnclearInput& error) {
-    return report(apps::with_options(error.what(), error.proposal()), kDataOrMachineFailed);
+    return report(apps::with_options(error), kDataOrMachineFailed);
   } catch (const std::bad_alloc&) {
     throw;
   } catch (const std::system_error& error) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "tests/forms.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <regex>
 
@@ -187,7 +188,8 @@ std::vector<std::string> options_in(const std::string& message) {
   static const std::regex kOption(
       "--(columns|dtype|field|format|period|topic|doppler-scale|doppler-sign|point-scale) ('[^']*'|[^ ,;\n]+(,[^ "
       ",;\n]+)*)");
-  const std::string proposal = message.substr(0, message.find("; or state"));
+  const std::string proposal =
+      message.substr(0, std::min({message.find("; or state"), message.find("\nor --"), message.find(", or with --")}));
   std::vector<std::string> options;
   for (std::sregex_iterator option(proposal.begin(), proposal.end(), kOption); option != std::sregex_iterator();
        ++option) {

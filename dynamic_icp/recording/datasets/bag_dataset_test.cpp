@@ -10,6 +10,7 @@
 #include "dynamic_icp/recording/datasets/bag_imu.hpp"
 #include "dynamic_icp/recording/datasets/bag_topics.hpp"
 #include "dynamic_icp/recording/datasets/bag_truth.hpp"
+#include "dynamic_icp/recording/datasets/unclear_input.hpp"
 
 #include "testing/fake_bag.hpp"
 
@@ -46,6 +47,28 @@ std::string fault_of_bag(const std::shared_ptr<FakeBag>& bag, const OpenOptions&
     return error.what();
   }
   return "no error";
+}
+
+using Topics = std::vector<std::vector<std::string>>;
+
+/// The topics that are proposed, the likeliest first.
+Topics proposals_for(const std::shared_ptr<FakeBag>& bag) {
+  try {
+    open(bag);
+  } catch (const UnclearInput& error) {
+    std::vector<UnclearInput::Settings> proposals = {error.proposal()};
+    proposals.insert(proposals.end(), error.others().begin(), error.others().end());
+    Topics topics;
+    for (const UnclearInput::Settings& proposal : proposals) {
+      topics.emplace_back();
+      for (const auto& [name, topic] : proposal) {
+        EXPECT_EQ(name, "topic.");
+        topics.back().push_back(topic);
+      }
+    }
+    return topics;
+  }
+  return {};
 }
 
 void expect_part(const std::string& text, const std::string& part) {
@@ -139,6 +162,8 @@ TEST(BagDataset, WithoutOneAnswerTheTopicsAreListedWithTheOption) {
   }
   expect_part(fault_of_bag<UnclearInput>(several), "holds several clouds of points with Doppler");
   expect_part(fault_of_bag<DataError>(several), "/right: sensor_msgs/PointCloud2, 2 messages at 10.0 Hz");
+  expect_part(fault_of_bag<DataError>(several), "several make a rig where /tf_static has the transforms");
+  EXPECT_EQ(proposals_for(several), (Topics{{"/left"}, {"/right"}}));
   EXPECT_EQ(open(several, {.topics = {"/right"}})->size(), 2U);
   EXPECT_EQ(open(several, {.topics = {"right"}})->size(), 2U);
   expect_part(fault_of_bag<UsageError>(several, {.topics = {"/up"}}),
@@ -233,6 +258,14 @@ TEST(BagDataset, SeveralTopicsAreARig) {
   EXPECT_EQ(dataset->scan(2).points.size(), 2U);
   expect_part(said(*dataset), "topic '/right': 1 of 4 scans have no cloud of it within half a period");
   expect_part(said(*dataset), "the mounting is that of frame 'left' on 'base_link'");
+}
+
+TEST(BagDataset, ARigIsProposedWhereItsMountingsAreKnown) {
+  const auto bag = rig_bag();
+  expect_part(fault_of_bag<UnclearInput>(bag), "name the topics of all as a rig, or that of one:\n  /left: ");
+  EXPECT_EQ(proposals_for(bag), (Topics{{"/left", "/right"}, {"/left"}, {"/right"}}));
+  add_cloud(*bag, "/left/filtered", 0.0, "left", {{1, 2, 3, 4}});
+  EXPECT_EQ(proposals_for(bag), (Topics{{"/left"}, {"/right"}, {"/left/filtered"}})) << "two of one sensor are no rig";
 }
 
 TEST(BagDataset, TimesOfARigAreAfterTheStampOfItsFirstSensor) {

@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/datasets/bag_topic_choice.hpp"
 
 #include <algorithm>
+#include <optional>
 #include <utility>
 
 #include <fmt/format.h>
@@ -10,6 +11,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/bag_topics.hpp"
+#include "dynamic_icp/recording/datasets/bag_transforms.hpp"
 #include "dynamic_icp/recording/datasets/field_names.hpp"
 #include "dynamic_icp/recording/datasets/message_columns.hpp"
 #include "dynamic_icp/recording/datasets/named_rows.hpp"
@@ -44,6 +46,49 @@ std::string listed_topics(const std::vector<TopicSummary>& topics) {
     text += "\n  " + topic_line(topic);
   }
   return text.empty() ? " none" : text;
+}
+
+/// Whether the static transforms say where the sensors of all these clouds sit, each elsewhere.
+bool are_placed(const std::vector<TopicSummary>& clouds, const StaticFrames& frames) {
+  constexpr double kSamePlace = 1e-9;
+  const TopicSummary& first = clouds.front();
+  return std::all_of(clouds.begin() + 1, clouds.end(), [&](const TopicSummary& other) {
+    const bool have_frames = !first.frame_id.empty() && !other.frame_id.empty();
+    const std::optional<Eigen::Isometry3d> T_first_other =
+        have_frames ? frames.transform(first.frame_id, other.frame_id) : std::nullopt;
+    return T_first_other && !T_first_other->matrix().isIdentity(kSamePlace);
+  });
+}
+
+/// The same of a bag.
+bool are_placed(const std::vector<TopicSummary>& clouds, const bags::Bag& bag) {
+  try {
+    StaticFrames frames = read_static_frames(bag);
+    return are_placed(clouds, frames) || (add_repeated_frames(bag, frames) > 0 && are_placed(clouds, frames));
+  } catch (const DataError&) {  // transforms that cannot be read place nothing
+    return false;
+  }
+}
+
+/// Proposes all clouds as a rig where they are one, and each alone.
+[[noreturn]] void ask_which(const fs::path& path, const std::vector<TopicSummary>& clouds, const bags::Bag& bag) {
+  const std::string text = fmt::format("{}: holds several clouds of points with Doppler", path.string());
+  UnclearInput::Settings all;
+  std::vector<UnclearInput::Settings> each;
+  for (const TopicSummary& cloud : clouds) {
+    all.emplace_back("topic.", cloud.name);
+    each.push_back({{"topic.", cloud.name}});
+  }
+  if (are_placed(clouds, bag)) {
+    throw UnclearInput(fmt::format("{}, and transforms that say where their sensors sit: name the topics of all as a "
+                                   "rig, or that of one:{}",
+                                   text, listed_topics(clouds)),
+                       std::move(all), std::move(each));
+  }
+  throw UnclearInput(fmt::format("{}; name the topic of one (several make a rig where /tf_static has the transforms "
+                                 "between their frames):{}",
+                                 text, listed_topics(clouds)),
+                     each.front(), {each.begin() + 1, each.end()});
 }
 
 /// The topics to take.
@@ -127,14 +172,13 @@ class TopicChoice {
     if (usable.empty()) {
       refuse_all(clouds);
     }
-    if (usable.size() > 1 &&
-        std::any_of(usable.begin(), usable.end(), [&](const auto& t) { return t.name != usable.front().name; })) {
-      throw UnclearInput(fmt::format("{}: holds several clouds of points with Doppler; name the topic of one, or those "
-                                     "of several for the sensors of a rig:{}",
-                                     path_.string(), listed_topics(usable)),
-                         {{"topic.", usable.front().name}});
+    const std::size_t definitions = usable.size();  // of one topic there may be several
+    const auto same_name = [](const TopicSummary& a, const TopicSummary& b) { return a.name == b.name; };
+    usable.erase(std::unique(usable.begin(), usable.end(), same_name), usable.end());
+    if (usable.size() > 1) {
+      ask_which(path_, usable, bag_);
     }
-    if (clouds.size() > usable.size()) {
+    if (clouds.size() > definitions) {
       assumptions.push_back(
           fmt::format("topic '{}' is taken: of {} clouds of points it alone has a Doppler by the names of its fields",
                       usable.front().name, clouds.size()));

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 #include <fmt/format.h>
 
@@ -38,8 +39,10 @@ TopicSummary summary_of(const bags::Bag& bag, std::size_t index) {
   }
   if (summary.is_cloud) {
     try {
-      summary.fields =
-          messages::decode_cloud(topic, bag.read(entries.front()), message_origin(bag, entries.front(), 0)).fields;
+      messages::PointCloud cloud =
+          messages::decode_cloud(topic, bag.read(entries.front()), message_origin(bag, entries.front(), 0));
+      summary.fields = std::move(cloud.fields);
+      summary.frame_id = std::move(cloud.header.frame_id);
     } catch (const DataError& error) {
       summary.fault = error.what();
     }

@@ -24,6 +24,7 @@ struct TopicSummary {
   std::optional<double> rate_hz;                  ///< by the times of recording; nothing for fewer than two messages
   bool is_cloud = false;                          ///< its messages are clouds of points that are read
   std::vector<messages::PointField> fields = {};  ///< of a cloud's points, by its first message
+  std::string frame_id = {};                      ///< of a cloud, by the same
   std::string fault = {};                         ///< why the first message cannot be read; else empty
 };
 
