@@ -64,6 +64,54 @@ TEST_F(OpenDoor, WrongNumbersAreMendedByTheAdvice) {
   }
 }
 
+TEST_F(OpenDoor, SphericalColumnsWithNamesAreReadOrSayHow) {
+  const auto angles = [](double per_radian, bool from_zenith) {
+    return [=](const RawScan& scan, std::size_t i) -> Row {
+      const Eigen::Vector3d& p = scan.points[i];
+      const double elevation = std::atan2(p.z(), p.head<2>().norm());
+      return {p.norm(), per_radian * std::atan2(p.y(), p.x()),
+              per_radian * (from_zenith ? std::numbers::pi / 2.0 - elevation : elevation), scan.doppler[i]};
+    };
+  };
+  const RowOf degrees = angles(180.0 / std::numbers::pi, false);
+  const RowOf radians = angles(1.0, false);
+  struct Form {
+    const char* name;
+    ContentOf content;
+    const char* advice;
+  };
+  const Form all[] = {
+      {"degrees.csv", text(degrees, ",", "range,azimuth,elevation,velocity\n"), nullptr},
+      {"named.csv", text(radians, ",", "Range_m,Azimuth_rad,Elevation_rad,Doppler\n"), nullptr},
+      {"brackets.csv", text(radians, ";", "Range [m];Azimuth [rad];Elevation [rad];Doppler [m/s]\n"), nullptr},
+      {"polar.txt", text(angles(180.0 / std::numbers::pi, true), " ", "# r phi theta v_r\n"), nullptr},
+      {"radians.csv", text(radians, ",", "range,azimuth,elevation,velocity\n"),
+       "--field azimuth_rad=azimuth --field elevation_rad=elevation"},
+      {"theta.csv", text(angles(1.0, true), ",", "r,phi,theta,velocity\n"),
+       "--field azimuth_rad=phi --field polar_rad=theta"}};
+  for (const Form& form : all) {
+    SCOPED_TRACE(form.name);
+    const fs::path input = single(form.name, form.content)(drive(), folder_ / "spherical");
+    datasets::InputSettings settings;
+    if (form.advice != nullptr) {
+      const Outcome refused = run_program("info " + input.string());
+      EXPECT_EQ(refused.status, kFailed) << refused.text;
+      EXPECT_NE(refused.text.find(form.advice), std::string::npos) << refused.text;
+      settings = pasted(refused.text);
+    }
+    const RawScan scan = datasets::open_input(input, settings)->scan(0);
+    const RawScan& expected = drive().scans.front();
+    ASSERT_EQ(scan.points.size(), expected.points.size());
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      EXPECT_LT((scan.points[i] - expected.points[i]).norm(), 1e-9 * (1.0 + expected.points[i].norm()));
+    }
+    EXPECT_EQ(scan.doppler, expected.doppler);
+    const Outcome twice = run_program("info " + input.string() + " --columns azimuth_deg,elevation_deg,range,doppler");
+    EXPECT_NE(twice.status, kDone) << twice.text;
+    EXPECT_NE(twice.text.find("by their names"), std::string::npos) << twice.text;
+  }
+}
+
 TEST_F(OpenDoor, PointsWithoutTimesAreSpokenOf) {
   const fs::path input = counted("point_clouds/{:05d}.bin", records<float>(xyzd))(drive(), folder_ / "plain");
   write(input / "ref_poses.txt", drive().poses);

@@ -194,9 +194,11 @@ class BagDataset final : public GrowingBagDataset {
     const messages::PointCloud first = cloud_of(topic, 0);
     topic.frame_id = first.header.frame_id;
     topic.T_frame_cloud = first.T_frame_cloud.value_or(Eigen::Isometry3d::Identity());
+    const std::string origin = fmt::format("{}: {}", path_.string(), topic.name);
+    FieldMap fields = map_columns(*open(topic, 0).columns, options.fields, origin, {});
+    refuse_stated_columns(fields, options, origin);
     topic.meaning = find_meaning(
-        map_columns(*open(topic, 0).columns, options.fields, fmt::format("{}: {}", path_.string(), topic.name), {}),
-        topic.entries.size(), [&](std::size_t message) { return open(topic, message); },
+        std::move(fields), topic.entries.size(), [&](std::size_t message) { return open(topic, message); },
         period_of(topic, options.period_s), assumptions_);
   }
 

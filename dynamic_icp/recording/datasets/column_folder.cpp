@@ -183,9 +183,13 @@ class ColumnDataset final : public Dataset {
     const ArrayReading reading = read_arrays_as(*first, options, files_.front());
     assumptions_.insert(assumptions_.end(), reading.assumptions.begin(), reading.assumptions.end());
     rows_ = reading.rows;
+    FieldMap fields =
+        map_columns(*with_rows(std::move(first), rows_), reading.fields, files_.front().string(), unusable);
+    if (rows_.array.empty()) {
+      refuse_stated_columns(fields, options, files_.front());
+    }
     meaning_ = find_meaning(
-        map_columns(*with_rows(std::move(first), rows_), reading.fields, files_.front().string(), unusable),
-        files_.size(),
+        std::move(fields), files_.size(),
         [&](std::size_t i) {
           return ColumnsOfScan{open(files_[i]), files_[i]};
         },

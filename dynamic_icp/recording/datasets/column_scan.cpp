@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/datasets/column_scan.hpp"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <utility>
 
@@ -94,6 +95,36 @@ void find_time_unit(ColumnMeaning& meaning, std::size_t scans, const std::functi
   }
 }
 
+/// What the names of spherical coordinates leave open is told by the first scan with points.
+void find_coordinates(FieldMap& fields, std::size_t scans, const std::function<ColumnsOfScan(std::size_t)>& open,
+                      std::vector<std::string>& assumptions) {
+  if (!fields.spherical) {
+    return;
+  }
+  std::vector<Eigen::Vector3d> points;
+  std::string origin;
+  for (std::size_t i = 0; points.empty() && i < std::min(scans, kScansSearched); ++i) {
+    const ColumnsOfScan scan = open(i);
+    origin = scan.origin.string();
+    points = Arrays(*scan.columns, scan.origin).vectors(fields.point);
+  }
+  std::array<std::string, 3> names = {fields.point[0].array, fields.point[1].array, fields.point[2].array};
+  const std::string first = names[0];
+  assumptions.push_back(settle(*fields.spherical, names, points, origin));
+  if (names[0] != first) {
+    std::swap(fields.point[0], fields.point[1]);
+  }
+}
+
+/// The points of a scan in x, y, z.
+std::vector<Eigen::Vector3d> cartesian_points(Arrays& arrays, const FieldMap& fields) {
+  std::vector<Eigen::Vector3d> points = arrays.vectors(fields.point);
+  if (fields.spherical) {
+    make_cartesian(points, *fields.spherical);
+  }
+  return points;
+}
+
 /// What the first scan with points contradicts is no channel of the recording.
 void check_channels(ColumnMeaning& meaning, std::size_t scans, const std::function<ColumnsOfScan(std::size_t)>& open,
                     std::vector<std::string>& assumptions) {
@@ -102,7 +133,7 @@ void check_channels(ColumnMeaning& meaning, std::size_t scans, const std::functi
   for (std::size_t i = 0; !fields.channels.empty() && raw.points.empty() && i < std::min(scans, kScansSearched); ++i) {
     const ColumnsOfScan scan = open(i);
     Arrays arrays(*scan.columns, scan.origin);
-    raw.points = arrays.vectors(fields.point);
+    raw.points = cartesian_points(arrays, fields);
     raw.doppler = arrays.values(fields.doppler);
     std::erase_if(fields.channels, [&](const ChannelColumn& column) {
       const std::string reason = set_channel(*scan.columns, column, raw);
@@ -121,6 +152,7 @@ ColumnMeaning find_meaning(FieldMap fields, std::size_t scans, const std::functi
                            double period_s, std::vector<std::string>& assumptions) {
   ColumnMeaning meaning{std::move(fields), {}};
   assumptions.insert(assumptions.end(), meaning.fields.assumptions.begin(), meaning.fields.assumptions.end());
+  find_coordinates(meaning.fields, scans, open, assumptions);
   find_time_unit(meaning, scans, open, period_s, assumptions);
   check_channels(meaning, scans, open, assumptions);
   return meaning;
@@ -132,7 +164,7 @@ RawScan read_scan(const NamedColumns& columns, const ColumnMeaning& meaning, Sta
   RawScan raw;
   raw.stamp = stamp;
   raw.warning = columns.warning();
-  raw.points = arrays.vectors(fields.point);
+  raw.points = cartesian_points(arrays, fields);
   raw.doppler = arrays.values(fields.doppler);
   refuse_foreign_numbers(raw, origin);
   for (const ChannelColumn& column : fields.channels) {

@@ -44,8 +44,9 @@ struct ColumnsOfScan {
   std::filesystem::path origin;
 };
 
-/// Finds the unit of the times of points by the first scan that has some, and leaves out channels that it contradicts;
-/// what was found goes to the assumptions, after those of `fields`. `open` opens one of the `scans` scans, of which the
+/// Finds the unit of the times of points by the first scan that has some, what spherical coordinates leave open
+/// (spherical_fields.hpp), and leaves out channels that it contradicts; what was found goes to the assumptions, after
+/// those of `fields`. `open` opens one of the `scans` scans, of which the
 /// first may be empty: a few are looked at. Throws DataError as reading them does.
 ColumnMeaning find_meaning(FieldMap fields, std::size_t scans, const std::function<ColumnsOfScan(std::size_t)>& open,
                            double period_s, std::vector<std::string>& assumptions);

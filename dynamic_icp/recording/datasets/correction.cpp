@@ -13,6 +13,7 @@
 #include <fmt/ranges.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/datasets/spherical_fields.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -58,13 +59,9 @@ void reorder_columns(RawScan& scan, const std::array<int, 4>& columns) {
   }
 }
 
-void make_cartesian(RawScan& scan, double radians_per_unit) {
+void make_spherical_cartesian(RawScan& scan, double radians_per_unit) {
   for (Eigen::Vector3d& point : scan.points) {
-    const double azimuth = radians_per_unit * point.x();
-    const double elevation = radians_per_unit * point.y();
-    const double range = point.z();
-    point = {range * std::cos(elevation) * std::cos(azimuth), range * std::cos(elevation) * std::sin(azimuth),
-             range * std::sin(elevation)};
+    point = from_spherical(radians_per_unit * point.x(), radians_per_unit * point.y(), point.z());
   }
   scan.directions.clear();
   scan.mountings.clear();
@@ -180,7 +177,7 @@ RawScan corrected(RawScan scan, const Correction& correction) {
   }
   if (const Coordinates stored = correction.coordinates.value_or(Coordinates::kCartesian);
       stored != Coordinates::kCartesian) {
-    make_cartesian(scan, stored == Coordinates::kSphericalDegrees ? std::numbers::pi / 180.0 : 1.0);
+    make_spherical_cartesian(scan, stored == Coordinates::kSphericalDegrees ? std::numbers::pi / 180.0 : 1.0);
   }
   if (correction.point_scale) {
     for (Eigen::Vector3d& point : scan.points) {

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <span>
 #include <string_view>
+#include <utility>
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -37,7 +38,22 @@ constexpr std::array<std::string_view, 12> kTime = {"time_offset_ns",
                                                     "point_time"};
 constexpr std::array<std::string_view, 4> kTimeEndings = {"_ns", "_us", "_ms", "_s"};
 constexpr std::array<std::string_view, 2> kLineOfSight = {"los", "directions"};
-constexpr std::array<std::string_view, 6> kKeys = {"x", "y", "z", "doppler", "time", "los"};
+constexpr std::array<std::string_view, 3> kAzimuth = {"azimuth", "az", "azi"};
+constexpr std::array<std::string_view, 3> kElevation = {"elevation", "elev", "el"};
+constexpr std::array<std::string_view, 2> kPolar = {"polar", "zenith"};
+constexpr std::array<std::string_view, 1> kTheta = {"theta"};
+constexpr std::array<std::string_view, 1> kPhi = {"phi"};
+constexpr std::array<std::string_view, 5> kRange = {"range", "range_m", "distance", "dist", "r"};
+constexpr std::array<std::string_view, 13> kKeys = {
+    "x",        "y",           "z",           "doppler",       "time",          "los",
+    "range",    "azimuth_deg", "azimuth_rad", "elevation_deg", "elevation_rad", "polar_deg",
+    "polar_rad"};
+
+/// An angle, and its unit where its name or the user says it.
+struct AngleColumn {
+  FieldColumn column;
+  std::optional<AngleUnit> unit;
+};
 
 struct ChannelNames {
   formats::Channel channel;
@@ -172,7 +188,80 @@ class FieldFinder {
     return FieldColumn{found.front(), 0, true};
   }
 
+  /// The column of an angle by what it is called, the unit behind it or not.
+  template <class Names>
+  [[nodiscard]] std::optional<AngleColumn> find_angle(const Names& names) const {
+    constexpr std::pair<std::string_view, std::optional<AngleUnit>> kEndings[] = {{"", std::nullopt},
+                                                                                  {"_deg", AngleUnit::kDegrees},
+                                                                                  {"_degrees", AngleUnit::kDegrees},
+                                                                                  {"_rad", AngleUnit::kRadians},
+                                                                                  {"_radians", AngleUnit::kRadians}};
+    for (const auto& [ending, unit] : kEndings) {
+      const std::string key = fmt::format("{}{}", names.front(), ending);
+      if (const std::optional<FieldColumn> asked = wanted_column(key)) {
+        return AngleColumn{*asked, unit};
+      }
+    }
+    for (const auto& [ending, unit] : kEndings) {
+      for (const std::string_view name : names) {
+        if (const std::string* const own = same_as(fmt::format("{}{}", name, ending))) {
+          return AngleColumn{{*own, 0, true}, unit};
+        }
+      }
+    }
+    return std::nullopt;
+  }
+
+  /// Azimuth, elevation and range in place of x, y and z, if they are there.
+  bool find_spherical_point() {
+    const std::string* own_range = nullptr;
+    for (std::size_t k = 0; k < kRange.size() && own_range == nullptr; ++k) {
+      own_range = same_as(kRange[k]);
+    }
+    std::optional<FieldColumn> range = wanted_column("range");
+    if (!range && own_range != nullptr) {
+      range = FieldColumn{*own_range, 0, true};
+    }
+    SphericalFields spherical;
+    std::optional<AngleColumn> first = find_angle(kAzimuth);
+    std::optional<AngleColumn> second = find_angle(kElevation);
+    if (const std::optional<AngleColumn> polar = find_angle(kPolar); polar && (!second || wants_any(kPolar))) {
+      second = polar;
+      spherical.from_zenith = true;
+    }
+    if (!first && !second) {
+      first = find_angle(kTheta);
+      second = find_angle(kPhi);
+      spherical.is_theta_phi = true;
+    }
+    if (!range || !first || !second) {
+      return false;
+    }
+    if (first->unit && second->unit && *first->unit != *second->unit) {
+      throw DataError(fmt::format("{}: '{}' and '{}' are angles in different units, expected one", origin_,
+                                  first->column.array, second->column.array));
+    }
+    spherical.unit = first->unit ? first->unit : second->unit;
+    map_.point = {first->column, second->column, *range};
+    map_.spherical = spherical;
+    return true;
+  }
+
+  /// Whether the user names a column of this kind of angle.
+  template <class Names>
+  [[nodiscard]] bool wants_any(const Names& names) const {
+    return std::any_of(wanted_.begin(), wanted_.end(),
+                       [&](const auto& wish) { return wish.first.starts_with(names.front()); });
+  }
+
   void find_point() {
+    const bool wants_spherical = wants_any(kAzimuth) || wants_any(kElevation) || wants_any(kPolar);
+    if (wants_spherical) {
+      if (!find_spherical_point()) {
+        throw DataError(fmt::format("{}: expected columns of azimuth, elevation and range; {}", origin_, there_are()));
+      }
+      return;
+    }
     constexpr std::array<std::string_view, 3> kAxes = {"x", "y", "z"};
     const std::string* array = nullptr;
     for (std::size_t k = 0; k < kPoints.size() && array == nullptr; ++k) {
@@ -186,6 +275,8 @@ class FieldFinder {
         map_.point[k] = {*axis, 0, true};
       } else if (array != nullptr) {
         map_.point[k] = {*array, k, false};
+      } else if (find_spherical_point()) {
+        return;
       } else {
         throw DataError(fmt::format("{}: no column for {}, expected x, y and z, or one of {} with all three; {}",
                                     origin_, kAxes[k], fmt::join(kPoints, ", "), there_are()));

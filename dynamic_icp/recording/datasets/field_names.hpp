@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "dynamic_icp/recording/datasets/spherical_fields.hpp"
 #include "dynamic_icp/recording/formats/channel.hpp"
 
 namespace dynamic_icp::datasets {
@@ -32,7 +33,8 @@ struct ChannelColumn {
 
 /// Which columns say what.
 struct FieldMap {
-  std::array<FieldColumn, 3> point;  ///< x, y, z
+  std::array<FieldColumn, 3> point;          ///< x, y, z
+  std::optional<SphericalFields> spherical;  ///< azimuth, elevation and range in place of these
   FieldColumn doppler;
   std::optional<FieldColumn> time;
   std::optional<std::array<FieldColumn, 3>> line_of_sight;
@@ -47,6 +49,8 @@ struct FieldMap {
 /// `origin` the file that messages name.
 ///
 ///   point          x, y, z; or one array of them: points, xyz, pts, positions
+///                  else range (distance, dist, r) with azimuth (az, azi) and elevation (elev, el) or polar (zenith),
+///                  or with theta and phi, also with _deg or _rad behind the angles (spherical_fields.hpp)
 ///   doppler        doppler, velocity, radial_velocity, radial_vel, v_radial, doppler_velocity, dopplers, velocity_mps,
 ///                  v_doppler_mps, range_rate, vel, v_r, vr, rv, v, radial_speed, speed, in this order
 ///   time           time_offset_ns, time_offset_s, offset_time, t, time_stamp, timestamp, time, time_offset,
@@ -59,7 +63,8 @@ struct FieldMap {
 ///   return number  return, return_index, echo
 ///   no measurement valid, is_valid where 0; in_ambiguity_region, drop_reason, scan_offset where not 0
 ///
-/// `wanted` goes before that: the column of x, y, z, doppler or time, "points[3]" being the fourth of an array, and the
+/// `wanted` goes before that: the column of x, y, z, doppler or time, of range, azimuth_deg, azimuth_rad,
+/// elevation_deg, elevation_rad, polar_deg (from z) or polar_rad, "points[3]" being the fourth of an array, and the
 /// array of los. Throws UsageError for other keys; DataError naming the columns there are where a wanted one is not
 /// among them or none has a known name (time and line of sight may be missing), and saying of `unusable` arrays why
 /// they are not among the names.

@@ -116,6 +116,43 @@ TEST(FieldNames, OfDriversOfFmcwSensors) {
   EXPECT_EQ(map({"x", "y", "z", "v", "timestamp_nsecs", "nanosecs_since_frame"}).time->array, "nanosecs_since_frame");
 }
 
+TEST(FieldNames, SphericalCoordinatesInPlaceOfXYZ) {
+  const auto columns = [](const FieldMap& fields) {
+    return std::array{fields.point[0].array, fields.point[1].array, fields.point[2].array};
+  };
+  const FieldMap bare = map({"range", "azimuth", "elevation", "v"});
+  EXPECT_EQ(columns(bare), (std::array<std::string, 3>{"azimuth", "elevation", "range"}));
+  ASSERT_TRUE(bare.spherical);
+  EXPECT_FALSE(bare.spherical->unit);
+  EXPECT_TRUE(bare.uses("elevation") && bare.uses("range"));
+  const FieldMap degrees = map({"v", "Az_Deg", "el", "distance"});
+  EXPECT_EQ(columns(degrees), (std::array<std::string, 3>{"Az_Deg", "el", "distance"}));
+  EXPECT_EQ(degrees.spherical->unit, AngleUnit::kDegrees) << "of one is of both";
+  EXPECT_EQ(map({"azimuth_rad", "polar_rad", "r", "v"}).spherical->from_zenith, true);
+  EXPECT_TRUE(map({"phi", "theta", "r", "v"}).spherical->is_theta_phi);
+  EXPECT_EQ(map({"phi", "theta", "r", "v"}).point[0].array, "theta") << "the numbers tell which is which";
+  EXPECT_FALSE(map({"x", "y", "z", "azimuth", "elevation", "range", "v"}).spherical) << "these go first";
+  EXPECT_NE(message({"azimuth", "range", "v"}).find("no column for x"), std::string::npos) << "an elevation is missing";
+  EXPECT_NE(message({"azimuth_deg", "elevation_rad", "range", "v"}).find("in different units"), std::string::npos);
+}
+
+TEST(FieldNames, TheUserSaysWhichAnglesAreMeant) {
+  const Names names = {"a", "b", "c", "x", "y", "z", "theta", "phi", "range", "v"};
+  const FieldMap stated = map(names, {{"azimuth_deg", "a"}, {"elevation_deg", "b"}, {"range", "c"}});
+  EXPECT_EQ(stated.point[0].array, "a");
+  EXPECT_EQ(stated.point[2].array, "c");
+  EXPECT_EQ(stated.spherical->unit, AngleUnit::kDegrees);
+  const FieldMap polar = map(names, {{"azimuth_rad", "phi"}, {"polar_rad", "theta"}});
+  EXPECT_EQ(polar.point[1].array, "theta");
+  EXPECT_EQ(polar.point[2].array, "range");
+  EXPECT_TRUE(polar.spherical->from_zenith);
+  EXPECT_FALSE(polar.spherical->is_theta_phi);
+  EXPECT_EQ(polar.spherical->unit, AngleUnit::kRadians);
+  EXPECT_NE(message({"a", "range", "v"}, {{"azimuth_deg", "a"}}).find("expected columns of azimuth, elevation"),
+            std::string::npos);
+  EXPECT_THROW(map(names, {{"azimuth", "a"}}), UsageError) << "without a unit";
+}
+
 TEST(FieldNames, KnowsWhatIsUsed) {
   const FieldMap fields = map({"points", "doppler", "los", "t", "line"});
   EXPECT_TRUE(fields.uses("points") && fields.uses("doppler") && fields.uses("los") && fields.uses("t"));

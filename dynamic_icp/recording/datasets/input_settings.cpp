@@ -120,7 +120,9 @@ void set_columns(InputSettings& settings, const std::string& name, const std::st
     if (std::adjacent_find(used.begin(), used.end()) != used.end()) {
       throw DataError("named twice");
     }
-    (void)map_fields(used, {}, name);
+    if (map_fields(used, {}, name).spherical) {
+      throw DataError("angles without a unit");
+    }
   } catch (const DataError&) {
     refuse(
         name, text,

@@ -149,6 +149,15 @@ std::string numbers_as_columns(const formats::NpyArray& array) {
 
 }  // namespace
 
+void refuse_stated_columns(const FieldMap& fields, const OpenOptions& options, const std::filesystem::path& origin) {
+  if (fields.spherical && !options.columns.empty()) {
+    throw UsageError(fmt::format(
+        "{}: its columns '{}', '{}' and '{}' have names and are read as spherical coordinates: state which are meant, "
+        "and in which unit, by their names (azimuth_deg, elevation_deg, range), not what all are in their order",
+        origin.string(), fields.point[0].array, fields.point[1].array, fields.point[2].array));
+  }
+}
+
 std::unique_ptr<NamedColumns> with_rows(std::unique_ptr<NamedColumns> scan, const NamedRows& rows) {
   return rows.array.empty() ? std::move(scan) : std::make_unique<NamedRowsColumns>(std::move(scan), rows);
 }

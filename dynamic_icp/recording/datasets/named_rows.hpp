@@ -35,6 +35,10 @@ struct ArrayReading {
 /// them; UsageError where they state columns of arrays that have names.
 ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options, const std::filesystem::path& origin);
 
+/// Throws UsageError where columns are stated by their order and the names of those of a file say that they are
+/// spherical coordinates: what is stated would be taken of what is cartesian already.
+void refuse_stated_columns(const FieldMap& fields, const OpenOptions& options, const std::filesystem::path& origin);
+
 /// The scan with the columns of an array among its own columns, in place of the array.
 std::unique_ptr<NamedColumns> with_rows(std::unique_ptr<NamedColumns> scan, const NamedRows& rows);
 

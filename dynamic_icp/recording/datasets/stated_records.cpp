@@ -96,7 +96,7 @@ std::shared_ptr<const StatedLayout> stated_layout(const OpenOptions& options) {
   layout.is_half = options.dtype == kHalf;
   layout.doppler = offsets.at(map.doppler.array);
   for (std::size_t k = 0; k < 3; ++k) {
-    if (!map.point.at(k).whole) {
+    if (!map.point.at(k).whole || map.spherical) {
       throw UsageError(fmt::format("columns are '{}', expected x, y and z among them", fmt::join(stated.names, ",")));
     }
     layout.point.at(k) = offsets.at(map.point.at(k).array);

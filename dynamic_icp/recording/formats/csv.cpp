@@ -124,11 +124,13 @@ bool is_name(std::string_view cell) { return !number_of(cell); }
 
 std::string column_name(std::string_view cell) {
   cell = cell.substr(std::min(cell.find_first_not_of("# \t"), cell.size()));
-  const std::size_t unit = cell.find_last_of("[(");
-  if (unit != std::string_view::npos && unit > 0 && (cell.back() == ']' || cell.back() == ')')) {
-    cell = cell.substr(0, unit);
+  const std::size_t bracket = cell.find_last_of("[(");
+  if (bracket == std::string_view::npos || bracket == 0 || (cell.back() != ']' && cell.back() != ')')) {
+    return std::string(bare(cell));
   }
-  return std::string(bare(cell));
+  const std::string unit = lower_case(bare(cell.substr(bracket + 1, cell.size() - bracket - 2)));
+  const bool is_of_angles = unit == "deg" || unit == "degrees" || unit == "rad" || unit == "radians";
+  return std::string(bare(cell.substr(0, bracket))) + (is_of_angles ? '_' + unit : "");
 }
 
 CsvHeader parse_csv_header(std::string_view text, std::string_view origin) {

@@ -26,7 +26,8 @@ std::vector<std::string_view> cells_of(std::string_view line, char delimiter);
 /// Whether a cell is the name of a column rather than a number. NaN, infinity and nothing at all are numbers.
 bool is_name(std::string_view cell);
 
-/// A name as it stands in a header, without '#' in front and a unit in brackets behind it.
+/// A name as it stands in a header, without '#' in front and a unit in brackets behind it; that of an angle becomes a
+/// part of the name, azimuth_deg.
 std::string column_name(std::string_view cell);
 
 /// Where the rows of a table begin, and what they are like.
