@@ -9,6 +9,7 @@
 
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
+#include "dynamic_icp/recording/diagnosis/range_surfaces.hpp"
 #include "dynamic_icp/recording/diagnosis/scan_look.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -126,15 +127,35 @@ std::vector<SphericalColumns> spherical_hypotheses(const std::vector<RawScan>& s
   return possible;
 }
 
-/// The spherical coordinates that explain the Doppler best, where there may be any.
-std::optional<SphericalColumns> best_spherical(std::span<const RawScan> scans, const Workers& workers) {
+/// Whether the columns are angles in degrees that see surfaces. Coordinates within 2 pi may be metres as well.
+bool are_surfaces(const std::vector<RawScan>& scans, const SphericalColumns& spherical) {
+  if (spherical.coordinates != datasets::Coordinates::kSphericalDegrees) {
+    return false;
+  }
+  const auto& [azimuth, elevation, range] = spherical.columns;
+  double widest = 0.0;
+  for (const RawScan& scan : scans) {
+    std::vector<Eigen::Vector3d> points;
+    for (const Eigen::Vector3d& point : scan.points) {
+      points.emplace_back(point[azimuth], point[elevation], point[range]);
+      widest = std::max(widest, std::abs(point[azimuth]));  // false for NaN
+    }
+    if (!shows_surfaces(points)) {
+      return false;
+    }
+  }
+  return widest > 2.0 * std::numbers::pi;
+}
+
+/// The spherical coordinates that explain the Doppler best, where there may be any, and those that see surfaces.
+void find_spherical(std::span<const RawScan> scans, const Workers& workers, ColumnScores& scores) {
   std::vector<RawScan> few;
   for (const RawScan& scan : scans) {
     if (tells_columns(scan)) {
       few.push_back(thinned(scan));
     }
   }
-  std::optional<SphericalColumns> best;
+  std::optional<SphericalColumns>& best = scores.likely_spherical;
   for (SphericalColumns& spherical : few.empty() ? std::vector<SphericalColumns>() : spherical_hypotheses(few)) {
     std::vector<double> residuals;
     for (const RawScan& scan : few) {
@@ -145,8 +166,10 @@ std::optional<SphericalColumns> best_spherical(std::span<const RawScan> scans, c
     if (!best || spherical.residual < best->residual) {
       best = spherical;
     }
+    if (!scores.surfaces && are_surfaces(few, spherical)) {
+      scores.surfaces = spherical;
+    }
   }
-  return best;
 }
 
 }  // namespace
@@ -204,7 +227,7 @@ ColumnScores score_columns(std::span<const RawScan> scans, const Workers& worker
     scores.likely_doppler = static_cast<int>(best - scores.residual.begin());
     scores.doppler = *best < kGoodResidual_mps ? scores.likely_doppler : 3;
   }
-  scores.likely_spherical = best_spherical(scans, workers);
+  find_spherical(scans, workers, scores);
   if (const auto& spherical = scores.likely_spherical; spherical && spherical->residual < kGoodResidual_mps &&
                                                        spherical->residual <= *best &&
                                                        scores.residual[3] > kTimesWorse * spherical->residual) {

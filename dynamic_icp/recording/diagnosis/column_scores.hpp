@@ -37,8 +37,12 @@ struct ColumnScores {
   /// The spherical coordinates that explain the last column best, where the numbers may be such ones.
   std::optional<SphericalColumns> likely_spherical = std::nullopt;
 
-  /// The same beyond doubt: a velocity explains the last column well with these and not with the coordinates as they
-  /// are.
+  /// Angles in degrees, some beyond 2 pi, with ranges of surfaces (range_surfaces.hpp): what the Doppler of a sensor at
+  /// rest does not tell.
+  std::optional<SphericalColumns> surfaces = std::nullopt;
+
+  /// Spherical coordinates beyond doubt: a velocity explains the last column well with these and not with the
+  /// coordinates as they are.
   std::optional<SphericalColumns> spherical = std::nullopt;
 };
 

@@ -20,6 +20,8 @@ constexpr double kAlongAxis = 0.9;   // cosine
 constexpr double kUnexplained_mps = 0.25;
 constexpr double kMuchBetter = 0.6;  // residual with spherical coordinates over that with the columns as they are
 
+constexpr double kSpeaksAgainst =
+    2.5;  // spherical coordinates, where they explain the Doppler so much worse than x, y, z
 constexpr double kPointsForExtent = 20.0;  // a scan; the extent of fewer says nothing
 
 struct View {
@@ -128,6 +130,13 @@ Finding columns(const Evidence& evidence) {
         unit_of(*scores.spherical), scores.spherical->residual, scores.residual[3]);
     finding.fix.columns = as_read(*scores.spherical, evidence);
     finding.fix.coordinates = scores.spherical->coordinates;
+  } else if (scores.surfaces && scores.surfaces->residual < kSpeaksAgainst * scores.residual[3]) {
+    finding.verdict = Verdict::kSuspicious;
+    finding.sentence =
+        "the points look like spherical coordinates: taken as azimuth and elevation in degrees with a range, "
+        "neighbours are equally far, as on surfaces; the Doppler, of a sensor at rest or in traffic, does not tell";
+    finding.fix.columns = as_read(*scores.surfaces, evidence);
+    finding.fix.coordinates = scores.surfaces->coordinates;
   } else if (scores.doppler != 3) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = fmt::format(

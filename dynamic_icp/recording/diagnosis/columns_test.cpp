@@ -66,6 +66,33 @@ TEST(Columns, SphericalCoordinatesAreFound) {
   }
 }
 
+/// Of a sensor that stands.
+Diagnosis at_rest(const std::function<void(RawScan&)>& change) {
+  Recording recording;
+  recording.perturb = [&](RawScan& raw, const Vector3d&) {
+    for (std::size_t i = 0; i < raw.doppler.size(); ++i) {
+      raw.doppler[i] = 0.02 * std::sin(12.9898 * static_cast<double>(i));
+    }
+    change(raw);
+  };
+  recording.has_truth = false;
+  return diagnosis_of(recording);
+}
+
+TEST(Columns, DegreesOfASensorAtRestAreSuspected) {
+  const double per_degree = 180.0 / std::acos(-1.0);
+  for (const std::array<Eigen::Index, 3>& places : {std::array<Eigen::Index, 3>{0, 1, 2}, {1, 2, 0}, {2, 1, 0}}) {
+    const Finding finding =
+        at_rest([&](RawScan& raw) { to_spherical(raw, per_degree, places); }).of(Question::kColumns);
+    EXPECT_EQ(finding.verdict, Verdict::kSuspicious) << finding.sentence;
+    const auto place = [&](std::size_t k) { return static_cast<int>(places.at(k)); };
+    EXPECT_EQ(finding.fix, (Correction{.columns = std::array{place(0), place(1), place(2), 3},
+                                       .coordinates = datasets::Coordinates::kSphericalDegrees}));
+  }
+  const Finding cartesian = at_rest([](RawScan&) {}).of(Question::kColumns);
+  EXPECT_FALSE(cartesian.fix.coordinates) << cartesian.sentence;
+}
+
 TEST(Columns, OfAFlatSensorOnItsSideTheOtherAxisIsUp) {
   Evidence evidence;
   evidence.looks.resize(1);
