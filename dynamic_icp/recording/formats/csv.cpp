@@ -7,12 +7,13 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
+#include <utility>
 
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/base/parse_number.hpp"
+#include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
 #include "dynamic_icp/recording/formats/text_lines.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
@@ -61,34 +62,72 @@ std::optional<double> number_of(std::string_view cell) {
   return cell.empty() ? std::optional(std::numeric_limits<double>::quiet_NaN()) : parse_number<double>(cell);
 }
 
-/// A column while it is read: whole numbers as long as all are.
+/// A column while it is read: whole numbers as long as all are. It grows as the bytes of an array, which need not be
+/// copied then.
 class GrowingColumn {
  public:
+  explicit GrowingColumn(std::size_t rows) { bytes_.reserve(rows * kNumberBytes); }
+
   bool add(std::string_view cell) {
     if (whole_) {
       if (const std::optional<std::int64_t> number = parse_number<std::int64_t>(cell)) {
-        integers_.push_back(*number);
+        append_value(bytes_, *number);
         return true;
       }
-      whole_ = false;
-      numbers_.assign(integers_.begin(), integers_.end());
-      integers_ = {};
+      make_floating();
     }
     const std::optional<double> number = number_of(cell);
-    numbers_.push_back(number.value_or(0.0));
+    append_value(bytes_, number.value_or(0.0));
     return number.has_value();
   }
 
-  [[nodiscard]] NpyArray array() const {
-    return whole_ ? npy_array<std::int64_t>({integers_.size()}, integers_)
-                  : npy_array<double>({numbers_.size()}, numbers_);
+  /// Once: the bytes go with it.
+  [[nodiscard]] NpyArray take_array() {
+    const std::size_t rows = bytes_.size() / kNumberBytes;
+    return {whole_ ? NpyType::kInt64 : NpyType::kFloat64, {rows}, std::move(bytes_), {}};
   }
 
  private:
+  static constexpr std::size_t kNumberBytes = 8;  // of either type
+  static_assert(sizeof(std::int64_t) == kNumberBytes && sizeof(double) == kNumberBytes);
+
+  void make_floating() {
+    std::string numbers;
+    numbers.reserve(bytes_.capacity());
+    for (std::size_t at = 0; at < bytes_.size(); at += kNumberBytes) {
+      append_value(numbers, static_cast<double>(value_at<std::int64_t>(bytes_, at)));
+    }
+    bytes_ = std::move(numbers);
+    whole_ = false;
+  }
+
   bool whole_ = true;
-  std::vector<std::int64_t> integers_;
-  std::vector<double> numbers_;
+  std::string bytes_;
 };
+
+/// As cells_of, into a list that is used again.
+void split_cells(std::string_view line, char delimiter, std::vector<std::string_view>& cells) {
+  if (delimiter == ' ') {
+    cells = words_of(line);
+    std::transform(cells.begin(), cells.end(), cells.begin(), bare);
+    return;
+  }
+  cells.clear();
+  for (std::size_t begin = 0;;) {
+    const std::size_t end = std::min(line.find(delimiter, begin), line.size());
+    cells.push_back(bare(line.substr(begin, end - begin)));
+    if (end == line.size()) {
+      return;
+    }
+    begin = end + 1;
+  }
+}
+
+/// About as many rows as there are, by the length of the first line; never more memory than the text's own size.
+std::size_t likely_rows(std::string_view rows, std::size_t columns) {
+  const std::size_t line = std::max<std::size_t>({rows.find('\n') + 1, 8 * columns, 1});
+  return rows.size() / line + 1;
+}
 
 }  // namespace
 
@@ -103,21 +142,8 @@ char delimiter_of(std::string_view line) {
 
 std::vector<std::string_view> cells_of(std::string_view line, char delimiter) {
   std::vector<std::string_view> cells;
-  if (delimiter == ' ') {
-    cells = words_of(line);
-    std::transform(cells.begin(), cells.end(), cells.begin(), bare);
-    return cells;
-  }
-  constexpr std::size_t kUsualCells = 8;
-  cells.reserve(kUsualCells);
-  for (std::size_t begin = 0;;) {
-    const std::size_t end = std::min(line.find(delimiter, begin), line.size());
-    cells.push_back(bare(line.substr(begin, end - begin)));
-    if (end == line.size()) {
-      return cells;
-    }
-    begin = end + 1;
-  }
+  split_cells(line, delimiter, cells);
+  return cells;
 }
 
 bool is_name(std::string_view cell) { return !number_of(cell); }
@@ -194,15 +220,20 @@ CsvTable parse_csv(std::string_view text, std::string_view origin) {
     throw DataError(fmt::format("{}: line {}: {} columns, expected at most {}", origin, header.first_line,
                                 header.columns, kMaxCsvColumns));
   }
-  std::vector<GrowingColumn> columns(std::max(header.columns, header.names.size()));
   std::string_view rest = text.substr(header.begin);
+  const std::size_t count = std::max(header.columns, header.names.size());
+  std::vector<GrowingColumn> columns(count, GrowingColumn(0));
+  for (GrowingColumn& column : columns) {
+    column = GrowingColumn(likely_rows(rest, count));
+  }
+  std::vector<std::string_view> cells;
   std::size_t line = header.first_line - 1;
   while (const std::optional<NextLine> next = next_line(rest)) {
     line += next->lines;
     if (is_comment(next->text)) {
       continue;
     }
-    const std::vector<std::string_view> cells = cells_of(next->text, header.delimiter);
+    split_cells(next->text, header.delimiter, cells);
     if (cells.size() != columns.size()) {
       throw DataError(fmt::format("{}: line {}: {} columns, expected {} as in the first row", origin, line,
                                   cells.size(), columns.size()));
@@ -218,7 +249,7 @@ CsvTable parse_csv(std::string_view text, std::string_view origin) {
   CsvTable table;
   table.names = header.names;
   for (std::size_t k = 0; k < columns.size(); ++k) {
-    table.columns.push_back(columns[k].array());
+    table.columns.push_back(columns[k].take_array());
     table.columns.back().origin = fmt::format(
         "{}: column {}", origin, table.names.empty() ? fmt::format("{}", k + 1) : fmt::format("'{}'", table.names[k]));
   }
