@@ -140,11 +140,15 @@ export function createChart(plot, { pick, zoom, fold } = {}) {
       pen.setLineDash([]);
       pen.textAlign = 'right';
       const label = labelBeside(place, LETTERS);
+      const right = width - EDGE.right - 3;
+      const letters = pen.measureText(name).width;
+      pen.fillStyle = resolved('--background');
+      pen.globalAlpha = 0.85; // letters stay readable over lines, which still show
+      pen.fillRect(right - letters - 2, label.baseline === 'top' ? label.y : label.y - LETTERS, letters + 4, LETTERS);
+      pen.globalAlpha = 1;
+      pen.fillStyle = resolved('--ink');
       pen.textBaseline = label.baseline;
-      pen.lineWidth = 3; // letters stay readable over lines
-      pen.strokeStyle = resolved('--background');
-      pen.strokeText(name, width - EDGE.right - 3, label.y);
-      pen.fillText(name, width - EDGE.right - 3, label.y);
+      pen.fillText(name, right, label.y);
     }
   }
 
