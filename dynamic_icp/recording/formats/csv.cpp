@@ -108,7 +108,7 @@ class GrowingColumn {
 /// As cells_of, into a list that is used again.
 void split_cells(std::string_view line, char delimiter, std::vector<std::string_view>& cells) {
   if (delimiter == ' ') {
-    cells = words_of(line);
+    split_words(line, cells);
     std::transform(cells.begin(), cells.end(), cells.begin(), bare);
     return;
   }

@@ -105,9 +105,10 @@ void PcdFile::read_ascii() {
   }
   std::string records;
   records.reserve(header_.points * header_.record_bytes);
+  std::vector<std::string_view> words;
   std::size_t point = 0;
   for (std::size_t line = header_.lines + 1; const std::optional<std::string_view> text = take_line(rest); ++line) {
-    const std::vector<std::string_view> words = words_of(*text);
+    split_words(*text, words);
     if (words.empty()) {
       continue;
     }

@@ -213,13 +213,13 @@ class Reader {
   }
 
   void read_line(PlyElement& element) {
-    std::vector<std::string_view> words;
-    while (words.empty()) {
+    std::vector<std::string_view>& words = words_;
+    for (words.clear(); words.empty();) {
       const std::optional<std::string_view> line = next_line();
       if (!line) {
         fail(fmt::format("the file ends here, expected {} records of element '{}'", element.count, element.name));
       }
-      words = words_of(*line);
+      split_words(*line, words);
     }
     std::size_t used = 0;
     for (PlyColumn& column : element.columns) {
@@ -289,7 +289,8 @@ class Reader {
 
   std::string_view rest_;
   const std::filesystem::path& origin_;
-  std::size_t line_ = 0;  // of the header and of ascii data
+  std::vector<std::string_view> words_;  // of a line, used again
+  std::size_t line_ = 0;                 // of the header and of ascii data
   Encoding encoding_ = Encoding::kAscii;
   PlyFile file_;
   std::vector<std::vector<NpyType>> count_types_;  // of the lengths of lists, for each element's columns

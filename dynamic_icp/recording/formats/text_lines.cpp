@@ -37,11 +37,17 @@ std::vector<std::string_view> words_of(std::string_view line) {
   constexpr std::size_t kUsualWords = 8;
   std::vector<std::string_view> words;
   words.reserve(kUsualWords);
+  split_words(line, words);
+  return words;
+}
+
+void split_words(std::string_view line, std::vector<std::string_view>& words) {
+  words.clear();
   // One character after the other: searches for a set of them take longer than to read the numbers.
   for (const char *at = line.data(), *const end = at + line.size();;) {
     at = std::find_if_not(at, end, is_blank);
     if (at == end) {
-      return words;
+      return;
     }
     const char* const begin = at;
     at = std::find_if(at, end, is_blank);

@@ -28,6 +28,9 @@ constexpr bool is_blank(char c) { return c == ' ' || c == '\t' || c == '\r' || c
 /// The words of a line: what stands between blanks, tabs, carriage returns and the like.
 std::vector<std::string_view> words_of(std::string_view line);
 
+/// The same into a list that is used again, for many lines.
+void split_words(std::string_view line, std::vector<std::string_view>& words);
+
 /// With the letters A to Z as a to z, whatever the locale.
 std::string lower_case(std::string_view text);
 
