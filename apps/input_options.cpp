@@ -78,8 +78,8 @@ void add_input_options(CLI::App& command, datasets::InputSettings& settings) {
       fmt::format("Layout of the recording: auto, {} (default auto)", fmt::join(datasets::known_formats(), ", ")));
   add_repeatable(
       command, "--field", "NAME=COLUMN",
-      "The column that holds x, y, z, doppler or time, or the array that holds the points, where columns have "
-      "names; repeatable",
+      "The column that holds x, y, z, doppler or time, or azimuth_deg, elevation_deg (or _rad) and range, or the array "
+      "that holds the points, where columns have names; repeatable",
       [&settings](const std::string& text) { set_field(settings, text); });
   add_repeatable(command, "--lidar", "NAME",
                  "Sensor to take of a recording with several; repeatable (default: the layout's choice)",
