@@ -17,9 +17,9 @@ enum class AngleUnit : std::uint8_t { kDegrees, kRadians };
 /// How the columns of a point that are azimuth, elevation and range say it. The azimuth counts from x ahead towards y
 /// on the left, the elevation upwards.
 struct SphericalFields {
-  std::optional<AngleUnit> unit;  ///< of both angles; nothing: no name says it
-  bool from_zenith = false;       ///< the second angle counts from z downwards
-  bool is_theta_phi = false;      ///< theta and phi, in this order: no name says which of them is the azimuth
+  std::optional<AngleUnit> unit = {};  ///< of both angles; nothing: no name says it
+  bool from_zenith = false;            ///< the second angle counts from z downwards
+  bool is_theta_phi = false;           ///< theta and phi, in this order: no name says which of them is the azimuth
 };
 
 /// x, y, z of a point in that direction, in the unit of the range.
