@@ -156,9 +156,9 @@ void McapChannels::add_channel(ByteReader content) {
 
 void McapChannels::keep(const ByteReader& content, std::uint64_t bytes) {
   kept_ += bytes;
-  if (kept_ > kMostBytes) {
+  if (kept_ > kMaxBytes) {
     throw content.damage(
-        fmt::format("the names and descriptions of its topics have more than {} MiB", kMostBytes >> 20U));
+        fmt::format("the names and descriptions of its topics have more than {} MiB", kMaxBytes >> 20U));
   }
 }
 

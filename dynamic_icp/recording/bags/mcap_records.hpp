@@ -85,10 +85,10 @@ struct McapChunkIndex {
 McapChunkIndex mcap_chunk_index(ByteSource& source, const McapRecord& record);
 
 /// Schemas and channels, wherever they stand. Each channel has a copy of the description of its type: a small file, and
-/// a stream that never ends, may ask for any amount of memory, and are refused beyond `kMostBytes`.
+/// a stream that never ends, may ask for any amount of memory, and are refused beyond `kMaxBytes`.
 class McapChannels {
  public:
-  static constexpr std::uint64_t kMostBytes = std::uint64_t{256} << 20U;
+  static constexpr std::uint64_t kMaxBytes = std::uint64_t{256} << 20U;
 
   void add_schema(ByteReader content);
 

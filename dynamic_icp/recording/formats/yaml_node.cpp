@@ -134,11 +134,11 @@ YAML::Node parse_document(std::string_view text, const std::filesystem::path& or
 }
 
 void SettingsReader::read(const YAML::Node& key_node, const YAML::Node& value, const std::string& key, int depth) {
-  constexpr int kMaxDepth = 32;          // an alias may make a map its own part
-  constexpr std::size_t kMost = 10'000;  // and aliases of aliases double their number with every line
+  constexpr int kMaxDepth = 32;             // an alias may make a map its own part
+  constexpr std::size_t kMaxKeys = 10'000;  // and aliases of aliases double their number with every line
   const std::string here = place(origin_, line_of(key_node));
-  if (++visited_ > kMost) {
-    throw UsageError(fmt::format("{}: more than {} keys, those of aliases counted each time", here, kMost));
+  if (++visited_ > kMaxKeys) {
+    throw UsageError(fmt::format("{}: more than {} keys, those of aliases counted each time", here, kMaxKeys));
   }
   if (value.IsMap() && depth < kMaxDepth && (value.size() > 0 || holds_fields(key))) {
     for (const auto& entry : value) {
