@@ -15,37 +15,41 @@ constexpr double kConcentration = 1.0;  // alpha: as much as one vehicle at the 
 constexpr double kLaneSigma_rad = 0.1;  // of headings in the same lanes
 constexpr double kNearby_m = 30.0;      // lanes bend
 
-double yaw_in(const Matrix3d& level, const Vector3d& direction) {
-  const Vector3d local = level.transpose() * direction;
-  return std::atan2(local.y(), local.x());
-}
-
 double weight_of(double distance_m) { return std::exp(-0.5 * distance_m * distance_m / (kNearby_m * kNearby_m)); }
 
 }  // namespace
 
-double HeadingPrior::log_ratio(const Vector3d& position, const Matrix3d& level, double yaw_rad) const {
-  constexpr double kPeak = std::numbers::pi / (kLaneSigma_rad * 2.5066282746310002);  // pi / (sigma sqrt(2 pi))
+void HeadingPrior::clear(const Matrix3d& level) {
+  level_ = level;
+  vehicles_.clear();
+}
+
+void HeadingPrior::add(const Vector3d& position, const Vector3d& direction) {
+  const Vector3d in_level = level_.transpose() * direction;
+  vehicles_.push_back({position, std::atan2(in_level.y(), in_level.x())});
+}
+
+double HeadingPrior::log_ratio(const Vector3d& position, double yaw_rad) const {
+  const double peak = std::sqrt(0.5 * std::numbers::pi) / kLaneSigma_rad;  // of pi N
   double density = kConcentration;
   double total = kConcentration;
   for (const Vehicle& vehicle : vehicles_) {
     const double weight = weight_of((vehicle.position - position).norm());
-    const double off = std::remainder(yaw_rad - yaw_in(level, vehicle.direction), std::numbers::pi) / kLaneSigma_rad;
-    density += weight * kPeak * std::exp(-0.5 * off * off);
+    const double off = std::remainder(yaw_rad - vehicle.yaw_rad, std::numbers::pi) / kLaneSigma_rad;
+    density += weight * peak * std::exp(-0.5 * off * off);
     total += weight;
   }
   return std::log(density / total);
 }
 
-std::optional<double> HeadingPrior::likeliest_yaw(const Vector3d& position, const Matrix3d& level) const {
+std::optional<double> HeadingPrior::likeliest_yaw(const Vector3d& position) const {
   std::optional<double> best;
   double most = 0.0;
   for (const Vehicle& vehicle : vehicles_) {
-    const double yaw = yaw_in(level, vehicle.direction);
-    const double ratio = log_ratio(position, level, yaw);
+    const double ratio = log_ratio(position, vehicle.yaw_rad);
     if (ratio > most) {
       most = ratio;
-      best = yaw;
+      best = vehicle.yaw_rad;
     }
   }
   return best;

@@ -18,27 +18,25 @@ namespace dynamic_icp::tracking {
 /// and weights w_i fall with the distance.
 class HeadingPrior {
  public:
-  void clear() { vehicles_.clear(); }
+  /// Nothing is known. Headings are to refer to `level`: columns two directions in the ground, and its normal (Ground).
+  void clear(const Eigen::Matrix3d& level);
 
-  /// A vehicle at `position` (m, world) that moves along `direction` (unit, world).
-  void add(const Eigen::Vector3d& position, const Eigen::Vector3d& direction) {
-    vehicles_.push_back({position, direction});
-  }
+  /// A vehicle at `position` (m, world) that moves along `direction` (world).
+  void add(const Eigen::Vector3d& position, const Eigen::Vector3d& direction);
 
-  /// log(pi p(yaw)) at `position`: how much likelier than if all headings were alike. `level`: columns two directions
-  /// in the ground, to which `yaw` refers, and its normal (Ground). 0 where none is known.
-  [[nodiscard]] double log_ratio(const Eigen::Vector3d& position, const Eigen::Matrix3d& level, double yaw_rad) const;
+  /// log(pi p(yaw)) at `position`: how much likelier than if all headings were alike. 0 where none is known.
+  [[nodiscard]] double log_ratio(const Eigen::Vector3d& position, double yaw_rad) const;
 
-  /// The likeliest heading, modulo pi; nothing where none is known.
-  [[nodiscard]] std::optional<double> likeliest_yaw(const Eigen::Vector3d& position,
-                                                    const Eigen::Matrix3d& level) const;
+  /// The likeliest heading, modulo pi, of those that are known; nothing where none is.
+  [[nodiscard]] std::optional<double> likeliest_yaw(const Eigen::Vector3d& position) const;
 
  private:
   struct Vehicle {
     Eigen::Vector3d position;
-    Eigen::Vector3d direction;
+    double yaw_rad;
   };
 
+  Eigen::Matrix3d level_ = Eigen::Matrix3d::Identity();
   std::vector<Vehicle> vehicles_;
 };
 

@@ -25,7 +25,7 @@ TEST(HeadingPrior, IsADensityOfHeadings) {
   constexpr int kSteps = 2000;
   double sum = 0.0;
   for (int i = 0; i < kSteps; ++i) {
-    sum += std::exp(headings.log_ratio({2.0, 1.0, 0.0}, Matrix3d::Identity(), std::numbers::pi * (i + 0.5) / kSteps));
+    sum += std::exp(headings.log_ratio({2.0, 1.0, 0.0}, std::numbers::pi * (i + 0.5) / kSteps));
   }
   EXPECT_NEAR(sum / kSteps, 1.0, 1e-6) << "the mean of pi p over a half turn";
 }
@@ -36,31 +36,34 @@ TEST(HeadingPrior, VehiclesMoveAsThoseBesideThemThisWayOrTheOther) {
     headings.add({x, 3.5, 0.0}, towards(0.1));
   }
   headings.add({0.0, -3.5, 0.0}, towards(0.1 + std::numbers::pi));
-  const Matrix3d level = Matrix3d::Identity();
-  const double along = headings.log_ratio(Vector3d::Zero(), level, 0.1);
-  EXPECT_NEAR(headings.log_ratio(Vector3d::Zero(), level, 0.1 - std::numbers::pi), along, 1e-9);
+  const double along = headings.log_ratio(Vector3d::Zero(), 0.1);
+  EXPECT_NEAR(headings.log_ratio(Vector3d::Zero(), 0.1 - std::numbers::pi), along, 1e-9);
   EXPECT_GT(along, 1.5);
-  EXPECT_LT(headings.log_ratio(Vector3d::Zero(), level, 1.3), -1.0);
-  EXPECT_NEAR(std::remainder(headings.likeliest_yaw(Vector3d::Zero(), level).value() - 0.1, std::numbers::pi), 0.0,
-              1e-9);
+  EXPECT_LT(headings.log_ratio(Vector3d::Zero(), 1.3), -1.0);
+  EXPECT_NEAR(std::remainder(headings.likeliest_yaw(Vector3d::Zero()).value() - 0.1, std::numbers::pi), 0.0, 1e-9);
   // The same headings in axes that are turned.
-  EXPECT_NEAR(headings.log_ratio(Vector3d::Zero(), upright_axes(0.4), 0.1 - 0.4), along, 1e-9);
+  HeadingPrior turned;
+  turned.clear(upright_axes(0.4));
+  for (const double x : {-10.0, 10.0, 25.0}) {
+    turned.add({x, 3.5, 0.0}, towards(0.1));
+  }
+  turned.add({0.0, -3.5, 0.0}, towards(0.1));
+  EXPECT_NEAR(turned.log_ratio(Vector3d::Zero(), 0.1 - 0.4), along, 1e-9);
 }
 
 TEST(HeadingPrior, NearOnesTellMore) {
   HeadingPrior headings;
   headings.add({5.0, 0.0, 0.0}, towards(0.0));
   headings.add({60.0, 0.0, 0.0}, towards(1.0));
-  const Matrix3d level = Matrix3d::Identity();
-  EXPECT_NEAR(headings.likeliest_yaw(Vector3d::Zero(), level).value(), 0.0, 1e-9);
-  EXPECT_NEAR(headings.likeliest_yaw({70.0, 0.0, 0.0}, level).value(), 1.0, 1e-9);
-  EXPECT_NEAR(headings.log_ratio({1000.0, 0.0, 0.0}, level, 0.0), 0.0, 1e-6) << "far from all nothing is known";
+  EXPECT_NEAR(headings.likeliest_yaw(Vector3d::Zero()).value(), 0.0, 1e-9);
+  EXPECT_NEAR(headings.likeliest_yaw({70.0, 0.0, 0.0}).value(), 1.0, 1e-9);
+  EXPECT_NEAR(headings.log_ratio({1000.0, 0.0, 0.0}, 0.0), 0.0, 1e-6) << "far from all nothing is known";
 }
 
 TEST(HeadingPrior, WithoutVehiclesTellsNothing) {
   const HeadingPrior headings;
-  EXPECT_EQ(headings.log_ratio(Vector3d::Zero(), Matrix3d::Identity(), 0.7), 0.0);
-  EXPECT_FALSE(headings.likeliest_yaw(Vector3d::Zero(), Matrix3d::Identity()));
+  EXPECT_EQ(headings.log_ratio(Vector3d::Zero(), 0.7), 0.0);
+  EXPECT_FALSE(headings.likeliest_yaw(Vector3d::Zero()));
 }
 
 }  // namespace

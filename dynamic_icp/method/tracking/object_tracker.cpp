@@ -189,13 +189,13 @@ void ObjectTracker::expect(double stamp_s, const SensorMotion& sensor, const Cho
 
 /// The headings of what is predicted, and that of the carrier.
 void ObjectTracker::gather_headings(const SensorMotion& sensor) {
-  headings_.clear();
+  headings_.clear(ground_.ground().level);
   const auto add = [&](const Vector3d& position, const Vector3d& velocity, const Vector3d& direction) {
     if (velocity.norm() > config_.slow_mps) {
       headings_.add(position, direction);
     }
   };
-  add(sensor.T_world_sensor.translation(), sensor.velocity_world, sensor.velocity_world.normalized());
+  add(sensor.T_world_sensor.translation(), sensor.velocity_world, sensor.velocity_world);
   for (const Entry& entry : living()) {
     if (entry.confirmed && entry.predicted.is_sure_of_heading()) {
       add(entry.now.box.centre, entry.now.velocity, entry.now.box.axes.col(0));

@@ -24,13 +24,8 @@ constexpr double kSameDirection_rad = 0.2;   // headings that differ less are on
 constexpr double kLogHopeless = -8.0;        // relative to the best hypothesis
 constexpr int kDecisionDetections = 10;      // after so many the best hypothesis stays alone
 
-struct Sides {
-  double yaw_rad = 0.0;  ///< level axes, of one of them
-  double length_m = 0.0;
-};
-
 /// The sides of what a body shows that moves with `velocity`, where they are long enough to have a direction.
-std::optional<Sides> sides_of(const Detection& detection, const Eigen::Vector3d& velocity) {
+std::optional<BodySides> sides_of(const Detection& detection, const Eigen::Vector3d& velocity) {
   const Eigen::Matrix3d& level = detection.ground.level;
   DetectionMemory memory;
   const std::pmr::vector<Eigen::Vector3d> points = points_at_mean_time(detection, velocity, memory);
@@ -41,7 +36,12 @@ std::optional<Sides> sides_of(const Detection& detection, const Eigen::Vector3d&
   const Eigen::Matrix3d axes = level * upright_axes(*yaw);
   const double length = std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
                                  span_along(points, points.front(), axes.col(1), 0.0).length());
-  return length < kShortestSide_m ? std::nullopt : std::optional(Sides{*yaw, length});
+  return length < kShortestSide_m ? std::nullopt : std::optional(BodySides{*yaw, length});
+}
+
+/// That of most others near by.
+std::optional<double> likeliest_heading(const Detection& detection) {
+  return detection.headings != nullptr ? detection.headings->likeliest_yaw(mean_of(detection.points)) : std::nullopt;
 }
 
 /// Whether directions agree, up to multiples of `period_rad`.
@@ -83,38 +83,35 @@ void Track::add_heading(const Detection& detection, double yaw_rad, const BoxHis
                         const TrackConfig& config) {
   BoxHistory with_prior = history;
   if (detection.headings != nullptr) {
-    with_prior.log_likelihood +=
-        detection.headings->log_ratio(mean_of(detection.points), detection.ground.level, yaw_rad);
+    with_prior.log_likelihood += detection.headings->log_ratio(mean_of(detection.points), yaw_rad);
   }
   hypotheses_.emplace_back(detection, yaw_rad, with_prior, config);
 }
 
 /// The sides of what is seen, where they are long enough to show a direction, else the motion, else others near by.
 void Track::add_headings(const Detection& detection, const BoxHistory& history, const TrackConfig& config) {
-  const std::optional<double> likeliest =
-      detection.headings != nullptr
-          ? detection.headings->likeliest_yaw(mean_of(detection.points), detection.ground.level)
-          : std::nullopt;
   const BoxHistory along_sides{history.log_likelihood + kLogAlongSides, history.was_vehicle};
-  const std::optional<Sides> sides = sides_of(detection, body().velocity());
-  if (!sides) {
-    if (has_heading()) {
-      return;
-    }
-    if (const std::optional<double> heading = heading_of_motion()) {
-      add_heading(detection, *heading, along_sides, config);
-    } else if (likeliest) {
-      add_heading(detection, *likeliest, history, config);
-    }
+  if (const std::optional<BodySides> sides = sides_of(detection, body().velocity())) {
+    has_sides_ = true;
+    add_headings_along(*sides, detection, along_sides, config);
+  } else if (has_heading()) {
     return;
+  } else if (const std::optional<double> heading = heading_of_motion()) {
+    add_heading(detection, *heading, along_sides, config);
+  } else if (const std::optional<double> likeliest = likeliest_heading(detection)) {
+    add_heading(detection, *likeliest, history, config);
   }
-  has_sides_ = true;
-  if (sides->length_m > kVehicle_m) {
+}
+
+/// Hypotheses that agree with the sides have explained these, too; one of others near by may where sides are short.
+void Track::add_headings_along(const BodySides& sides, const Detection& detection, const BoxHistory& along_sides,
+                               const TrackConfig& config) {
+  if (sides.length_m > kVehicle_m) {
     std::erase_if(hypotheses_, [&](const BoxFilter& one) {
-      return !one.has_heading() || !is_along(one.body().yaw(), sides->yaw_rad, kQuarterTurn);
+      return !one.has_heading() || !is_along(one.body().yaw(), sides.yaw_rad, kQuarterTurn);
     });
   }
-  for (const double heading : {sides->yaw_rad, sides->yaw_rad + kQuarterTurn}) {
+  for (const double heading : {sides.yaw_rad, sides.yaw_rad + kQuarterTurn}) {
     const auto has_it = [&](const BoxFilter& one) {
       return one.has_heading() && is_along(one.body().yaw(), heading, std::numbers::pi);
     };
@@ -126,7 +123,11 @@ void Track::add_headings(const Detection& detection, const BoxHistory& history, 
       one.credit(has_it(one) ? kLogAlongSides : 0.0);
     }
   }
-  if (likeliest && sides->length_m <= kVehicle_m && !is_along(*likeliest, sides->yaw_rad, kQuarterTurn)) {
+  if (sides.length_m > kVehicle_m) {
+    return;
+  }
+  if (const std::optional<double> likeliest = likeliest_heading(detection);
+      likeliest && !is_along(*likeliest, sides.yaw_rad, kQuarterTurn)) {
     add_heading(detection, *likeliest, along_sides, config);
   }
 }

@@ -16,6 +16,12 @@ class StateArchive;
 
 namespace dynamic_icp::tracking {
 
+/// Two sides of a body, at right angles, of which at least one is seen.
+struct BodySides {
+  double yaw_rad = 0.0;   ///< level axes, of one of them
+  double length_m = 0.0;  ///< of the longer one
+};
+
 /// One object over time.
 ///
 /// At first sight the Doppler leaves open how much of what is seen across the line of sight is turning, and the sides
@@ -58,6 +64,8 @@ class Track {
   static constexpr std::size_t kMaxHypotheses = 5;
 
   void add_headings(const Detection& detection, const BoxHistory& history, const TrackConfig& config);
+  void add_headings_along(const BodySides& sides, const Detection& detection, const BoxHistory& along_sides,
+                          const TrackConfig& config);
   void add_heading(const Detection& detection, double yaw_rad, const BoxHistory& history, const TrackConfig& config);
   [[nodiscard]] std::optional<double> heading_of_motion() const;
   [[nodiscard]] bool has_heading() const;
