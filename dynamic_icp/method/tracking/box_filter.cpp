@@ -21,6 +21,7 @@ constexpr double kLoose_m =
     1.5;  // standard deviation of the middle of what is seen of a body, if as much: others slide before it
 constexpr double kUnknownFace_m = 10.0;   // standard deviation
 constexpr double kKnownFace_m = 0.5;      // a face known better than this was seen
+constexpr double kInside_m = 1.0;         // an end so far within what was seen before is none
 constexpr double kFalseEnd_m = 0.1;       // what is seen so far beyond a face ...
 constexpr double kFalseEndSigmas = 3.0;   // ... and its noise shows that the body did not end there
 constexpr double kGrowth = 0.3;           // of a bound, towards what is seen beyond it: noise must not move it
@@ -220,6 +221,8 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   const Vector3d at_end = end.middle + (seen - outward.dot(end.middle - body_.position())) * outward;
   const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
   const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
+  // Where it was seen to reach farther it does not end.
+  const bool is_end = end.is_true && (is_known(face) || seen > least_[i] - kInside_m);
   if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
     least_[i] = std::max(least_[i], seen);
   } else {
@@ -230,7 +233,7 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
     least_[i] = seen;
   }
   const bool was_known = is_known(face);  // else it could be anywhere, and no place surprises
-  if (end.is_true) {
+  if (is_end) {
     faces_[i] = FaceView::kSeen;
   } else {
     faces_[i] = faces_[i] == FaceView::kUnknown ? FaceView::kUnknown : FaceView::kHidden;

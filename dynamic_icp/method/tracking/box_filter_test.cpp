@@ -247,6 +247,52 @@ TEST(BoxFilter, WhatSomethingNearerHidesStaysAsItWas) {
   EXPECT_GE(hidden, 4);
 }
 
+TEST(BoxFilter, WhereABodyWasSeenToReachFartherItDoesNotEnd) {
+  // The side of a lorry between two things that hide its ends; then only its foremost third, with nothing to be seen of
+  // what hides the rest.
+  const TrackConfig config;
+  const Vector3d velocity(2.0, 0.0, 0.0);
+  std::optional<BoxFilter> filter;
+  for (int k = 0; k < 6; ++k) {
+    const double front = 14.0 + velocity.x() * kScanPeriod_s * k;
+    const bool is_framed = k < 4;
+    RawScan raw;
+    Detection detection;
+    const auto add_side = [&](double from, double to) {
+      for (double x = from; x <= to; x += 0.1) {
+        for (double z = -1.0; z <= 1.5; z += 0.25) {
+          detection.points.emplace_back(x, -8.0, z);
+          detection.directions.push_back(detection.points.back().normalized());
+          detection.radial.push_back(detection.directions.back().dot(velocity));
+          detection.times.push_back(0.0);
+        }
+      }
+    };
+    const auto add_wall = [&](double from, double to, double y) {
+      for (double x = from; x <= to; x += 0.02) {
+        for (double z = -2.0; z <= 2.0; z += 0.1) {
+          raw.points.emplace_back(x, y, z);
+        }
+      }
+    };
+    if (is_framed) {
+      add_side(5.0, 13.0);
+      add_wall(0.0, 3.0, -5.0);
+      add_wall(8.2, 20.0, -5.0);
+    } else {
+      add_side(10.0, front);
+    }
+    add_wall(0.0, 60.0, -30.0);
+    raw.points.insert(raw.points.end(), detection.points.begin(), detection.points.end());
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    detection.view = &image;
+    take_in(filter, detection, 0.0, config);
+  }
+  EXPECT_GT(filter->seen_box().size.x(), 8.0) << "as much as was seen of it";
+  EXPECT_NE(view_of_face(filter->estimate(), Face::kRear), FaceView::kSeen);
+}
+
 TEST(BoxFilter, PartsThatAddUpToMoreThanABodyAreForgotten) {
   // A car stands behind a gap that shows the middle of its side and neither end, and its Doppler says that it crosses
   // the gap. What is seen is never where the body should have gone: from scan to scan it seems to be a part of it

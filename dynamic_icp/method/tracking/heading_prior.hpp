@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <optional>
 #include <vector>
 
@@ -18,6 +19,8 @@ namespace dynamic_icp::tracking {
 /// and weights w_i fall with the distance.
 class HeadingPrior {
  public:
+  HeadingPrior() { vehicles_.reserve(kUsualVehicles); }
+
   /// Nothing is known. Headings are to refer to `level`: columns two directions in the ground, and its normal (Ground).
   void clear(const Eigen::Matrix3d& level);
 
@@ -35,6 +38,8 @@ class HeadingPrior {
     Eigen::Vector3d position;
     double yaw_rad;
   };
+
+  static constexpr std::size_t kUsualVehicles = 256;  // more cost an allocation now and then
 
   Eigen::Matrix3d level_ = Eigen::Matrix3d::Identity();
   std::vector<Vehicle> vehicles_;
