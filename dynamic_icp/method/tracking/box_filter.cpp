@@ -45,7 +45,6 @@ constexpr double kGroundSigma_m = 0.05;
 constexpr double kErrorAngle_rad = 0.1;  // within it points share errors of the Doppler, and across it these differ
 constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
 constexpr double kLengthPower = 0.75;    // of the height, in typical lengths
-constexpr double kWorstLength = 1.75;    // of the typical length: none was found longer
 constexpr double kNoBox = 0.05;          // bodies end by this share of their size nearer or farther than boxes do
 
 BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double yaw_sigma_rad, const Matrix3d& level,
@@ -267,7 +266,7 @@ void BoxFilter::limit_width(const TrackConfig& config) {
 /// more than a body, the velocity was wrong, and only what is seen now counts.
 void BoxFilter::limit_length() {
   if (!has_heading_ || is_known(Face::kFront) || is_known(Face::kRear) ||
-      span(0) <= kWorstLength * typical_length(likely_width(), span(2)).mean) {
+      span(0) <= longest_length(likely_width(), span(2))) {
     return;
   }
   least_[index_of(Face::kFront)] = last_seen_[0]->high;

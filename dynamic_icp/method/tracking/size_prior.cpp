@@ -12,6 +12,7 @@ namespace {
 constexpr double kScatter = 0.15;        // of sizes about the curves, as a share
 constexpr double kMinSection_m2 = 0.25;  // less was not seen whole
 constexpr double kMinSide_m = 0.3;
+constexpr double kLongest = 1.75;  // of the typical length: none was found longer
 constexpr double kPersonSide_m = 1.2;
 constexpr double kPersonSpeed_mps = 2.5;
 
@@ -36,6 +37,8 @@ Belief at_least(const Belief& belief, double least) {
 Belief typical_length(double width_m, double height_m) {
   return about(1.95 * std::pow(std::max(kMinSection_m2, width_m * height_m), 0.75));
 }
+
+double longest_length(double width_m, double height_m) { return kLongest * typical_length(width_m, height_m).mean; }
 
 Belief typical_width(double length_m) { return about(std::clamp(0.41 * length_m, kMinSide_m, 2.5)); }
 

@@ -20,6 +20,9 @@ Belief at_least(const Belief& belief, double least);
 /// The length of what is so wide and high: 1.95 m (width height / m^2)^(3/4).
 Belief typical_length(double width_m, double height_m);
 
+/// What is longer than that is no body: 1.75 times the typical length.
+double longest_length(double width_m, double height_m);
+
 /// The width of what is so long: 0.41 of the length, and no more than the 2.5 m that roads allow.
 Belief typical_width(double length_m);
 

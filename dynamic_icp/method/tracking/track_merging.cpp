@@ -3,16 +3,27 @@
 #include "dynamic_icp/method/tracking/track_merging.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
+#include "dynamic_icp/method/tracking/size_prior.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kSeeThrough_m = 1.0;      // beyond a gap
 constexpr double kSplinter = 0.1;          // a track with this share of the points of another may be a part of it
+constexpr double kOtherTop_m = 1.0;        // between the highest parts of a body
 constexpr double kPartVelocity_mps = 0.5;  // standard deviation between the velocities of parts of a body
 constexpr double kPartSigmas = 3.0;
+
+/// Whether the tops of both were seen, at heights that no body has.
+bool have_other_tops(const BoxEstimate& a, const BoxEstimate& b) {
+  const auto is_seen = [](const BoxEstimate& one) { return one.faces[index_of(Face::kTop)] != FaceView::kUnknown; };
+  const Eigen::Vector3d up = a.box.axes.col(2);
+  const double apart = up.dot(a.box.centre - b.box.centre) + 0.5 * (a.box.size.z() - b.box.size.z());
+  return is_seen(a) && is_seen(b) && std::abs(apart) > kOtherTop_m;
+}
 
 /// Whether two bodies may have one velocity.
 bool may_be_equal(const BoxEstimate& a, const BoxEstimate& b) {
@@ -43,7 +54,12 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
                               distance_outside(large.now.box, of_small.centre)) <= config.growth_m) {
     return true;
   }
-  if (!large.predicted.best().has_heading() || size_with(of_large, of_small).y() > config.track.largest_width_m) {
+  const Eigen::Vector3d together = size_with(of_large, of_small);
+  const double likely_width = std::max(together.y(), typical_width_by_height(together.z()).mean);
+  if (have_other_tops(small.now, large.now) || together.x() > longest_length(likely_width, together.z())) {
+    return false;
+  }
+  if (!large.predicted.best().has_heading() || together.y() > config.track.largest_width_m) {
     return false;
   }
   // Sides of one body, seen apart; what is seen through a gap parts two.

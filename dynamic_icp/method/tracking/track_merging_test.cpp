@@ -12,11 +12,11 @@ namespace {
 using Eigen::Vector3d;
 
 /// The side that looks at the sensor of a box that drives along x, from `from` to `to`; 8 m to the left of the sensor.
-Track side_of_body(double from, double to, double speed_mps) {
+Track side_of_body(double from, double to, double speed_mps, double top_m = 0.5) {
   Detection detection;
   for (std::uint64_t i = 0; i < 300; ++i) {
     const RandomSource one = RandomSource(5).fork(i);
-    detection.points.emplace_back(one.uniform(0, from, to), 8.0, one.uniform(1, -1.0, 0.5));
+    detection.points.emplace_back(one.uniform(0, from, to), 8.0, one.uniform(1, -1.0, top_m));
     detection.directions.push_back(detection.points.back().normalized());
     detection.radial.push_back(speed_mps * detection.directions.back().x());
     detection.times.push_back(0.0);
@@ -61,11 +61,18 @@ TEST(TrackMerging, ASplinterBesideABodyIsAPartIfItMovesAsItDoes) {
 }
 
 TEST(TrackMerging, WhatIsSeenThroughAGapPartsTwoBodies) {
-  const Track rear = side_of_body(0, 4, 6);
-  const Track front = side_of_body(4.5, 8.0, 6);
+  const Track rear = side_of_body(0, 4, 6, 2.0);
+  const Track front = side_of_body(4.5, 8.0, 6, 2.0);
   EXPECT_FALSE(are_same(rear, 300, front, 250, 60.0));
   EXPECT_TRUE(are_same(rear, 300, front, 250, 4.0)) << "something nearer hides the gap";
-  EXPECT_FALSE(are_same(rear, 300, side_of_body(11, 15, 6), 250, 4.0)) << "too far apart";
+  EXPECT_FALSE(are_same(rear, 300, side_of_body(11, 15, 6, 2.0), 250, 4.0)) << "too far apart";
+}
+
+TEST(TrackMerging, BodiesThatWouldBeLongerThanAnyOrHaveOtherTopsAreTwo) {
+  // One behind the other in a lane, with the same speed, and something nearer hides the gap.
+  EXPECT_FALSE(are_same(side_of_body(0, 4, 6), 300, side_of_body(4.5, 8.0, 6), 250, 4.0)) << "of a height of 1.5 m";
+  EXPECT_FALSE(are_same(side_of_body(0, 4, 6, 2.0), 300, side_of_body(4.5, 8.0, 6, 0.5), 250, 4.0))
+      << "a lorry and a car";
 }
 
 }  // namespace
