@@ -43,9 +43,6 @@ constexpr double kUniform = 0.29;        // standard deviation of what is anywhe
 constexpr double kWorstLog = -10.0;
 constexpr double kGroundSigma_m = 0.05;
 constexpr double kErrorAngle_rad = 0.1;  // within it points share errors of the Doppler, and across it these differ
-constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
-constexpr double kLengthPower = 0.75;    // of the height, in typical lengths
-constexpr double kNoBox = 0.05;          // bodies end by this share of their size nearer or farther than boxes do
 
 BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double yaw_sigma_rad, const Matrix3d& level,
                  const TrackConfig& config) {
@@ -75,17 +72,6 @@ double sight_yaw(const Vector3d& point, const Detection& detection) {
 }
 
 }  // namespace
-
-/// The extent of the box along one axis.
-struct BoxFilter::Extent {
-  double size = 0.0;
-  double middle = 0.0;  ///< from the reference
-  // The middle is `weight_high` of the distance of the high face minus `weight_low` of that of the low one, and more
-  // that is not in the state.
-  double weight_high = 0.0;
-  double weight_low = 0.0;
-  double variance = 0.0;  ///< of that
-};
 
 BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const BoxHistory& history,
                      const TrackConfig& config)
@@ -342,67 +328,21 @@ OrientedBox BoxFilter::seen_box() const {
   return box;
 }
 
-bool BoxFilter::is_whole(int axis) const { return is_known(high_face(axis)) && is_known(low_face(axis)); }
+bool BoxFilter::is_whole(int axis) const { return extent(axis).is_whole(); }
 
 double BoxFilter::likely_width() const { return is_whole(1) ? span(1) : typical_width_by_height(span(2)).mean; }
 
-double BoxFilter::span(int axis) const { return std::max(0.0, reach(high_face(axis)) + reach(low_face(axis))); }
+double BoxFilter::span(int axis) const { return extent(axis).length(); }
 
-/// Along, to the left and up, with what is not seen filled in by what is likely.
-std::array<BoxFilter::Extent, 3> BoxFilter::extents() const {
-  const double height = span(2);
-  // Above the field of view there may be more.
-  const Belief tall{height, is_known(Face::kTop) ? 0.0 : kHiddenHeight_m * kHiddenHeight_m};
-  const bool is_small = may_be_person();
-  const bool is_person = !has_heading_ || is_small;
-  // The width first: it varies least.
-  Belief width{span(1), 0.0};
-  if (!is_person && !is_whole(1)) {
-    width = at_least(is_whole(0) ? typical_width(span(0)) : typical_width_by_height(height), span(1));
-  }
-  Belief length{span(0), 0.0};
-  if (!is_person && !is_whole(0)) {
-    length = at_least(typical_length(width.mean, height), span(0));
-    const double slope = kLengthPower * length.mean / std::max(height, kHiddenHeight_m);
-    length.variance += slope * slope * tall.variance;
-  }
-  if (!has_heading_ && !is_small) {
-    // A part of a vehicle, whichever: as much of it again may be anywhere.
-    const double more = typical_width_by_height(height).mean;
-    width.variance = is_whole(1) ? 0.0 : more * more;
-    length.variance = is_whole(0) ? 0.0 : more * more;
-  }
-  std::array<Extent, 3> extents;
-  for (const int axis : {0, 1, 2}) {
-    const Face high = high_face(axis);
-    const Face low = low_face(axis);
-    const Belief size = axis == 0 ? length : axis == 1 ? width : tall;
-    Extent& extent = extents[static_cast<std::size_t>(axis)];
-    extent.size = size.mean;
-    const double shape = kNoBox * kNoBox * size.mean * size.mean;  // m^2, of an end that is seen
-    if (is_known(high) && is_known(low)) {
-      extent.weight_high = extent.weight_low = 0.5;
-      extent.middle = 0.5 * (body_.distance(high) - body_.distance(low));
-      extent.variance = 0.5 * shape;
-    } else if (is_known(high)) {
-      extent.weight_high = 1.0;
-      extent.middle = body_.distance(high) - 0.5 * size.mean;
-      extent.variance = 0.25 * size.variance + shape;
-    } else if (is_known(low)) {
-      extent.weight_low = 1.0;
-      extent.middle = 0.5 * size.mean - body_.distance(low);
-      extent.variance = 0.25 * size.variance + shape;
-    } else {
-      const double hidden = std::max(0.0, size.mean - span(axis));
-      extent.middle = 0.5 * (reach(high) - reach(low));
-      extent.variance = hidden * hidden / 12.0 + 0.25 * size.variance;
-    }
-  }
-  return extents;
+SeenExtent BoxFilter::extent(int axis) const {
+  const Face high = high_face(axis);
+  const Face low = low_face(axis);
+  return {reach(high), reach(low), is_known(high), is_known(low)};
 }
 
 BoxEstimate BoxFilter::estimate() const {
-  const std::array<Extent, 3> along = extents();
+  const std::array<LikelyExtent, 3> along =
+      likely_extents({extent(0), extent(1), extent(2)}, has_heading_, may_be_person());
   const Matrix3d axes = body_.axes();
   const Vector3d middle(along[0].middle, along[1].middle, along[2].middle);
   BoxEstimate estimate;
@@ -415,10 +355,10 @@ BoxEstimate BoxFilter::estimate() const {
   H.col(BodyFilter::kYaw) = axes.col(2).cross(axes * middle);
   Matrix3d hidden = Matrix3d::Zero();
   for (const int axis : {0, 1, 2}) {
-    const Extent& extent = along[static_cast<std::size_t>(axis)];
-    H.col(BodyFilter::kFirstFace + 2 * axis) = extent.weight_high * axes.col(axis);
-    H.col(BodyFilter::kFirstFace + 2 * axis + 1) = -extent.weight_low * axes.col(axis);
-    hidden(axis, axis) = extent.variance;
+    const LikelyExtent& likely = along[static_cast<std::size_t>(axis)];
+    H.col(BodyFilter::kFirstFace + 2 * axis) = likely.weight_high * axes.col(axis);
+    H.col(BodyFilter::kFirstFace + 2 * axis + 1) = -likely.weight_low * axes.col(axis);
+    hidden(axis, axis) = likely.variance;
   }
   estimate.centre_covariance = H * body_.covariance() * H.transpose() + axes * hidden * axes.transpose();
   if (!has_heading_) {  // the side that the motion is nearest to counts as the front

@@ -11,6 +11,7 @@
 #include "dynamic_icp/method/tracking/body_filter.hpp"
 #include "dynamic_icp/method/tracking/box_view.hpp"
 #include "dynamic_icp/method/tracking/detection.hpp"
+#include "dynamic_icp/method/tracking/likely_extent.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
 namespace dynamic_icp {
@@ -82,8 +83,6 @@ class BoxFilter {
   void state(StateArchive& archive);
 
  private:
-  struct Extent;
-
   explicit BoxFilter(const BodyFilter& body) : body_(body), has_heading_(false) {}
 
   void correct_doppler(const Detection& detection, const TrackConfig& config);
@@ -103,7 +102,7 @@ class BoxFilter {
   [[nodiscard]] bool is_whole(int axis) const;
   [[nodiscard]] double span(int axis) const;
   [[nodiscard]] double likely_width() const;
-  [[nodiscard]] std::array<Extent, 3> extents() const;
+  [[nodiscard]] SeenExtent extent(int axis) const;
 
   BodyFilter body_;
   bool has_heading_;

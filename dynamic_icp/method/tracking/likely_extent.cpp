@@ -1,0 +1,69 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/likely_extent.hpp"
+
+#include <cstddef>
+
+#include "dynamic_icp/method/tracking/size_prior.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
+constexpr double kLengthPower = 0.75;    // of the height, in typical lengths
+constexpr double kNoBox = 0.05;          // bodies end by this share of their size nearer or farther than boxes do
+
+LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
+  LikelyExtent extent;
+  extent.size = size.mean;
+  const double shape = kNoBox * kNoBox * size.mean * size.mean;  // m^2, of an end that is seen
+  if (seen.is_whole()) {
+    extent.weight_high = extent.weight_low = 0.5;
+    extent.middle = 0.5 * (seen.high - seen.low);
+    extent.variance = 0.5 * shape;
+  } else if (seen.ends_high) {
+    extent.weight_high = 1.0;
+    extent.middle = seen.high - 0.5 * size.mean;
+    extent.variance = 0.25 * size.variance + shape;
+  } else if (seen.ends_low) {
+    extent.weight_low = 1.0;
+    extent.middle = 0.5 * size.mean - seen.low;
+    extent.variance = 0.25 * size.variance + shape;
+  } else {
+    const double hidden = std::max(0.0, size.mean - seen.length());
+    extent.middle = 0.5 * (seen.high - seen.low);
+    extent.variance = hidden * hidden / 12.0 + 0.25 * size.variance;
+  }
+  return extent;
+}
+
+}  // namespace
+
+std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen, bool has_heading,
+                                           bool may_be_person) {
+  const auto& [along, across, up] = seen;
+  // Above the field of view there may be more.
+  const Belief height{up.length(), up.ends_high ? 0.0 : kHiddenHeight_m * kHiddenHeight_m};
+  const bool is_as_seen = !has_heading || may_be_person;
+  // The width first: it varies least.
+  Belief width{across.length(), 0.0};
+  if (!is_as_seen && !across.is_whole()) {
+    width = at_least(along.is_whole() ? typical_width(along.length()) : typical_width_by_height(height.mean),
+                     across.length());
+  }
+  Belief length{along.length(), 0.0};
+  if (!is_as_seen && !along.is_whole()) {
+    length = at_least(typical_length(width.mean, height.mean), along.length());
+    const double slope = kLengthPower * length.mean / std::max(height.mean, kHiddenHeight_m);
+    length.variance += slope * slope * height.variance;
+  }
+  if (!has_heading && !may_be_person) {
+    // A part of a vehicle, whichever: as much of it again may be anywhere.
+    const double more = typical_width_by_height(height.mean).mean;
+    width.variance = across.is_whole() ? 0.0 : more * more;
+    length.variance = along.is_whole() ? 0.0 : more * more;
+  }
+  return {placed(along, length), placed(across, width), placed(up, height)};
+}
+
+}  // namespace dynamic_icp::tracking
