@@ -24,6 +24,7 @@ results=build-fuzz
 echo "== Configuring and building"
 cmake --preset method | grep -iE 'warning|error' || true
 cmake --build --preset method --target fuzzers
+rm -rf "$results/seeds"  # made anew: databases are not written twice
 $build/fuzz/fuzz_seeds "$results/seeds"
 mkdir -p "$results/findings"
 
