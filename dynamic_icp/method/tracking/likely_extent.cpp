@@ -10,7 +10,6 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
-constexpr double kLengthPower = 0.75;    // of the height, in typical lengths
 constexpr double kNoBox = 0.05;          // bodies end by this share of their size nearer or farther than boxes do
 
 LikelyExtent placed(const SeenExtent& seen, const Belief& size) {

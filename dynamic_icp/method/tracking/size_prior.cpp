@@ -35,7 +35,7 @@ Belief at_least(const Belief& belief, double least) {
 }
 
 Belief typical_length(double width_m, double height_m) {
-  return about(1.95 * std::pow(std::max(kMinSection_m2, width_m * height_m), 0.75));
+  return about(1.95 * std::pow(std::max(kMinSection_m2, width_m * height_m), kLengthPower));
 }
 
 double longest_length(double width_m, double height_m) { return kLongest * typical_length(width_m, height_m).mean; }

@@ -17,6 +17,9 @@ Belief at_least(const Belief& belief, double least);
 // Road users from bicycles to trailers, whatever they are called: the mean sizes that the authors of KITTI and nuScenes
 // state of their classes lie within 25 % of these curves. People do not, nor do animals: see is_person_like.
 
+/// Typical lengths grow with this power of width and height.
+constexpr double kLengthPower = 0.75;
+
 /// The length of what is so wide and high: 1.95 m (width height / m^2)^(3/4).
 Belief typical_length(double width_m, double height_m);
 

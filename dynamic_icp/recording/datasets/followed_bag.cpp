@@ -22,8 +22,8 @@ namespace fs = std::filesystem;
 
 constexpr std::chrono::milliseconds kAskWhetherToStop{20};
 constexpr std::uint64_t kAll = std::numeric_limits<std::uint64_t>::max();
-constexpr std::uint64_t kMostBeforeOpen = std::uint64_t{4} << 30U;  // bytes of a stream
-constexpr std::size_t kMostMessagesBeforeOpen = 16'000'000;
+constexpr std::uint64_t kMaxBytesBeforeOpen = std::uint64_t{4} << 30U;  // bytes of a stream
+constexpr std::size_t kMaxMessagesBeforeOpen = 16'000'000;
 constexpr std::uint64_t kLateTopic = 3;  // times as many clouds of another topic: a topic that is missing stays so
 
 /// Of what else comes nothing is kept.
@@ -151,12 +151,12 @@ class FollowedBag final : public FollowedDataset {
   /// Keeps what it will be opened with, but not without end.
   void wait_on() {
     mcap_->forget_before_new();
-    if (mcap_->kept() > kMostBeforeOpen || mcap_->come() > kMostMessagesBeforeOpen) {
+    if (mcap_->kept() > kMaxBytesBeforeOpen || mcap_->come() > kMaxMessagesBeforeOpen) {
       throw DataError(
           fmt::format("{}: {} MiB and {} messages of clouds, poses and transforms came and had to be kept before its "
                       "first {} clouds of points did, expected at most {} MiB and {}",
-                      name_.string(), mcap_->kept() >> 20U, mcap_->come(), first_, kMostBeforeOpen >> 20U,
-                      kMostMessagesBeforeOpen));
+                      name_.string(), mcap_->kept() >> 20U, mcap_->come(), first_, kMaxBytesBeforeOpen >> 20U,
+                      kMaxMessagesBeforeOpen));
     }
   }
 

@@ -20,8 +20,8 @@ namespace {
 constexpr std::string_view kFirstUnnamed = "arr_0";
 constexpr std::string_view kSecondUnnamed = "arr_1";
 constexpr std::size_t kPlainColumns = 4;
-constexpr std::size_t kMaxPointNumbers = 64;  // a wider array has its points side by side
-constexpr std::size_t kMostColumns = 64;      // of an array, as many as can be named
+constexpr std::size_t kMaxPointNumbers = 64;   // a wider array has its points side by side
+constexpr std::size_t kMaxColumnsOfRows = 64;  // of an array, as many as can be named
 
 bool same_text(std::string_view a, std::string_view b) {
   const auto lower = [](char c) { return c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c; };
@@ -188,7 +188,7 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
     }
     return reading;  // what reads the points says what is wrong with them
   }
-  if (formats::rows_of(array) <= kMaxPointNumbers && width > kMostColumns) {
+  if (formats::rows_of(array) <= kMaxPointNumbers && width > kMaxColumnsOfRows) {
     throw DataError(
         fmt::format("{}: has the shape ({}), expected a row for each point; write it the other way round with Python: "
                     "import numpy; numpy.save(FILE, numpy.load(FILE).T)",

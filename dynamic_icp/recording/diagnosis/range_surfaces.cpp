@@ -16,10 +16,10 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr double kCell_deg = 1.0;
-constexpr std::size_t kFewestInCell = 3;
-constexpr double kLeastShare = 0.15;  // of the points must have neighbours; a 4D radar has a quarter
-constexpr std::size_t kFewestPoints = 300;
-constexpr double kMost = 0.8;  // of the points; the others lie on edges
+constexpr std::size_t kMinPointsInCell = 3;
+constexpr double kMinSurfaceShare = 0.15;  // of the points must have neighbours; a 4D radar has a quarter
+constexpr std::size_t kMinSurfacePoints = 300;
+constexpr double kSurfaceQuantile = 0.8;  // of the points; the others lie on edges
 
 // How far ranges scatter about the median of their cell, as a logarithm. In simulated scenes of all kinds and sensors
 // it is at most 0.05 of spherical coordinates, and at least 0.22 of x, y, z.
@@ -39,16 +39,16 @@ bool shows_surfaces(std::span<const Eigen::Vector3d> azimuth_elevation_range) {
   }
   std::vector<double> scatter;
   for (auto& [cell, logarithms] : cells) {
-    if (logarithms.size() < kFewestInCell) {
+    if (logarithms.size() < kMinPointsInCell) {
       continue;
     }
     const double median = quantile(logarithms, 0.5);
     std::transform(logarithms.begin(), logarithms.end(), std::back_inserter(scatter),
                    [&](double logarithm) { return std::abs(logarithm - median); });
   }
-  const bool are_enough = scatter.size() >= kFewestPoints &&
-                          static_cast<double>(scatter.size()) >= kLeastShare * static_cast<double>(points);
-  return are_enough && quantile(std::move(scatter), kMost) < kSurface;
+  const bool are_enough = scatter.size() >= kMinSurfacePoints &&
+                          static_cast<double>(scatter.size()) >= kMinSurfaceShare * static_cast<double>(points);
+  return are_enough && quantile(std::move(scatter), kSurfaceQuantile) < kSurface;
 }
 
 }  // namespace dynamic_icp::diagnosis
