@@ -151,6 +151,17 @@ std::vector<VelocityMode> split_mode(const ConsensusSet& consensus_set, const Ve
   return parts;
 }
 
+/// The velocity that is expected, as the rows near it have it. Along what a narrow view hardly shows, upwards most of
+/// all, the other modes bend until they explain some of the traffic, too.
+VelocityMode expected_mode(const ConsensusSet& consensus_set, const EgoPrior& prior,
+                           const ConsensusRegressionConfig& config, double noise_mps, const Workers& workers) {
+  VelocityMode mode;
+  mode.x = prior.mean;
+  refine(consensus_set.rows, fitting_model(prior), {kCorrelatedNoise * noise_mps, config.tukey_cutoff * noise_mps, 0.0},
+         kFineSteps, workers, mode.x);
+  return mode;
+}
+
 /// What the priors say of a mode, as a factor of its support. Acceleration and bias within two standard deviations cost
 /// nothing; beyond, a mode that needs them bends through the static scene and dynamic outliers. The velocity prior is
 /// only a bonus: it decides between modes of similar support and cannot hold a velocity that the scan does not bear
@@ -195,6 +206,9 @@ ModeHypothesis choose_mode(const DopplerRows& rows, const EgoPrior& prior, const
   std::vector<VelocityMode> modes;
   for (const std::vector<VelocityMode>& of_one : parts) {
     modes.insert(modes.end(), of_one.begin(), of_one.end());
+  }
+  if (prior.has_velocity) {
+    modes.push_back(expected_mode(few, prior, config, hypothesis.noise_mps, workers));
   }
   workers.for_each(modes.size(), 1, [&](std::size_t k) {
     VelocityMode& mode = modes[k];

@@ -47,7 +47,8 @@ bool agrees(const EgoPrior& prior, const Eigen::Vector3d& velocity);
 /// 1. Velocities from samples of three points are voted on. Half of all votes is spread over the cells of space, half
 ///    over the farthest cell of each direction, or a third each and a third over the ground where it is known (see
 ///    `sample`), so it takes no prior and no mounting to find the static scene. Modes of the support are refined and
-///    split as finely as the noise allows. The mode with the most support wins; agreement with the prior velocity adds
+///    split as finely as the noise allows; one begins at the prior velocity and keeps to it along what the view hardly
+///    shows. The mode with the most support wins; agreement with the prior velocity adds
 ///    to the votes, but never more than `prior_weight`, so a wrong prior is outvoted.
 /// 2. v, acceleration a during a sweep and Doppler bias b minimise, jointly over all points near the winner,
 ///      sum_cells W_c sum_i rho(s_i + u_i . (v + a dt_i) - b) / sigma^2 + prior of v, a and b,

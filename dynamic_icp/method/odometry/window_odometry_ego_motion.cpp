@@ -17,8 +17,6 @@
 namespace dynamic_icp::odometry {
 namespace {
 
-// How far the velocity of the sensor may be from the last one: m/s.
-constexpr double kVelocitySigma_mps = 0.5;
 constexpr double kAccelerationSigma_mps2 = 3.0;
 constexpr double kNoBias_mps = 1e-3;
 
@@ -39,14 +37,13 @@ void WindowOdometry::take_out_lever_arms() {
 ego_motion::EgoPrior WindowOdometry::ego_prior() const {
   ego_motion::EgoPrior prior;
   if (estimator_.scans() > 0) {
+    const double changed_mps = kAccelerationSigma_mps2 * (stream_.elapsed_s() - stamp_s_);
     prior.has_velocity = true;
     prior.mean.head<3>() = estimator_.trajectory().at_end().velocity;
-    prior.covariance =
-        ego_motion::Vector7d(
-            ego_motion::Vector7d{{kVelocitySigma_mps, kVelocitySigma_mps, kVelocitySigma_mps, kAccelerationSigma_mps2,
-                                  kAccelerationSigma_mps2, kAccelerationSigma_mps2, kNoBias_mps}}
-                .cwiseAbs2())
-            .asDiagonal();
+    prior.covariance.setZero();
+    prior.covariance.topLeftCorner<3, 3>() = estimator_.twist().covariance.bottomRightCorner<3, 3>();
+    prior.covariance.diagonal().head<3>().array() += changed_mps * changed_mps;
+    prior.covariance.diagonal().segment<3>(3).setConstant(kAccelerationSigma_mps2 * kAccelerationSigma_mps2);
   }
   prior.covariance(6, 6) = kNoBias_mps * kNoBias_mps;
   return prior;
