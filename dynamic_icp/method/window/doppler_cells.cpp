@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/window/doppler_cells.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -24,6 +25,7 @@ constexpr std::size_t kInformativeBin = 60;
 constexpr double kNoiseGain = 0.35;
 constexpr double kShrinkage = 1.15;  // the mean of a cell was taken from the same points
 constexpr double kMinVariance = 1e-6;
+constexpr double kHidden = 0.1;  // an azimuth shows what stands with this share of its points
 
 /// Number of the direction sector around the vertical, to a thousandth of a sector; no trigonometry per point.
 std::size_t azimuth_sector(double x, double y) {
@@ -167,6 +169,29 @@ const std::vector<DopplerCell>& DopplerCells::average(const Scan& scan, const st
   workers.for_each(count(), kCellBlock, [&](std::size_t cell) { cells_[cell] = mean_of(cell, scan, measured); });
   std::erase_if(cells_, [](const DopplerCell& cell) { return cell.points < 0.5; });
   return cells_;
+}
+
+std::vector<double> DopplerCells::hidden_azimuths(const Scan& scan) const {
+  struct Azimuth {
+    double seen = 0.0;
+    double standing = 0.0;
+  };
+  std::vector<std::array<Azimuth, kNoiseAzimuths>> azimuths(std::max<std::size_t>(1, scan.mountings().size()));
+  for (std::size_t cell = 0; cell < count(); ++cell) {
+    const std::uint32_t point = points(cell).front();
+    const std::size_t sensor = scan.channels().sensor.empty() ? 0 : scan.channels().sensor[point];
+    Azimuth& azimuth = azimuths[sensor][order_.keys[point] % kNoiseAzimuths];
+    azimuth.seen += static_cast<double>(points(cell).size());
+    azimuth.standing += counts_[cell];
+  }
+  std::vector<double> hidden;
+  for (const auto& of_sensor : azimuths) {
+    const auto seen = std::ranges::count_if(of_sensor, [](const Azimuth& one) { return one.seen > 0.0; });
+    const auto hides =
+        std::ranges::count_if(of_sensor, [](const Azimuth& one) { return one.standing < kHidden * one.seen; });
+    hidden.push_back(seen > 0 ? static_cast<double>(hides) / static_cast<double>(seen) : 0.0);
+  }
+  return hidden;
 }
 
 DopplerCell DopplerCells::mean_of(std::size_t cell, const Scan& scan, const std::vector<double>& measured) const {

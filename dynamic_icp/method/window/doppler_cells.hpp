@@ -75,6 +75,10 @@ class DopplerCells {
 
   [[nodiscard]] const std::vector<DopplerCell>& cells() const { return cells_; }
 
+  /// For each sensor the share of its azimuths in which nearly nothing had a weight at the last `average`: what moves
+  /// hides what stands.
+  [[nodiscard]] std::vector<double> hidden_azimuths(const Scan& scan) const;
+
   /// What stands for the line of a point where the scan has none: its elevation in steps.
   static std::uint16_t line_of(const Eigen::Vector3d& u);
 

@@ -105,6 +105,40 @@ TEST(DopplerCells, AreMeansOverTheirPoints) {
   }
 }
 
+TEST(DopplerCells, AzimuthsWithLittleThatStandsAreHidden) {
+  // Lines of one direction are its bundles: in a third of the directions all points move, in another third all but one
+  // line of the four.
+  Bundles bundles;
+  const Scan scan = Scan::from_raw(bundles.raw());
+  std::vector<std::uint8_t> is_moving = all_static(scan);
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    const std::size_t bundle = i / bundles.each;
+    const std::size_t direction = bundle / bundles.lines;
+    is_moving[i] = direction % 3 == 0 || (direction % 3 == 1 && bundle % bundles.lines != 0) ? 1 : 0;
+  }
+  DopplerCells cells;
+  cells.sort(scan, kInterval_s, kOneThread);
+  cells.average(scan, is_moving, scan.doppler(), std::vector<double>(scan.size(), 0.0), kGate_mps, kOneThread);
+  ASSERT_EQ(cells.hidden_azimuths(scan).size(), 1U);
+  EXPECT_DOUBLE_EQ(cells.hidden_azimuths(scan)[0], 1.0 / 3.0);
+}
+
+TEST(DopplerCells, HiddenAzimuthsAreThoseOfEachSensor) {
+  RawScan raw = Bundles{}.raw();
+  const std::size_t half = raw.points.size() / 2;
+  raw.mountings = {Eigen::Isometry3d::Identity(), Eigen::Isometry3d::Identity()};
+  for (std::size_t i = 0; i < raw.points.size(); ++i) {
+    raw.channels.sensor.push_back(i < half ? std::uint8_t{0} : std::uint8_t{1});
+  }
+  const Scan scan = Scan::from_raw(raw);
+  std::vector<std::uint8_t> is_moving(scan.size(), 0);
+  std::fill(is_moving.begin() + static_cast<std::ptrdiff_t>(half), is_moving.end(), std::uint8_t{1});
+  DopplerCells cells;
+  cells.sort(scan, kInterval_s, kOneThread);
+  cells.average(scan, is_moving, scan.doppler(), std::vector<double>(scan.size(), 0.0), kGate_mps, kOneThread);
+  EXPECT_EQ(cells.hidden_azimuths(scan), (std::vector<double>{0.0, 1.0}));
+}
+
 TEST(DopplerCells, PointsFartherApartInTimeAreApart) {
   RawScan raw;
   for (int k = 0; k < 40; ++k) {

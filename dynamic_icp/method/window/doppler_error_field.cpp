@@ -29,11 +29,14 @@ constexpr double kNear_m = 10.0;
 
 // The velocity-like part of an error is about so much larger than the scale of the part that can be seen.
 constexpr double kVelocityScale = 1.5;
+// And where a sensor sees little of its view, a part that cannot be seen may be as large as that of sensors in use.
+constexpr double kHiddenVelocity_mps = 0.4;
 constexpr double kStartTau = 0.05;
 constexpr double kStartVelocityTau = 0.1;
 constexpr double kMinTau = 2e-4;
 constexpr double kMaxTau = 0.3;
-constexpr double kPriorTau = 0.001;  // counts like one column that was seen
+constexpr double kMaxRangeTau = 0.02;  // m/s; what creeps near by is soon taken for an error of short ranges
+constexpr double kPriorTau = 0.001;    // counts like one column that was seen
 constexpr double kConstantScale = 0.005;
 
 /// exp(-|i - j| / length)
@@ -252,7 +255,8 @@ void DopplerErrorField::add_prior_gradient(const Eigen::VectorXd& theta, Eigen::
   }
 }
 
-void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance_root) {
+void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance_root,
+                                     std::span<const double> hidden_azimuths) {
   double largest = 0.0;
   for (Group& group : groups_) {
     if (!group.is_learned) {
@@ -274,15 +278,16 @@ void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::
                              : (group.inverse_root.triangularView<Eigen::Lower>().transpose() * M).squaredNorm();
     const double unknown = trace / (group.tau * group.tau);
     const double known = std::clamp(static_cast<double>(n) - unknown, 0.0, static_cast<double>(n));
-    group.tau = std::clamp(std::sqrt((squares + kPriorTau * kPriorTau) / (known + 1.0)), kMinTau, kMaxTau);
+    group.tau = std::clamp(std::sqrt((squares + kPriorTau * kPriorTau) / (known + 1.0)), kMinTau,
+                           group.name == "range and intensity" ? kMaxRangeTau : kMaxTau);
     if (group.name == "azimuth" || group.name == "cross") {
       largest = std::max(largest, group.tau);
     }
   }
-  for (Group& group : groups_) {
-    if (group.name == "velocity") {
-      group.tau = kVelocityScale * largest;
-    }
+  for (std::size_t sensor = 0; sensor < sensors_.size(); ++sensor) {
+    const double hidden = sensor < hidden_azimuths.size() ? hidden_azimuths[sensor] : 0.0;
+    const auto velocity = std::ranges::find(groups_, sensors_[sensor].velocity, &Group::begin);
+    velocity->tau = std::hypot(kVelocityScale * largest, kHiddenVelocity_mps * hidden);
   }
 }
 

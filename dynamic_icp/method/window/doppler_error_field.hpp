@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 #include <vector>
 
@@ -86,8 +87,10 @@ class DopplerErrorField {
   void add_prior_gradient(const Eigen::VectorXd& theta, Eigen::Ref<Eigen::VectorXd> g) const;
 
   /// Learns the scales from an estimate and its covariance P = M M^T, by MacKay's fixed point
-  /// tau^2 = theta^T K^-1 theta / (n - tr(K^-1 P) / tau^2).
-  void learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance_root);
+  /// tau^2 = theta^T K^-1 theta / (n - tr(K^-1 P) / tau^2). That of the velocity-like part follows the others, and the
+  /// share of the azimuths of each sensor that were hidden (DopplerCells): all may be well in the rest of the view.
+  void learn_scales(const Eigen::VectorXd& theta, const Eigen::MatrixXd& covariance_root,
+                    std::span<const double> hidden_azimuths);
 
   struct Group {
     std::string_view name;

@@ -214,7 +214,7 @@ TEST(DopplerErrorField, PriorIsTheInverseOfTheScaledCorrelation) {
   DopplerErrorField field(some_cells(), 4);
   const auto n = static_cast<Index>(field.size());
   const VectorXd theta = 0.1 * random_vector(3, field.size());
-  field.learn_scales(theta, MatrixXd::Zero(n, n));  // now scales differ
+  field.learn_scales(theta, MatrixXd::Zero(n, n), {});  // now scales differ
   MatrixXd covariance = MatrixXd::Zero(n, n);
   std::set<double> scales;
   for (const DopplerErrorField::Group& g : field.groups()) {
@@ -257,7 +257,7 @@ TEST(DopplerErrorField, LearnsTheScaleOfWhatIsWellKnown) {
     part *= scale * std::sqrt(static_cast<double>(g.size()) / part.dot(g.inverse * part));
     VectorXd theta = VectorXd::Zero(n);
     theta.segment(static_cast<Index>(g.begin), part.size()) = part;
-    field.learn_scales(theta, 1e-6 * MatrixXd::Identity(n, n));
+    field.learn_scales(theta, 1e-6 * MatrixXd::Identity(n, n), {});
     // theta^T K^-1 theta / n = scale^2, but for the one column that the prior counts like.
     const auto size = static_cast<double>(g.size());
     EXPECT_NEAR(g.tau, scale * std::sqrt(size / (size + 1.0)), 0.01 * scale) << name;
@@ -268,11 +268,26 @@ TEST(DopplerErrorField, ScaleOfTheVelocityFollowsThatOfDirections) {
   DopplerErrorField field(some_cells(), 1);
   const auto n = static_cast<Index>(field.size());
   const VectorXd theta = theta_of(field, "azimuth", [](double k) { return 0.01 * std::sin(k); });
-  field.learn_scales(theta, MatrixXd::Zero(n, n));
+  field.learn_scales(theta, MatrixXd::Zero(n, n), {});
   const double once = group(field, "velocity").tau;
-  field.learn_scales(3.0 * theta, MatrixXd::Zero(n, n));
+  field.learn_scales(3.0 * theta, MatrixXd::Zero(n, n), {});
   EXPECT_NEAR(group(field, "velocity").tau, 3.0 * once, 0.02 * once);
   EXPECT_GT(once, group(field, "azimuth").tau / 3.0);
+}
+
+TEST(DopplerErrorField, AVelocityThatAHiddenViewCannotShowMayBeLarger) {
+  DopplerErrorField field(some_cells(), 1);
+  const auto n = static_cast<Index>(field.size());
+  const VectorXd theta = theta_of(field, "azimuth", [](double k) { return 0.01 * std::sin(k); });
+  const auto tau = [&](double hidden) {
+    field.learn_scales(theta, MatrixXd::Zero(n, n), std::vector<double>{hidden});
+    return group(field, "velocity").tau;
+  };
+  // Two parts that do not depend on each other: their variances add up.
+  const double seen = tau(0.0);
+  const double added = tau(1.0) * tau(1.0) - seen * seen;
+  EXPECT_NEAR(tau(0.5) * tau(0.5) - seen * seen, 0.25 * added, 1e-12);
+  EXPECT_GT(added, 0.17 * 0.17) << "what a sensor in use showed for each axis at rest";
 }
 
 TEST(DopplerErrorField, FindsTheScaleBehindNoisyEstimates) {
@@ -296,7 +311,7 @@ TEST(DopplerErrorField, FindsTheScaleBehindNoisyEstimates) {
       MatrixXd root_of_all = MatrixXd::Zero(n, n);
       theta.segment(begin, size) = posterior * seen / (sigma * sigma);
       root_of_all.block(begin, begin, size, size) = dense::cholesky_root(posterior);
-      field.learn_scales(theta, root_of_all);
+      field.learn_scales(theta, root_of_all, {});
     }
     EXPECT_NEAR(g.tau, truth, 0.4 * truth);
   }

@@ -296,6 +296,7 @@ void WindowEstimator::compare_with_planes(const Scan& points, bool adapt, PlaneT
 void WindowEstimator::average_doppler(const WindowScan& scan, bool is_first_pass, const Workers& workers) {
   doppler_.reset();
   averaged_along_.reset();
+  hidden_azimuths_.clear();
   if (scan.measured == nullptr) {
     return;
   }
@@ -303,6 +304,7 @@ void WindowEstimator::average_doppler(const WindowScan& scan, bool is_first_pass
   static_doppler(*scan.whole, workers, predicted_);
   cells_.average(*scan.whole, *scan.is_moving, *scan.measured, predicted_, is_first_pass ? kFirstGate_mps : kGate_mps,
                  workers);
+  hidden_azimuths_ = cells_.hidden_azimuths(*scan.whole);
   if (field_) {
     field_->columns(cells_.cells(), workers, columns_);
     weigh_doppler(scan, workers);

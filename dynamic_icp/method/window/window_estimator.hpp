@@ -217,6 +217,7 @@ class WindowEstimator {
   Eigen::Vector2d stamp_errors_0_ = Eigen::Vector2d::Zero();
   DopplerCells cells_;
   std::vector<FieldColumns> columns_;            ///< of each cell
+  std::vector<double> hidden_azimuths_;          ///< of each sensor
   std::optional<SampledMotion> averaged_along_;  ///< the motion that the cells were averaged around
   std::optional<DopplerTerms> doppler_;
   std::vector<double> predicted_;

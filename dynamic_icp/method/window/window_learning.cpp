@@ -56,7 +56,7 @@ Eigen::Vector2d WindowEstimator::pointing_variance(const Scan& points) const {
 void WindowEstimator::learn_field() {
   if (config_.learn_field) {
     field_covariance_root_ = elimination_.covariance_root(rest_factor_.head());
-    field_->learn_scales(theta_, field_covariance_root_);
+    field_->learn_scales(theta_, field_covariance_root_, hidden_azimuths_);
   }
 }
 
