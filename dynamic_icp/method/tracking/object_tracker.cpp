@@ -21,6 +21,8 @@ using Eigen::Vector3d;
 
 constexpr double kMax = 2.0;              // new objects are not wider than so many vehicles
 constexpr double kMinSignal = 2.0;        // of the radial velocities of a new object over their spread
+constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
+constexpr double kLeastHeight_m = 0.25;   // of what is no ground
 constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
 constexpr std::size_t kMinPoints = 3;     // of a detection: a velocity has three unknowns
 
@@ -38,6 +40,17 @@ bool contradicts(const Expectation& expected, const Vector3d& direction, double 
   const double expected_mps = expected.W.dot(direction);
   return std::abs(expected_mps) > config.same_velocity_mps &&
          std::abs(radial_mps - expected_mps) > config.same_velocity_mps + expected.radial_sigma(direction);
+}
+
+/// Whether all of it lies flat on the ground, which seems to move where the velocity of the sensor is wrong.
+bool is_ground(const Detection& detection) {
+  if (!detection.ground.offset_m) {
+    return false;
+  }
+  const Vector3d up = detection.ground.up();
+  return std::ranges::all_of(detection.points, [&](const Vector3d& point) {
+    return up.dot(point) - *detection.ground.offset_m < kLeastHeight_m;
+  });
 }
 
 bool are_finite(std::span<const double> values) {
@@ -127,6 +140,7 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
                   : SensorMotion{T_world_sensor};
   last_stamp_ = scan.stamp();
   T_world_last_ = T_world_sensor;
+  ego_covariance_world_ = T_world_sensor.linear() * ego_covariance * T_world_sensor.linear().transpose();
 
   if (support) {
     const Vector3d normal = T_world_sensor.linear() * support->normal;
@@ -275,6 +289,9 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   Track& corrected = entry.other;
   corrected = entry.track;
   make_detection(input.scan, input.radial, entry.members, input.sensor, input.heights, &input.view, entry.detection);
+  if (is_ground(entry.detection)) {
+    return miss();
+  }
   entry.detection.headings = &headings_;
   corrected.correct(entry.detection, input.stamp_s, config_.track);
   if (corrected.best().spread_mps() > config_.max_spread_mps) {
@@ -293,6 +310,12 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
 
 /// Whether the velocity is worth reporting: known well enough, or as well as it will be.
 bool ObjectTracker::is_credible(const Entry& entry) const {
+  // What stands seems to move with the error of the velocity of the sensor.
+  const Vector3d sight = (entry.now.box.centre - T_world_last_.translation()).normalized();
+  const double ego_sigma = std::sqrt(sight.dot(ego_covariance_world_ * sight));
+  if (entry.track.best().signal_mps() < kBeyondEgo * ego_sigma) {
+    return false;
+  }
   const double variance = entry.now.velocity_covariance.topLeftCorner<2, 2>().trace();
   return variance < config_.confirm_sigma_mps * config_.confirm_sigma_mps || entry.seen >= config_.confirm_anyway_scans;
 }
@@ -339,6 +362,9 @@ void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint3
     return;
   }
   make_detection(input.scan, input.radial, rows, input.sensor, input.heights, &input.view, entry.detection);
+  if (is_ground(entry.detection)) {
+    return;
+  }
   entry.detection.headings = &headings_;
   entry.track.begin(entry.detection, input.stamp_s, config_.track);
   // Errors around zero have more spread than signal.

@@ -101,6 +101,7 @@ class ObjectTracker {
   std::optional<Stamp> first_stamp_;
   std::optional<Stamp> last_stamp_;
   Eigen::Isometry3d T_world_last_ = Eigen::Isometry3d::Identity();
+  Eigen::Matrix3d ego_covariance_world_ = Eigen::Matrix3d::Zero();
 
   // Of the last scan, for their memory
   RangeImage view_;
