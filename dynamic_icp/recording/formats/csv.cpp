@@ -15,6 +15,7 @@
 #include "dynamic_icp/method/base/parse_number.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
+#include "dynamic_icp/recording/formats/plain_rows.hpp"
 #include "dynamic_icp/recording/formats/text_lines.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
@@ -81,6 +82,31 @@ class GrowingColumn {
     return number.has_value();
   }
 
+  /// The same for a number among the characters that follow; where it ends, or null, and nothing added, where there is
+  /// none that ends as those of a row do.
+  const char* take(const char* at, const char* end, char delimiter) {
+    if (whole_) {
+      std::int64_t number = 0;
+      if (const char* const stop = take_number(at, end, number); stop != nullptr && ends_number(stop, end, delimiter)) {
+        append_value(bytes_, number);
+        return stop;
+      }
+    }
+    double number = 0.0;
+    const char* const stop = take_number(at, end, number);
+    if (stop == nullptr || !ends_number(stop, end, delimiter)) {
+      return nullptr;
+    }
+    if (whole_) {
+      make_floating();
+    }
+    append_value(bytes_, number);
+    return stop;
+  }
+
+  /// Forgets what came after that many rows.
+  void shorten(std::size_t rows) { bytes_.resize(rows * kNumberBytes); }
+
   /// Once: the bytes go with it.
   [[nodiscard]] NpyArray take_array() {
     const std::size_t rows = bytes_.size() / kNumberBytes;
@@ -127,6 +153,50 @@ void split_cells(std::string_view line, char delimiter, std::vector<std::string_
 std::size_t likely_rows(std::string_view rows, std::size_t columns) {
   const std::size_t line = std::max<std::size_t>({rows.find('\n') + 1, 8 * columns, 1});
   return rows.size() / line + 1;
+}
+
+/// Adds the cells of a row that are not all plain numbers.
+void add_cells(const std::vector<std::string_view>& cells, std::string_view origin, std::size_t line,
+               std::vector<GrowingColumn>& columns) {
+  if (cells.size() != columns.size()) {
+    throw DataError(fmt::format("{}: line {}: {} columns, expected {} as in the first row", origin, line, cells.size(),
+                                columns.size()));
+  }
+  for (std::size_t k = 0; k < cells.size(); ++k) {
+    if (!columns[k].add(cells[k])) {
+      throw DataError(
+          fmt::format("{}: line {}: column {} is {}, expected a number{}", origin, line, k + 1, quoted_text(cells[k]),
+                      cells[k].find(',') != std::string_view::npos ? " with a decimal point (sed 's/,/./g')" : ""));
+    }
+  }
+}
+
+/// Reads what follows a header into the columns.
+void read_rows(std::string_view rest, const CsvHeader& header, std::string_view origin,
+               std::vector<GrowingColumn>& columns) {
+  const auto take = [&](std::size_t k, const char* at, const char* end) {
+    return columns[k].take(at, end, header.delimiter);
+  };
+  std::vector<std::string_view> cells;
+  std::size_t line = header.first_line - 1;
+  for (std::size_t rows = 0; !columns.empty();) {
+    if (take_plain_row(rest, header.delimiter, columns.size(), take)) {
+      ++line;
+      ++rows;
+      continue;
+    }
+    std::for_each(columns.begin(), columns.end(), [rows](GrowingColumn& column) { column.shorten(rows); });
+    const std::optional<NextLine> next = next_line(rest);
+    if (!next) {
+      return;
+    }
+    line += next->lines;
+    if (!is_comment(next->text)) {
+      split_cells(next->text, header.delimiter, cells);
+      add_cells(cells, origin, line, columns);
+      ++rows;
+    }
+  }
 }
 
 }  // namespace
@@ -226,26 +296,7 @@ CsvTable parse_csv(std::string_view text, std::string_view origin) {
   for (GrowingColumn& column : columns) {
     column = GrowingColumn(likely_rows(rest, count));
   }
-  std::vector<std::string_view> cells;
-  std::size_t line = header.first_line - 1;
-  while (const std::optional<NextLine> next = next_line(rest)) {
-    line += next->lines;
-    if (is_comment(next->text)) {
-      continue;
-    }
-    split_cells(next->text, header.delimiter, cells);
-    if (cells.size() != columns.size()) {
-      throw DataError(fmt::format("{}: line {}: {} columns, expected {} as in the first row", origin, line,
-                                  cells.size(), columns.size()));
-    }
-    for (std::size_t k = 0; k < cells.size(); ++k) {
-      if (!columns[k].add(cells[k])) {
-        throw DataError(
-            fmt::format("{}: line {}: column {} is {}, expected a number{}", origin, line, k + 1, quoted_text(cells[k]),
-                        cells[k].find(',') != std::string_view::npos ? " with a decimal point (sed 's/,/./g')" : ""));
-      }
-    }
-  }
+  read_rows(rest, header, origin, columns);
   CsvTable table;
   table.names = header.names;
   for (std::size_t k = 0; k < columns.size(); ++k) {

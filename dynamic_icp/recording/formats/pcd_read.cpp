@@ -16,6 +16,7 @@
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
+#include "dynamic_icp/recording/formats/plain_rows.hpp"
 #include "dynamic_icp/recording/formats/text_lines.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
@@ -43,6 +44,39 @@ bool append_text(std::string& bytes, NpyType type, std::string_view text) {
   return with_type(type, [&](auto zero) { return append_text<decltype(zero)>(bytes, text); });
 }
 
+/// Where a number stands in the record of a point, and its type.
+struct NumberPlace {
+  NpyType type = NpyType::kFloat32;
+  std::size_t offset_bytes = 0;
+};
+
+std::vector<NumberPlace> number_places(const PcdHeader& header) {
+  std::vector<NumberPlace> places;
+  for (const PcdField& field : header.fields) {
+    for (std::size_t k = 0; k < field.count; ++k) {
+      places.push_back({field.type, field.offset_bytes + k * size_of(field.type)});
+    }
+  }
+  return places;
+}
+
+std::size_t numbers_of_a_point(const PcdHeader& header) {
+  std::size_t numbers = 0;
+  for (const PcdField& field : header.fields) {
+    numbers += field.count;
+  }
+  return numbers;
+}
+
+/// Reads a number of that type among the characters that follow; where it ends, or null where there is none.
+const char* take_text(const char* at, const char* end, NpyType type, char* to) {
+  return with_type(type, [&](auto number) {
+    const char* const stop = take_number(at, end, number);
+    std::memcpy(to, &number, sizeof number);
+    return stop;
+  });
+}
+
 /// Copies `kBytes` from the beginning of each record.
 template <std::size_t kBytes>
 void copy_field(const char* records, std::size_t record_bytes, std::size_t points, char* to) {
@@ -62,14 +96,6 @@ void copy_field(const char* records, std::size_t record_bytes, std::size_t point
       std::copy_n(records + i * record_bytes, bytes, to + i * bytes);
     }
   }
-}
-
-std::size_t numbers_of_a_point(const PcdHeader& header) {
-  std::size_t numbers = 0;
-  for (const PcdField& field : header.fields) {
-    numbers += field.count;
-  }
-  return numbers;
 }
 
 }  // namespace
@@ -105,9 +131,24 @@ void PcdFile::read_ascii() {
   }
   std::string records;
   records.reserve(header_.points * header_.record_bytes);
+  const bool has_points = header_.points > 0;  // then the file is long enough for one
+  const std::vector<NumberPlace> places = has_points ? number_places(header_) : std::vector<NumberPlace>();
+  std::string record(has_points ? header_.record_bytes : 0, '\0');
+  const auto take = [&](std::size_t k, const char* at, const char* end) {
+    return take_text(at, end, places[k].type, record.data() + places[k].offset_bytes);
+  };
   std::vector<std::string_view> words;
   std::size_t point = 0;
-  for (std::size_t line = header_.lines + 1; const std::optional<std::string_view> text = take_line(rest); ++line) {
+  for (std::size_t line = header_.lines + 1;; ++line) {
+    if (point < header_.points && take_plain_row(rest, ' ', numbers, take)) {
+      records += record;
+      ++point;
+      continue;
+    }
+    const std::optional<std::string_view> text = take_line(rest);
+    if (!text) {
+      break;
+    }
     split_words(*text, words);
     if (words.empty()) {
       continue;

@@ -15,6 +15,7 @@
 #include "dynamic_icp/method/base/parse_number.hpp"
 #include "dynamic_icp/recording/formats/file_kind.hpp"
 #include "dynamic_icp/recording/formats/memory_error.hpp"
+#include "dynamic_icp/recording/formats/plain_rows.hpp"
 #include "dynamic_icp/recording/formats/ply_values.hpp"
 #include "dynamic_icp/recording/formats/text_lines.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
@@ -34,6 +35,14 @@ std::pair<double, double> range_of(NpyType type) {
     using Limits = std::numeric_limits<decltype(zero)>;
     return std::pair(static_cast<double>(Limits::lowest()), static_cast<double>(Limits::max()));
   });
+}
+
+bool is_of_type(double number, NpyType type) {
+  if (is_float(type)) {
+    return true;
+  }
+  const auto [least, most] = range_of(type);
+  return number >= least && number <= most && number == std::floor(number);
 }
 
 class Reader {
@@ -179,21 +188,21 @@ class Reader {
 
   void read_element(PlyElement& element, const std::vector<NpyType>& count_types) {
     reserve(element, count_types);
-    if (encoding_ != Encoding::kAscii && has_no_lists(element)) {
+    const bool has_lists =
+        std::any_of(element.columns.begin(), element.columns.end(), [](const PlyColumn& c) { return c.is_list; });
+    if (encoding_ != Encoding::kAscii && !has_lists) {
       read_columns(element);
       return;
     }
     for (std::size_t record = 0; record < element.count; ++record) {
       if (encoding_ == Encoding::kAscii) {
-        read_line(element);
+        if (has_lists || !read_plain_line(element, record)) {
+          read_line(element);
+        }
       } else {
         read_record(element, count_types, record);
       }
     }
-  }
-
-  static bool has_no_lists(const PlyElement& element) {
-    return std::none_of(element.columns.begin(), element.columns.end(), [](const PlyColumn& c) { return c.is_list; });
   }
 
   /// All records of an element whose records are equally long: column by column, many times as fast as one by one.
@@ -210,6 +219,27 @@ class Reader {
       field += size_of(column.type);
     }
     rest_.remove_prefix(element.count * record_bytes);
+  }
+
+  /// A line without lists that holds nothing but plain numbers of their types; false, and nothing read, where it is any
+  /// other.
+  bool read_plain_line(PlyElement& element, std::size_t record) {
+    const bool read =
+        take_plain_row(rest_, ' ', element.columns.size(), [&](std::size_t k, const char* at, const char* end) {
+          PlyColumn& column = element.columns[k];
+          double number = 0.0;
+          const char* const stop = take_number(at, end, number);
+          column.values.push_back(number);
+          return stop != nullptr && is_of_type(number, column.type) ? stop : nullptr;
+        });
+    if (read) {
+      ++line_;
+      return true;
+    }
+    for (PlyColumn& column : element.columns) {
+      column.values.resize(record);
+    }
+    return false;
   }
 
   void read_line(PlyElement& element) {
@@ -243,8 +273,8 @@ class Reader {
       fail(fmt::format("{} values, expected more: '{}' is missing", words.size(), column.name));
     }
     const std::optional<double> number = parse_number<double>(words[i]);
-    const auto [least, most] = range_of(type);
-    if (!number || (!is_float(type) && !(*number >= least && *number <= most && *number == std::floor(*number)))) {
+    if (!number || !is_of_type(*number, type)) {
+      const auto [least, most] = range_of(type);
       fail(fmt::format("value {} ('{}') is '{}', expected {}", i + 1, column.name, words[i],
                        is_float(type) ? "a number" : fmt::format("a whole number from {} to {}", least, most)));
     }
