@@ -3,6 +3,7 @@
 // Numbers that are read, but are not what they are taken for.
 #include <cmath>
 #include <numbers>
+#include <regex>
 #include <string>
 
 #include <fmt/format.h>
@@ -61,6 +62,37 @@ TEST_F(OpenDoor, WrongNumbersAreMendedByTheAdvice) {
     const Outcome mended = run_program(command);
     ASSERT_EQ(mended.status, kDone) << mended.text;
     EXPECT_LT(nlohmann::json::parse(read_file(input / "out" / "summary.json")).at("rte_rmse_m").get<double>(), 0.05);
+  }
+}
+
+TEST_F(OpenDoor, AnglesOfASensorAtRestAreMendedByTheAdvice) {
+  const std::string cartesian = (folder_ / "cartesian").string();
+  ASSERT_EQ(run_program("simulate stationary --frames 2 --quiet --output " + cartesian).status, kDone);
+  const RawScan expected = datasets::open_input(cartesian, {})->scan(0);
+  for (const double per_radian : {1.0, 180.0 / std::numbers::pi}) {
+    SCOPED_TRACE(per_radian);
+    const auto range_first = [&](const RawScan& scan, std::size_t i) -> Row {
+      const Eigen::Vector3d& p = scan.points[i];
+      return {p.norm(), per_radian * std::atan2(p.y(), p.x()), per_radian * std::atan2(p.z(), p.head<2>().norm()),
+              scan.doppler[i]};
+    };
+    const fs::path input = folder_ / fmt::format("{}", per_radian);
+    write(input / "0.bin", records<double>(range_first)(expected));
+    const std::string command = fmt::format("info '{}' --dtype float64", input.string());
+    const Outcome suspected = run_program(command);
+    ASSERT_EQ(suspected.status, kDone) << suspected.text;
+    std::smatch advice;
+    ASSERT_TRUE(std::regex_search(suspected.text, advice, std::regex("--columns ([a-z_,]+)"))) << suspected.text;
+    const Outcome mended = run_program(command + " " + advice.str());
+    EXPECT_EQ(mended.text.find("look like spherical"), std::string::npos) << mended.text;
+    datasets::InputSettings settings;
+    datasets::set(settings, "dtype", "float64");
+    datasets::set(settings, "columns", advice.str(1));
+    const RawScan scan = datasets::open_input(input, settings)->scan(0);
+    ASSERT_EQ(scan.points.size(), expected.points.size());
+    for (std::size_t i = 0; i < scan.points.size(); ++i) {
+      EXPECT_LT((scan.points[i] - expected.points[i]).norm(), 1e-9 * (1.0 + expected.points[i].norm()));
+    }
   }
 }
 

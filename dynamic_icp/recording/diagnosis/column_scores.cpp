@@ -70,6 +70,21 @@ double static_residual(const RawScan& raw, const Workers& workers) {
   return quantile(std::move(residuals), kStaticShare);
 }
 
+/// The same of the last column where nothing moves, median over the scans: of a sensor at rest a velocity that was
+/// found in the noise may explain it worse than none.
+double residual_at_rest(std::span<const RawScan> scans) {
+  std::vector<double> residuals;
+  for (const RawScan& scan : scans) {
+    if (tells_columns(scan)) {
+      std::vector<double> speeds = prepared(thinned(scan), 3, guess_units(std::span(&scan, 1))).doppler;
+      std::erase_if(speeds, [](double speed) { return !std::isfinite(speed); });
+      std::transform(speeds.begin(), speeds.end(), speeds.begin(), [](double speed) { return std::abs(speed); });
+      residuals.push_back(quantile(std::move(speeds), kStaticShare));
+    }
+  }
+  return quantile(std::move(residuals), 0.5);
+}
+
 /// The scan with the columns of azimuth, elevation and range as x, y and z.
 RawScan from_spherical(RawScan scan, const SphericalColumns& spherical) {
   const auto& [azimuth, elevation, range] = spherical.columns;
@@ -127,11 +142,10 @@ std::vector<SphericalColumns> spherical_hypotheses(const std::vector<RawScan>& s
   return possible;
 }
 
-/// Whether the columns are angles in degrees that see surfaces. Coordinates within 2 pi may be metres as well.
+/// Whether the columns are angles that see surfaces. Coordinates within 2 pi may be metres as well: they are no
+/// degrees, and radians only where metres they cannot be.
 bool are_surfaces(const std::vector<RawScan>& scans, const SphericalColumns& spherical) {
-  if (spherical.coordinates != datasets::Coordinates::kSphericalDegrees) {
-    return false;
-  }
+  const bool in_degrees = spherical.coordinates == datasets::Coordinates::kSphericalDegrees;
   const auto& [azimuth, elevation, range] = spherical.columns;
   double widest = 0.0;
   for (const RawScan& scan : scans) {
@@ -140,11 +154,11 @@ bool are_surfaces(const std::vector<RawScan>& scans, const SphericalColumns& sph
       points.emplace_back(point[azimuth], point[elevation], point[range]);
       widest = std::max(widest, std::abs(point[azimuth]));  // false for NaN
     }
-    if (!shows_surfaces(points)) {
+    if (in_degrees ? !shows_surfaces(points) : !are_radians_with_ranges(points, scan.points)) {
       return false;
     }
   }
-  return widest > 2.0 * std::numbers::pi;
+  return !in_degrees || widest > 2.0 * std::numbers::pi;
 }
 
 /// The spherical coordinates that explain the Doppler best, where there may be any, and those that see surfaces.
@@ -228,9 +242,9 @@ ColumnScores score_columns(std::span<const RawScan> scans, const Workers& worker
     scores.doppler = *best < kGoodResidual_mps ? scores.likely_doppler : 3;
   }
   find_spherical(scans, workers, scores);
-  if (const auto& spherical = scores.likely_spherical; spherical && spherical->residual < kGoodResidual_mps &&
-                                                       spherical->residual <= *best &&
-                                                       scores.residual[3] > kTimesWorse * spherical->residual) {
+  if (const auto& spherical = scores.likely_spherical;
+      spherical && spherical->residual < kGoodResidual_mps && spherical->residual <= *best &&
+      std::min(scores.residual[3], residual_at_rest(scans)) > kTimesWorse * spherical->residual) {
     scores.spherical = spherical;
     scores.doppler = 3;
     scores.likely_doppler = 3;

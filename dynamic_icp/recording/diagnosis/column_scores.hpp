@@ -37,8 +37,8 @@ struct ColumnScores {
   /// The spherical coordinates that explain the last column best, where the numbers may be such ones.
   std::optional<SphericalColumns> likely_spherical = std::nullopt;
 
-  /// Angles in degrees, some beyond 2 pi, with ranges of surfaces (range_surfaces.hpp): what the Doppler of a sensor at
-  /// rest does not tell.
+  /// Angles with ranges of surfaces (range_surfaces.hpp), in degrees some of which are beyond 2 pi, or in radians that
+  /// can be no metres: what the Doppler of a sensor at rest does not tell.
   std::optional<SphericalColumns> surfaces = std::nullopt;
 
   /// Spherical coordinates beyond doubt: a velocity explains the last column well with these and not with the

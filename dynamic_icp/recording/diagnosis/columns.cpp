@@ -132,9 +132,10 @@ Finding columns(const Evidence& evidence) {
     finding.fix.coordinates = scores.spherical->coordinates;
   } else if (scores.surfaces && scores.surfaces->residual < kSpeaksAgainst * scores.residual[3]) {
     finding.verdict = Verdict::kSuspicious;
-    finding.sentence =
-        "the points look like spherical coordinates: taken as azimuth and elevation in degrees with a range, "
-        "neighbours are equally far, as on surfaces; the Doppler, of a sensor at rest or in traffic, does not tell";
+    finding.sentence = fmt::format(
+        "the points look like spherical coordinates: taken as azimuth and elevation in {} with a range, "
+        "neighbours are equally far, as on surfaces; the Doppler, of a sensor at rest or in traffic, does not tell",
+        unit_of(*scores.surfaces));
     finding.fix.columns = as_read(*scores.surfaces, evidence);
     finding.fix.coordinates = scores.surfaces->coordinates;
   } else if (scores.doppler != 3) {

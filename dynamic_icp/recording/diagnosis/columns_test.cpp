@@ -93,6 +93,34 @@ TEST(Columns, DegreesOfASensorAtRestAreSuspected) {
   EXPECT_FALSE(cartesian.fix.coordinates) << cartesian.sentence;
 }
 
+TEST(Columns, RadiansOfASensorAtRestAreSuspected) {
+  for (const std::array<Eigen::Index, 3>& places : {std::array<Eigen::Index, 3>{0, 1, 2}, {1, 2, 0}, {2, 1, 0}}) {
+    const Finding finding = at_rest([&](RawScan& raw) { to_spherical(raw, 1.0, places); }).of(Question::kColumns);
+    EXPECT_EQ(finding.verdict, Verdict::kSuspicious) << finding.sentence;
+    EXPECT_NE(finding.sentence.find("in radians"), std::string::npos) << finding.sentence;
+    const auto place = [&](std::size_t k) { return static_cast<int>(places.at(k)); };
+    EXPECT_EQ(finding.fix, (Correction{.columns = std::array{place(0), place(1), place(2), 3},
+                                       .coordinates = datasets::Coordinates::kSphericalRadians}));
+  }
+}
+
+TEST(Columns, NoiseOfASensorAtRestInACorridorIsNoMotion) {
+  const auto in_corridor = [](RawScan& raw) {
+    RawScan few;
+    few.stamp = raw.stamp;
+    for (std::size_t i = 0; i < raw.points.size(); ++i) {
+      if (const Vector3d& p = raw.points[i]; p.x() > 0.0 && std::abs(p.y()) < 1.5 && std::abs(p.z()) < 1.5) {
+        few.points.push_back(p);
+        few.doppler.push_back(raw.doppler[i]);
+      }
+    }
+    ASSERT_GT(few.points.size(), 20U);
+    raw = std::move(few);
+  };
+  const Finding finding = at_rest(in_corridor).of(Question::kColumns);
+  EXPECT_FALSE(finding.fix.coordinates) << finding.sentence;
+}
+
 TEST(Columns, OfAFlatSensorOnItsSideTheOtherAxisIsUp) {
   Evidence evidence;
   evidence.looks.resize(1);

@@ -14,4 +14,12 @@ namespace dynamic_icp::diagnosis {
 /// that it does not show.
 bool shows_surfaces(std::span<const Eigen::Vector3d> azimuth_elevation_range);
 
+/// Whether columns that may be azimuths and elevations in radians, with ranges, are such ones and not coordinates in
+/// metres: taken for angles they show surfaces, taken for x, y, z (`as_stored`) they show none, and they reach farther
+/// than 20. What a sensor sees from one place has about one range in each direction, whatever there is to be seen:
+/// coordinates speak for themselves even where they fill a slab as narrow as angles do. False where either reading has
+/// too few points close to each other.
+bool are_radians_with_ranges(std::span<const Eigen::Vector3d> azimuth_elevation_range,
+                             std::span<const Eigen::Vector3d> as_stored);
+
 }  // namespace dynamic_icp::diagnosis
