@@ -144,7 +144,7 @@ std::string with_options(const std::string& what, const datasets::UnclearInput::
 
 std::string fixing_options(const diagnosis::Finding& finding, const datasets::InputSettings& settings) {
   if (finding.needs_doppler_column) {
-    return "--field doppler=COLUMN";
+    return as_options(datasets::texts_of_doppler(finding.doppler_column, settings));
   }
   return as_options(datasets::texts_of_fix(finding.fix, settings));
 }

@@ -13,6 +13,10 @@ const std::vector<Form>& all_forms() {
   const auto nanoseconds = [](std::size_t i) {
     return fmt::format("{}.{:09d}", 1700000000 + i / 2, 500'000'000 * (i % 2));
   };
+  const auto numbered = [](const RawScan& scan, std::size_t i) -> Row {
+    const Eigen::Vector3d& p = scan.points[i];
+    return {static_cast<double>(i), p.x(), p.y(), p.z(), scan.doppler[i]};
+  };
   static const std::vector<Form> all = {
       {"records of x, y, z, Doppler", Door::kOpen, counted("point_clouds/{:05d}.bin", records<float>(xyzd))},
       {"the same in a folder of their own", Door::kOpen, counted("{:06d}.bin", records<float>(xyzd))},
@@ -119,6 +123,16 @@ const std::vector<Form>& all_forms() {
       {"PCD with an unknown name", Door::kWithAdvice, counted("{}.pcd", pcd("x y z foo")), "--field doppler=foo"},
       {"CSV with an unknown name", Door::kWithAdvice, counted("{}.csv", text(xyzd, ",", "x,y,z,foo\n")),
        "--field doppler=foo"},
+      {"CSV with names that say nothing", Door::kWithAdvice, counted("{}.csv", text(xyzid, ",", "a,b,c,d,e\n")),
+       "--field x=a --field y=b --field z=c --field doppler=e"},
+      {"CSV of ParaView", Door::kWithAdvice,
+       counted("{}.csv", text(xyzd, ",", "\"Points:0\",\"Points:1\",\"Points:2\",\"foo\"\n")), "--field x=Points:0"},
+      {"CSV with blanks in names", Door::kWithAdvice, counted("{}.csv", text(xyzd, ",", "x pos,y pos,z pos,my foo\n")),
+       "--field 'x=x pos'"},
+      {"PCD with names that say nothing", Door::kWithAdvice, counted("{}.pcd", pcd("a b c d")), "--field x=a"},
+      {"CSV whose rows are numbered, without names", Door::kWithAdvice, counted("{}.csv", text(numbered, ",")),
+       "--columns _,x,y,z,doppler"},
+      {"NPY whose rows are numbered", Door::kWithAdvice, counted("{}.npy", npy(numbered)), "--columns _,x,y,z,doppler"},
       {"CSV of five columns without names", Door::kWithAdvice, counted("{}.csv", text(xyzid, ",")),
        "has 5 columns without names"},
 

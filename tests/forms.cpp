@@ -204,6 +204,9 @@ datasets::InputSettings pasted(const std::string& message) {
     const std::size_t blank = option.find(' ');
     std::string name = option.substr(2, blank - 2);
     std::string value = option.substr(blank + 1);
+    if (value.size() >= 2 && value.starts_with('\'') && value.ends_with('\'')) {  // as a shell takes it
+      value = value.substr(1, value.size() - 2);
+    }
     if (name == "field") {
       name += "." + value.substr(0, value.find('='));
       value = value.substr(value.find('=') + 1);

@@ -96,6 +96,46 @@ TEST_F(OpenDoor, AnglesOfASensorAtRestAreMendedByTheAdvice) {
   }
 }
 
+TEST_F(OpenDoor, AnotherColumnIsNamedAsTheDopplerInTheWayThatItCanBe) {
+  const auto with_reflectance = [](const RawScan& scan, std::size_t i) -> Row {
+    const Eigen::Vector3d& p = scan.points[i];
+    return {p.x(), p.y(), p.z(), 40.0 + 20.0 * std::sin(12.9898 * static_cast<double>(i)), scan.doppler[i]};
+  };
+  struct Form {
+    Writer write;
+    const char* stated;
+    const char* advice;
+  };
+  const Form all[] = {
+      {counted("{}.csv", text(with_reflectance, ",", "x,y,z,doppler,foo\n")), "", "--field doppler=foo"},
+      {counted("{}.csv", text(with_reflectance, ",")), "x,y,z,doppler,_", "--columns x,y,z,_,doppler"},
+      {counted("{}.npy", npy(with_reflectance)), "x,y,z,doppler,_", "--columns x,y,z,_,doppler"},
+      {counted("{}.bin", records<float>(with_reflectance)), "x,y,z,doppler,_", "--columns x,y,z,_,doppler"}};
+  std::size_t number = 0;
+  for (const Form& form : all) {
+    SCOPED_TRACE(number);
+    const fs::path input = form.write(drive(), folder_ / fmt::format("{}", ++number));
+    const std::string stated = *form.stated == '\0' ? "" : fmt::format(" --columns {}", form.stated);
+    const Outcome info = run_program(fmt::format("info {}{}", input.string(), stated));
+    ASSERT_EQ(info.status, kDone) << info.text;
+    ASSERT_NE(info.text.find(fmt::format("fix with {}\n", form.advice)), std::string::npos) << info.text;
+    expect_same(*datasets::open_input(input, pasted(form.advice)), drive().scans.size());
+  }
+}
+
+TEST_F(OpenDoor, ColumnsWithNamesThatAreStatedInTheirOrderAreSaidByTheirNames) {
+  const fs::path input = counted("{}.csv", text(xyzid, ",", "a,b,c,d,e\n"))(drive(), folder_ / "named");
+  const Outcome refused = run_program("info " + input.string() + " --columns x,y,z,_,doppler");
+  EXPECT_EQ(refused.status, kFailed) << refused.text;
+  ASSERT_NE(refused.text.find("--field x=a --field y=b --field z=c --field doppler=e"), std::string::npos)
+      << refused.text;
+  expect_same(*datasets::open_input(input, pasted(refused.text)), drive().scans.size());
+  const fs::path half = counted("{}.csv", text(xyzd, ",", "a,b,c,foo\n"))(drive(), folder_ / "half");
+  const Outcome unclear = run_program("info " + half.string() + " --field x=a --field y=b --field z=c");
+  EXPECT_EQ(unclear.status, kFailed) << unclear.text;
+  expect_same(*datasets::open_input(half, pasted(unclear.text)), drive().scans.size());
+}
+
 TEST_F(OpenDoor, SphericalColumnsWithNamesAreReadOrSayHow) {
   const auto angles = [](double per_radian, bool from_zenith) {
     return [=](const RawScan& scan, std::size_t i) -> Row {

@@ -66,8 +66,8 @@ std::string as_keywords(const Texts& settings) {
 }
 
 std::string fix_in_words(const diagnosis::Finding& finding, const datasets::InputSettings& settings) {
-  return finding.needs_doppler_column ? std::string("field={'doppler': 'COLUMN'}")
-                                      : as_keywords(datasets::texts_of_fix(finding.fix, settings));
+  return as_keywords(finding.needs_doppler_column ? datasets::texts_of_doppler(finding.doppler_column, settings)
+                                                  : datasets::texts_of_fix(finding.fix, settings));
 }
 
 }  // namespace dynamic_icp::python

@@ -111,7 +111,7 @@ class FieldFinder {
 
   FieldMap find() {
     for (const auto& [key, column] : wanted_) {
-      if (std::find(kKeys.begin(), kKeys.end(), key) == kKeys.end()) {
+      if (!is_field(key)) {
         throw UsageError(fmt::format("field '{}' = '{}': expected one of: {}", key, column, fmt::join(kKeys, ", ")));
       }
     }
@@ -345,6 +345,8 @@ bool FieldMap::uses(const std::string& array) const {
   }
   return used;
 }
+
+bool is_field(std::string_view key) { return std::find(kKeys.begin(), kKeys.end(), key) != kKeys.end(); }
 
 bool has_doppler_name(const std::vector<std::string>& names) {
   return std::any_of(names.begin(), names.end(), [](const std::string& name) {

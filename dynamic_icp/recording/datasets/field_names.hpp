@@ -7,6 +7,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "dynamic_icp/recording/datasets/spherical_fields.hpp"
@@ -70,6 +71,9 @@ struct FieldMap {
 /// they are not among the names.
 FieldMap map_fields(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
                     const std::string& origin, const std::vector<std::string>& unusable = {});
+
+/// Whether `wanted` of map_fields may have the key.
+bool is_field(std::string_view key);
 
 /// Whether one of the names is one of a Doppler.
 bool has_doppler_name(const std::vector<std::string>& names);

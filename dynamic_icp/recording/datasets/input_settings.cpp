@@ -251,6 +251,24 @@ std::vector<std::pair<std::string, std::string>> texts_of_fix(const Correction& 
   return texts(fixed);
 }
 
+std::vector<std::pair<std::string, std::string>> texts_of_doppler(const std::string& column,
+                                                                  const InputSettings& settings) {
+  if (!column.empty()) {
+    return {{"field.doppler", column}};
+  }
+  std::vector<std::string> columns = settings.open.columns;
+  const auto doppler = std::find(columns.begin(), columns.end(), "doppler");
+  const auto left_out = std::find(columns.begin(), columns.end(), "_");
+  if (doppler == columns.end() || left_out == columns.end()) {
+    return {};
+  }
+  if (std::count(columns.begin(), columns.end(), "_") > 1) {
+    return {{"columns", "LIST"}};
+  }
+  std::iter_swap(doppler, left_out);
+  return {{"columns", fmt::format("{}", fmt::join(columns, ","))}};
+}
+
 std::unique_ptr<Dataset> open_input(const std::filesystem::path& input, const InputSettings& settings) {
   check(settings.correction);
   OpenOptions open = settings.open;

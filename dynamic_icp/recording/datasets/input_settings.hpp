@@ -39,6 +39,12 @@ std::vector<std::pair<std::string, std::string>> texts(const InputSettings& sett
 /// stated of a record stay those of a record.
 std::vector<std::pair<std::string, std::string>> texts_of_fix(const Correction& fix, const InputSettings& settings);
 
+/// Those that state that another column is the Doppler: the one of that name, or, where there is none with a name, one
+/// of those that are left out ("_") of the columns stated of a record, "LIST" standing for them where several are.
+/// Empty: there is no other column.
+std::vector<std::pair<std::string, std::string>> texts_of_doppler(const std::string& column,
+                                                                  const InputSettings& settings);
+
 /// `open_dataset`, then `corrected`; throws as they do.
 std::unique_ptr<Dataset> open_input(const std::filesystem::path& input, const InputSettings& settings);
 

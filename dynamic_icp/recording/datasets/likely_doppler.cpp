@@ -131,18 +131,28 @@ std::optional<Eigen::Vector3d> likely_velocity(std::span<const Eigen::Vector3d> 
   return robust_velocity(rows.directions, rows.values, std::max(spread_of(rows.values), kMinSpread), residuals);
 }
 
-std::string proposed_columns(std::span<const std::vector<double>> columns) {
-  std::vector<Eigen::Vector3d> points;
-  for (std::size_t i = 0; i < columns.front().size(); ++i) {
-    points.emplace_back(columns[0][i], columns[1][i], columns[2][i]);
-  }
-  const std::span<const std::vector<double>> others = columns.subspan(3);
-  std::string text = "x,y,z";
-  if (!others.empty()) {
-    const std::size_t doppler = likely_doppler(points, others).value_or(others.size() - 1);
-    for (std::size_t k = 0; k < others.size(); ++k) {
-      text += k == doppler ? ",doppler" : ",_";
+std::optional<LikelyRow> likely_row(std::span<const std::vector<double>> columns) {
+  constexpr std::size_t kPlaces = 2;
+  for (std::size_t x = 0; x < kPlaces && x + 3 < columns.size(); ++x) {
+    std::vector<Eigen::Vector3d> points;
+    for (std::size_t i = 0; i < columns[x].size(); ++i) {
+      points.emplace_back(columns[x][i], columns[x + 1][i], columns[x + 2][i]);
     }
+    const std::span<const std::vector<double>> others = columns.subspan(x + 3);
+    if (const std::optional<std::size_t> doppler = likely_doppler(points, others)) {
+      return LikelyRow{x, x + 3 + *doppler};
+    }
+  }
+  return std::nullopt;
+}
+
+std::string proposed_columns(std::span<const std::vector<double>> columns) {
+  const LikelyRow row = likely_row(columns).value_or(LikelyRow{0, std::max<std::size_t>(3, columns.size() - 1)});
+  std::string text;
+  for (std::size_t k = 0; k < columns.size(); ++k) {
+    const bool is_axis = k >= row.x && k < row.x + 3;
+    text += k > 0 ? "," : "";
+    text += is_axis ? std::string(1, "xyz"[k - row.x]) : k == row.doppler ? "doppler" : "_";
   }
   return text;
 }

@@ -24,8 +24,17 @@ std::optional<std::size_t> likely_doppler(std::span<const Eigen::Vector3d> point
 std::optional<Eigen::Vector3d> likely_velocity(std::span<const Eigen::Vector3d> points,
                                                const std::vector<double>& doppler);
 
-/// What rows of numbers may be of which the first three are the point, for a proposal: "x,y,z,_,doppler". The last is
-/// taken for the Doppler where no column is likely to be. `columns` are those of a row, three at least.
+/// Which columns of rows of numbers may be point and Doppler: the first three are x, y and z, or the three after a
+/// column that numbers the rows, and another one is likely to be their Doppler. Nothing where none is. Columns are
+/// equally long.
+struct LikelyRow {
+  std::size_t x = 0;  ///< y and z are the next ones
+  std::size_t doppler = 0;
+};
+std::optional<LikelyRow> likely_row(std::span<const std::vector<double>> columns);
+
+/// What rows of numbers may be, for a proposal: "x,y,z,_,doppler". The first three are taken for the point and the last
+/// for the Doppler where there is no likely row. `columns` are those of a row, three at least.
 std::string proposed_columns(std::span<const std::vector<double>> columns);
 
 }  // namespace dynamic_icp::datasets

@@ -3,7 +3,6 @@
 #include "dynamic_icp/recording/datasets/named_rows.hpp"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <utility>
 
@@ -143,6 +142,17 @@ bool has_doppler_beside(const NamedColumns& scan, const std::map<std::string, st
   return fields.contains("doppler") || has_doppler_name(scan.names());
 }
 
+/// Columns that were stated in their order, by the names that they have; empty: they are not as many.
+UnclearInput::Settings stated_by_names(const std::vector<std::string>& stated, const std::vector<std::string>& names) {
+  UnclearInput::Settings fields;
+  for (std::size_t k = 0; k < names.size() && stated.size() == names.size(); ++k) {
+    if (is_field(stated[k])) {
+      fields.emplace_back("field." + stated[k], names[k]);
+    }
+  }
+  return fields;
+}
+
 std::string numbers_as_columns(const formats::NpyArray& array) {
   const std::vector<std::vector<double>> columns = columns_of_array(array);
   return proposed_columns(columns);
@@ -172,10 +182,15 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
       !options.columns.empty() && options.columns != std::vector<std::string>{"x", "y", "z", "doppler"};
   if (points == nullptr || states_part_of(options.fields, *points)) {
     if (states_more) {
-      throw UsageError(fmt::format(
-          "{}: its columns have names ({}): state which are meant by their names, not what all are in their "
-          "order",
-          origin.string(), fmt::join(scan.names(), ", ")));
+      const std::string what = fmt::format(
+          "{}: its columns have names ({}): instead of what all are in their order, state which are meant by their "
+          "names",
+          origin.string(), fmt::join(scan.names(), ", "));
+      UnclearInput::Settings proposal = stated_by_names(options.columns, scan.names());
+      if (proposal.empty()) {
+        throw UsageError(what);
+      }
+      throw UnclearInput(what, std::move(proposal));
     }
     return reading;
   }
@@ -228,18 +243,32 @@ ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options
 
 namespace {
 
-/// The three columns that end in x, y and z and are the same before that; empty: none.
+/// The columns of these names; empty: not all are there.
+std::vector<std::string> all_of_names(const NamedColumns& scan, const std::vector<std::string>& wanted) {
+  std::vector<std::string> names;
+  for (const std::string& name : wanted) {
+    if (const std::string* const found = find_name(scan, name)) {
+      names.push_back(*found);
+    }
+  }
+  return names.size() == wanted.size() ? names : std::vector<std::string>();
+}
+
+/// The three columns that end or begin in x, y and z, or end in 0, 1 and 2, and are the same else; empty: none.
 std::vector<std::string> axes_of(const NamedColumns& scan) {
   for (const std::string& name : scan.names()) {
-    if (name.empty() || (name.back() != 'x' && name.back() != 'X')) {
-      continue;
+    const std::string stem = name.substr(0, name.empty() ? 0 : name.size() - 1);
+    const std::string tail = name.substr(name.empty() ? 0 : 1);
+    std::vector<std::string> axes;
+    if (name.ends_with('x') || name.ends_with('X')) {
+      axes = all_of_names(scan, {name, stem + "y", stem + "z"});
+    } else if (name.starts_with('x') || name.starts_with('X')) {
+      axes = all_of_names(scan, {name, "y" + tail, "z" + tail});
+    } else if (name.size() > 1 && name.ends_with('0')) {
+      axes = all_of_names(scan, {name, stem + "1", stem + "2"});
     }
-    const std::string stem = name.substr(0, name.size() - 1);
-    const bool is_upper = name.back() == 'X';
-    const std::string* const y = find_name(scan, stem + (is_upper ? "Y" : "y"));
-    const std::string* const z = find_name(scan, stem + (is_upper ? "Z" : "z"));
-    if (y != nullptr && z != nullptr) {
-      return {name, *y, *z};
+    if (!axes.empty()) {
+      return axes;
     }
   }
   return {};
@@ -256,8 +285,31 @@ std::vector<Eigen::Vector3d> points_of(const std::vector<double>& x, const std::
 
 /// Whether a name is that of a part of a velocity in space.
 bool is_part_of_velocity(const std::string& name) {
-  static const std::array<std::string_view, 6> kParts = {"vx", "vy", "vz", "v_x", "v_y", "v_z"};
-  return std::any_of(kParts.begin(), kParts.end(), [&](std::string_view part) { return same_text(name, part); });
+  constexpr std::string_view kParts[] = {"vx", "vy", "vz", "v_x", "v_y", "v_z"};
+  return std::ranges::any_of(kParts, [&](std::string_view part) { return same_text(name, part); });
+}
+
+/// What columns of a number each are where their names say nothing: as their numbers show, else empty.
+UnclearInput::Settings fields_by_numbers(const NamedColumns& scan) {
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;
+  for (const std::string& name : scan.names()) {
+    const formats::NpyArray column = scan.read(name);
+    if (width_of(column) == 1 && formats::is_float(column.type) && !is_part_of_velocity(name)) {
+      names.push_back(name);
+      columns.push_back(formats::column_as_doubles(column));
+    }
+  }
+  const bool are_equally_long =
+      std::ranges::all_of(columns, [&](const auto& column) { return column.size() == columns.front().size(); });
+  const std::optional<LikelyRow> row = are_equally_long ? likely_row(columns) : std::nullopt;
+  if (!row) {
+    return {};
+  }
+  return {{"field.x", names[row->x]},
+          {"field.y", names[row->x + 1]},
+          {"field.z", names[row->x + 2]},
+          {"field.doppler", names[row->doppler]}};
 }
 
 /// What may be meant; empty: nothing that one could say.
@@ -269,12 +321,18 @@ UnclearInput::Settings likely_fields(const NamedColumns& scan, const std::map<st
     points = points_of(formats::column_as_doubles(scan.read(axes[0])), formats::column_as_doubles(scan.read(axes[1])),
                        formats::column_as_doubles(scan.read(axes[2])));
   };
-  const std::vector<std::string> axes = axes_of(scan);
-  if (find_name(scan, "x") != nullptr && find_name(scan, "y") != nullptr && find_name(scan, "z") != nullptr) {
-    take_axes({*find_name(scan, "x"), *find_name(scan, "y"), *find_name(scan, "z")});
-  } else if (!axes.empty()) {
+  const bool are_stated = fields.contains("x") && fields.contains("y") && fields.contains("z");
+  std::vector<std::string> axes;
+  if (are_stated) {
+    axes = all_of_names(scan, {fields.at("x"), fields.at("y"), fields.at("z")});
+  }
+  const std::vector<std::string> plain = all_of_names(scan, {"x", "y", "z"});
+  axes = are_stated ? axes : plain.empty() ? axes_of(scan) : plain;
+  if (!axes.empty()) {
     take_axes(axes);
-    proposal = {{"field.x", axes[0]}, {"field.y", axes[1]}, {"field.z", axes[2]}};
+    if (axes != plain) {
+      proposal = {{"field.x", axes[0]}, {"field.y", axes[1]}, {"field.z", axes[2]}};
+    }
   } else {
     for (const std::string& name : scan.names()) {
       const formats::NpyArray candidate = scan.read(name);
@@ -295,6 +353,9 @@ UnclearInput::Settings likely_fields(const NamedColumns& scan, const std::map<st
       }
     }
   }
+  if (points.empty() && fields.empty() && !has_doppler_beside(scan, fields)) {
+    return fields_by_numbers(scan);
+  }
   if (points.empty() || has_doppler_beside(scan, fields)) {
     return points.empty() ? UnclearInput::Settings() : proposal;
   }
@@ -302,9 +363,9 @@ UnclearInput::Settings likely_fields(const NamedColumns& scan, const std::map<st
   std::vector<std::vector<double>> columns;
   for (const std::string& name : scan.names()) {
     const formats::NpyArray column = scan.read(name);
+    const bool is_axis = std::find(axes.begin(), axes.end(), name) != axes.end();
     if (name != array && width_of(column) == 1 && column.shape.front() == points.size() &&
-        formats::is_float(column.type) && std::find(axes.begin(), axes.end(), name) == axes.end() &&
-        !same_text(name, "x") && !same_text(name, "y") && !same_text(name, "z") && !is_part_of_velocity(name)) {
+        formats::is_float(column.type) && !is_axis && !is_part_of_velocity(name)) {
       names.push_back(name);
       columns.push_back(formats::column_as_doubles(column));
     }

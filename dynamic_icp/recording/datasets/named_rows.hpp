@@ -32,7 +32,7 @@ struct ArrayReading {
 /// without names, arr_0 of shape (N, 3) and arr_1 of shape (N,), are points and Doppler.
 ///
 /// Throws UnclearInput where nobody says what the columns of a wide array are, or the options state another number of
-/// them; UsageError where they state columns of arrays that have names.
+/// them, or state columns of arrays that have names; UsageError where those are not as many.
 ArrayReading read_arrays_as(const NamedColumns& scan, const OpenOptions& options, const std::filesystem::path& origin);
 
 /// Throws UsageError where columns are stated by their order and the names of those of a file say that they are

@@ -7,6 +7,7 @@
 
 #include <fmt/format.h>
 
+#include "dynamic_icp/recording/datasets/likely_doppler.hpp"
 #include "dynamic_icp/recording/diagnosis/judging.hpp"
 #include "dynamic_icp/recording/diagnosis/questions.hpp"
 
@@ -69,10 +70,27 @@ std::optional<int> forward_axis(const View& view, int up) {
   return std::nullopt;
 }
 
-/// Whether another one may be named to be the Doppler.
-bool has_named_columns(const datasets::Dataset& dataset) {
+/// The name of the column that may be the Doppler instead (Finding::doppler_column), by a scan in the middle.
+std::string other_doppler_column(const Evidence& evidence) {
   constexpr std::string_view kFormats[] = {"npz", "pcd", "ply", "csv", "rosbag", "rosbag2", "mcap"};
-  return std::ranges::find(kFormats, dataset.format()) != std::end(kFormats);
+  const datasets::Dataset& dataset = *evidence.dataset;
+  if (std::ranges::find(kFormats, dataset.format()) == std::end(kFormats)) {
+    return {};
+  }
+  const std::size_t middle = evidence.begin + (evidence.end - evidence.begin) / 2;
+  std::vector<std::string> names;
+  std::vector<std::vector<double>> columns;
+  for (datasets::PointColumn& column : dataset.columns(middle)) {
+    if (!column.is_integer) {
+      names.push_back(std::move(column.name));
+      columns.push_back(std::move(column.values));
+    }
+  }
+  if (names.empty()) {
+    return {};
+  }
+  const std::optional<std::size_t> likely = datasets::likely_doppler(dataset.scan(middle).points, columns);
+  return likely ? names[*likely] : "COLUMN";
 }
 
 std::string_view unit_of(const SphericalColumns& spherical) {
@@ -147,7 +165,8 @@ Finding columns(const Evidence& evidence) {
   } else if (const std::optional<NoDoppler> none = no_doppler(evidence); none && !none->is_zero) {
     finding.verdict = Verdict::kWrong;
     finding.sentence = "the column taken for the Doppler is none: " + none->sentence;
-    finding.needs_doppler_column = has_named_columns(*evidence.dataset);
+    finding.needs_doppler_column = true;
+    finding.doppler_column = other_doppler_column(evidence);
     finding.evidence.insert(finding.evidence.end(), none->evidence.begin(), none->evidence.end());
   } else if (scores.likely_doppler != 3) {
     finding.verdict = Verdict::kSuspicious;

@@ -51,8 +51,10 @@ struct Finding {
   Verdict verdict = Verdict::kCannotTell;
   std::string sentence = {};          ///< for the user
   datasets::Correction fix = {};      ///< what corrects it, with what was applied already; empty where nothing does
-  bool needs_doppler_column = false;  ///< another column must be named to be the Doppler (OpenOptions::fields)
+  bool needs_doppler_column = false;  ///< another column must be stated to be the Doppler
   std::vector<std::pair<std::string, double>> evidence = {};  ///< numbers by name; the unit ends the name
+  std::string doppler_column = {};  ///< name of the one that is needed (OpenOptions::fields): the likely one, "COLUMN"
+                                    ///< where none is likely, empty where no other one has a name
 };
 
 /// All answers, in the order of the questions.
