@@ -151,10 +151,10 @@ def partial_folder(work, command):
 
 def spoil(folder, chance):
     """Damages what a run goes on from; it must notice."""
-    name = chance.choice(["checkpoint", "frames.jsonl", "objects.jsonl"])
+    name = chance.choice(["checkpoint", "checkpoint.scans", "frames.jsonl", "objects.jsonl"])
     file = folder / name
     data = bytearray(file.read_bytes())
-    if name == "checkpoint" and chance.random() < 0.5:
+    if name.startswith("checkpoint") and chance.random() < 0.5:
         data[chance.randrange(len(data))] ^= 1 << chance.randrange(8)
     else:
         data = data[: chance.randrange(len(data) // 2 + 1)]

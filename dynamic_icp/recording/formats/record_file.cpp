@@ -22,7 +22,7 @@ constexpr std::size_t kBlockBytes = 64 * 1024;
 
 }  // namespace
 
-RecordFile::RecordFile(const std::filesystem::path& path, std::size_t record_bytes)
+RecordFile::RecordFile(const std::filesystem::path& path, std::size_t record_bytes, std::uintmax_t max_bytes)
     : path_(path), record_bytes_(record_bytes) {
   refuse_irregular(path);
   descriptor_ = ::open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -36,9 +36,8 @@ RecordFile::RecordFile(const std::filesystem::path& path, std::size_t record_byt
   }
   try {
     bytes_ = static_cast<std::size_t>(status.st_size);
-    if (bytes_ > kMaxRecordFileBytes) {
-      throw DataError(
-          fmt::format("{}: has {} bytes, expected at most {} of a scan", path.string(), bytes_, kMaxRecordFileBytes));
+    if (bytes_ > max_bytes) {
+      throw DataError(fmt::format("{}: has {} bytes, expected at most {} of a scan", path.string(), bytes_, max_bytes));
     }
     fill();
     refuse_other_kind(path, block_, FileKind::kUnknown);

@@ -18,15 +18,18 @@ constexpr std::uintmax_t kMaxRecordFileBytes = std::uintmax_t{1} << 30U;
 class RecordFile {
  public:
   /// Opens the file and looks at its first bytes. Throws DataError naming the file when it cannot be read, is longer
-  /// than kMaxRecordFileBytes or is known to be something else: an archive, a Git LFS pointer, a point cloud with a
+  /// than `max_bytes` or is known to be something else: an archive, a Git LFS pointer, a point cloud with a
   /// header.
-  RecordFile(const std::filesystem::path& path, std::size_t record_bytes);
+  RecordFile(const std::filesystem::path& path, std::size_t record_bytes,
+             std::uintmax_t max_bytes = kMaxRecordFileBytes);
   ~RecordFile();
   RecordFile(const RecordFile&) = delete;
   RecordFile& operator=(const RecordFile&) = delete;
 
   /// How many whole ones there are.
   [[nodiscard]] std::size_t records() const { return bytes_ / record_bytes_; }
+
+  [[nodiscard]] std::size_t bytes() const { return bytes_; }
 
   /// Of an empty file, and of bytes after the last whole record, which are left out; empty: nothing odd.
   [[nodiscard]] const std::string& warning() const { return warning_; }

@@ -13,6 +13,7 @@
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/own_files.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/runs/scan_record.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -21,7 +22,8 @@ namespace fs = std::filesystem;
 
 /// What a run writes scan by scan, and last the checkpoint that tells how far it came: without it a copy counts
 /// nothing.
-constexpr std::array<std::string_view, 4> kWrittenAlong = {"frames.jsonl", "objects.jsonl", "labels", kCheckpointFile};
+constexpr std::array<std::string_view, 5> kWrittenAlong = {"frames.jsonl", "objects.jsonl", "labels", kScanRecordsFile,
+                                                           kCheckpointFile};
 
 /// Removes what lies in a folder, but for these entries.
 template <class Keep>

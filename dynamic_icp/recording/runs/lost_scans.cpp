@@ -8,7 +8,6 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/quantile.hpp"
-#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -42,19 +41,19 @@ std::string points_text(double read, double used, const Scan::Dropped& dropped, 
 
 }  // namespace
 
-void LostScans::add(const odometry::Frame& frame) {
-  const double interval_s = last_ ? seconds_between(*last_, frame.stamp) : 0.0;
-  last_ = frame.stamp;
+void LostScans::add(const ScanRecord& scan) {
+  const double interval_s = last_ ? seconds_between(*last_, scan.stamp) : 0.0;
+  last_ = scan.stamp;
   ++scans_;
-  if (odometry::verdict(frame.status) != "lost") {
+  if (odometry::verdict(scan.status) != "lost") {
     return;
   }
   ++lost_;
-  Reason& reason = reasons_[frame.status];
-  reason.points.push_back(static_cast<double>(frame.points));
-  reason.points_used.push_back(static_cast<double>(frame.points_used));
+  Reason& reason = reasons_[scan.status];
+  reason.points.push_back(static_cast<double>(scan.points));
+  reason.points_used.push_back(static_cast<double>(scan.points_used));
   reason.intervals_s.push_back(interval_s);
-  reason.dropped += frame.dropped;
+  reason.dropped += scan.dropped;
 }
 
 std::string LostScans::cause(FrameStatus status, const Reason& reason) {
@@ -91,12 +90,5 @@ std::optional<std::string> LostScans::failure() const {
       std::ranges::max_element(reasons_, {}, [](const auto& reason) { return reason.second.points.size(); });
   return fmt::format("ODOMETRY FAILED on {} of {} scans: {}", lost_, scans_, cause(most->first, most->second));
 }
-
-void LostScans::Reason::state(StateArchive& archive) {
-  archive(points, points_used, intervals_s, dropped.non_finite, dropped.implausible, dropped.zero_range,
-          dropped.out_of_range, dropped.flagged);
-}
-
-void LostScans::state(StateArchive& archive) { archive(scans_, lost_, last_, reasons_); }
 
 }  // namespace dynamic_icp::runs

@@ -9,10 +9,7 @@
 #include <vector>
 
 #include "dynamic_icp/method/odometry/frame.hpp"
-
-namespace dynamic_icp {
-class StateArchive;
-}  // namespace dynamic_icp
+#include "dynamic_icp/recording/runs/scan_record.hpp"
 
 namespace dynamic_icp::runs {
 
@@ -22,13 +19,11 @@ inline constexpr int kMostScansLost = 3;
 /// The lost scans of a run (odometry::verdict), and what they have in common.
 class LostScans {
  public:
-  void add(const odometry::Frame& frame);
+  void add(const ScanRecord& scan);
 
   /// "ODOMETRY FAILED on 273 of 274 scans: 41 points a scan give no planes" where more than half of the scans are lost:
   /// the trajectory is a guess then. Nothing otherwise. The cause is that of most of the lost scans.
   [[nodiscard]] std::optional<std::string> failure() const;
-
-  void state(StateArchive& archive);
 
  private:
   /// What is known of the scans that were lost for one reason.
@@ -37,8 +32,6 @@ class LostScans {
     std::vector<double> points_used;  ///< of those
     std::vector<double> intervals_s;  ///< since the scan before
     Scan::Dropped dropped;
-
-    void state(StateArchive& archive);
   };
 
   [[nodiscard]] static std::string cause(odometry::FrameStatus status, const Reason& reason);

@@ -22,11 +22,11 @@ odometry::Frame frame(FrameStatus status, double time_s, std::size_t points, std
 std::string failure(const std::vector<FrameStatus>& others, std::size_t points, std::size_t used,
                     double interval_s = 0.1, const Scan::Dropped& dropped = {}) {
   LostScans lost;
-  lost.add(frame(FrameStatus::kFirst, 0.0, points, used));
+  lost.add(scan_record(frame(FrameStatus::kFirst, 0.0, points, used)));
   for (std::size_t i = 0; i < others.size(); ++i) {
     odometry::Frame next = frame(others[i], interval_s * static_cast<double>(i + 1), points, used);
     next.dropped = dropped;
-    lost.add(next);
+    lost.add(scan_record(next));
   }
   return lost.failure().value_or("none");
 }

@@ -15,6 +15,7 @@
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/checkpoint.hpp"
 #include "dynamic_icp/recording/runs/run_recording.hpp"
+#include "dynamic_icp/recording/runs/scan_record.hpp"
 
 #include "testing/wall_drive.hpp"
 
@@ -147,6 +148,7 @@ TEST_F(ResumedRun, EndsWithTheFilesOfAnUnbrokenOne) {
   ASSERT_EQ(whole.count("labels/00006.bin"), 1U);
   ASSERT_EQ(whole.count("maps/map.ply"), 1U);
   EXPECT_EQ(whole.count(kCheckpointFile), 0U);
+  EXPECT_EQ(whole.count(kScanRecordsFile), 0U);
   settings_.resume = true;
   for (std::size_t last = 0; last < 6; ++last) {
     run_until(last);
@@ -200,6 +202,7 @@ TEST_F(ResumedRun, AfterAStopThatKeptTheResultsSoFar) {
   ASSERT_TRUE(stopped);
   EXPECT_TRUE(stopped->summary.stopped);
   EXPECT_EQ(stopped->summary.frames, 3U);
+  EXPECT_EQ(fs::file_size(settings_.output / kScanRecordsFile), record_file_bytes(3)) << "for the one that resumes it";
   ASSERT_TRUE(run());
   EXPECT_TRUE(was_told("resumed after 3 of 6 scans"));
   EXPECT_EQ(differing(files_in(settings_.output), whole), kNone);
@@ -271,7 +274,8 @@ TEST_F(ResumedRun, ADamagedCheckpointAndFilesThatAreTooShortBeginAnew) {
   const auto whole = unbroken();
   settings_.resume = true;
   const auto damage = [](const fs::path& file, std::size_t length) { fs::resize_file(file, length); };
-  for (const char* const name : {kCheckpointFile, "frames.jsonl", "objects.jsonl", "labels/00002.bin"}) {
+  for (const char* const name :
+       {kCheckpointFile, kScanRecordsFile, "frames.jsonl", "objects.jsonl", "labels/00002.bin"}) {
     run_until(3);
     const fs::path file = left() / name;
     ASSERT_TRUE(fs::exists(file)) << name;
@@ -287,24 +291,26 @@ TEST_F(ResumedRun, ADamagedCheckpointAndFilesThatAreTooShortBeginAnew) {
     fs::remove_all(settings_.output);
   }
   run_until(3);
-  for (std::size_t at = 0; at < fs::file_size(left() / kCheckpointFile);
-       at += fs::file_size(left() / kCheckpointFile) / 7) {
-    std::string bytes = formats::read_whole_file(left() / kCheckpointFile);
-    bytes[at] = static_cast<char>(bytes[at] ^ 16);
-    const fs::path kept = folder_.path() / "kept";
-    fs::copy(left(), kept, fs::copy_options::recursive);
-    std::ofstream(left() / kCheckpointFile, std::ios::binary) << bytes;
-    ASSERT_TRUE(run()) << at;
-    EXPECT_EQ(differing(files_in(settings_.output), whole), kNone) << at;
-    fs::remove_all(settings_.output);
-    fs::rename(kept, folder_.path() / ".out.partial-1");
+  for (const char* const name : {kCheckpointFile, kScanRecordsFile}) {
+    const std::string bytes = formats::read_whole_file(left() / name);
+    for (std::size_t at = 0; at < bytes.size(); at += bytes.size() / 7) {
+      std::string damaged = bytes;
+      damaged[at] = static_cast<char>(damaged[at] ^ 16);
+      const fs::path kept = folder_.path() / "kept";
+      fs::copy(left(), kept, fs::copy_options::recursive);
+      std::ofstream(left() / name, std::ios::binary) << damaged;
+      ASSERT_TRUE(run()) << name << at;
+      EXPECT_EQ(differing(files_in(settings_.output), whole), kNone) << name << at;
+      fs::remove_all(settings_.output);
+      fs::rename(kept, folder_.path() / ".out.partial-1");
+    }
   }
 }
 
 TEST_F(ResumedRun, ThroughLinksAndPipesNothingIsWritten) {
   settings_.resume = true;
   folder_.write("other", "of somebody");
-  for (const char* const name : {kCheckpointFile, "frames.jsonl", "objects.jsonl"}) {
+  for (const char* const name : {kCheckpointFile, kScanRecordsFile, "frames.jsonl", "objects.jsonl"}) {
     for (const bool is_link : {true, false}) {
       if (!is_link && name == std::string_view(kCheckpointFile)) {
         continue;  // no checkpoint at all: the run begins anew

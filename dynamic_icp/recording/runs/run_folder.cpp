@@ -9,6 +9,7 @@
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/checkpoint.hpp"
+#include "dynamic_icp/recording/runs/scan_record.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -52,8 +53,9 @@ std::vector<std::string> files_asked_for(const fs::path& run_json) {
 }
 
 std::vector<std::string> run_files(const fs::path& folder) {
-  std::vector<std::string> files = {kCheckpointFile, "run.json",     "summary.json", "trajectory.tum",  "frames.jsonl",
-                                    "objects.jsonl", "labels/#.bin", "report.html",  "calibration.yaml"};
+  std::vector<std::string> files = {kCheckpointFile,  kScanRecordsFile,  "run.json",      "summary.json",
+                                    "trajectory.tum", "frames.jsonl",    "objects.jsonl", "labels/#.bin",
+                                    "report.html",    "calibration.yaml"};
   for (const std::string picture : kPictures) {
     files.push_back("plots/" + picture + ".svg");
     files.push_back("plots/" + picture + ".png");

@@ -25,6 +25,7 @@
 #include "dynamic_icp/recording/runs/run_json.hpp"
 #include "dynamic_icp/recording/runs/run_truth.hpp"
 #include "dynamic_icp/recording/runs/run_writer.hpp"
+#include "dynamic_icp/recording/runs/scan_record.hpp"
 #include "dynamic_icp/recording/runs/scan_source.hpp"
 #include "dynamic_icp/recording/runs/usable_points.hpp"
 
@@ -85,6 +86,9 @@ class Run {
       output.drop();
       std::error_code ignored;
       fs::remove(output.path() / kCheckpointFile, ignored);
+    }
+    if (std::error_code ignored; !fs::exists(output.path() / kCheckpointFile, ignored)) {
+      fs::remove(output.path() / kScanRecordsFile, ignored);
     }
     output.commit();
     return true;

@@ -2,7 +2,6 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
@@ -12,7 +11,6 @@
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/recording/formats/trajectory.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
-#include "dynamic_icp/recording/runs/lost_scans.hpp"
 #include "dynamic_icp/recording/runs/run_summary.hpp"
 
 namespace dynamic_icp {
@@ -21,20 +19,23 @@ class StateArchive;
 
 namespace dynamic_icp::runs {
 
-/// Writes the files of a run while it continues, in bounded memory: trajectory.tum, frames.jsonl, objects.jsonl,
-/// labels/*.bin (if asked for), summary.json; all but run.json. The folder exists already; see formats/output_folder
-/// for how a run appears whole or not at all. Throws DataError naming the file that could not be written.
+/// Writes the files of a run while it continues: trajectory.tum, frames.jsonl, objects.jsonl, labels/*.bin (if asked
+/// for), summary.json; all but run.json. It takes no more memory for more scans until `finish`: what is needed of each
+/// lies in kScanRecordsFile, which the caller removes with the checkpoint. The folder exists already; see
+/// formats/output_folder for how a run appears whole or not at all. Throws DataError naming the file that could not be
+/// written.
 class RunWriter {
  public:
   RunWriter(const std::filesystem::path& folder, bool save_labels);
 
   /// Goes on with the files in the folder where another one was when it wrote `state`; `next` is the scan after those
-  /// in it. What was written later is cut off or removed. Throws DataError when something of the files is missing.
+  /// in it. What was written later is cut off or removed. Throws DataError when something of the files is missing or
+  /// not what it was.
   RunWriter(const std::filesystem::path& folder, bool save_labels, std::size_t next, StateArchive& state);
 
   void add(std::size_t index, const odometry::Frame& frame);
 
-  /// One pose for each scan until now.
+  /// One pose for each scan, after `finish`.
   [[nodiscard]] const formats::Trajectory& trajectory() const { return trajectory_; }
 
   /// For another one to resume; what is written so far is on the device after it.
@@ -46,31 +47,24 @@ class RunWriter {
                     const std::vector<std::string>& assumptions, bool stopped = false);
 
  private:
-  struct Lengths {
+  /// What there is of the run: bytes of the files and scans.
+  struct Written {
     std::uint64_t frames = 0;
     std::uint64_t objects = 0;
+    std::size_t scans = 0;
   };
-  RunWriter(const std::filesystem::path& folder, bool save_labels, Lengths lengths);
-  static Lengths lengths_in(StateArchive& archive);
-  void counts_state(StateArchive& archive);
+  RunWriter(const std::filesystem::path& folder, bool save_labels, const Written& written);
+  static Written written_in(StateArchive& archive);
+  void check_records() const;
   void check_labels(std::size_t next) const;
 
   std::filesystem::path folder_;
   bool save_labels_;
   formats::OutputFile frames_file_;
   formats::OutputFile objects_file_;
+  formats::OutputFile records_file_;
+  std::size_t scans_ = 0;
   formats::Trajectory trajectory_;
-  std::vector<evaluation::StatedMotion> stated_;  ///< one per pose
-  std::vector<double> total_ms_;
-  std::vector<double> iterations_;
-  std::vector<double> dynamic_ratio_;
-  std::vector<double> clustered_ratio_;
-  std::vector<double> refined_ratio_;
-  std::size_t pairs_ = 0;
-  std::size_t converged_ = 0;
-  std::array<std::size_t, odometry::kVerdicts.size()> verdicts_{};
-  std::vector<std::pair<odometry::FrameStatus, std::size_t>> reasons_;
-  LostScans lost_;
 };
 
 }  // namespace dynamic_icp::runs

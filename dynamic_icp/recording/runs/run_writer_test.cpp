@@ -9,9 +9,12 @@
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 
+#include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/runs/frame_json.hpp"
 #include "dynamic_icp/recording/runs/frame_rows.hpp"
+#include "dynamic_icp/recording/runs/scan_record.hpp"
 
 namespace dynamic_icp::runs {
 namespace {
@@ -103,6 +106,40 @@ TEST_F(RunWriterTest, WritesTheFilesOfTheContract) {
   EXPECT_EQ(stored["reasons"], json({{"first", 1}, {"converged", 1}}));
   EXPECT_TRUE(stored["failure"].is_null());
   EXPECT_EQ(stored["stopped"], false);
+}
+
+TEST_F(RunWriterTest, RemembersNoMoreOfMoreScans) {
+  RunWriter writer(folder_, false);
+  std::vector<std::size_t> bytes;
+  for (int k = 0; k < 300; ++k) {
+    odometry::Frame frame = frame_at(k, 0.1 * k, k == 0 ? odometry::FrameStatus::kFirst : odometry::FrameStatus::kLost);
+    frame.alignment.covariance = Matrix6d::Identity();
+    writer.add(static_cast<std::size_t>(k), frame);
+    if (k == 0 || k == 299) {
+      StateArchive state;
+      writer.save(state);
+      bytes.push_back(state.take().size());
+    }
+  }
+  EXPECT_EQ(bytes[0], bytes[1]) << "of what a checkpoint holds";
+  EXPECT_LE(bytes[1], 64U);
+  EXPECT_EQ(fs::file_size(folder_ / kScanRecordsFile), record_file_bytes(300));
+}
+
+TEST_F(RunWriterTest, RecordsThatAreMissingAreTold) {
+  RunWriter writer(folder_, false);
+  writer.add(0, frame_at(0, 0.0, odometry::FrameStatus::kFirst));
+  writer.add(1, frame_at(1, 0.0, odometry::FrameStatus::kLost));
+  for (const std::uint64_t scans : {std::uint64_t{3}, ~std::uint64_t{0}, std::uint64_t{1} << 61U}) {
+    StateArchive state;
+    std::uint64_t frames = 0;
+    std::uint64_t objects = 0;
+    std::uint64_t number = scans;
+    state(frames, objects, number);
+    const std::string bytes = state.take();
+    StateArchive read(bytes);
+    EXPECT_THROW(RunWriter(folder_, false, 5, read), DataError) << scans;
+  }
 }
 
 TEST_F(RunWriterTest, GroundTruthThatDoesNotFitCostsNoResult) {
