@@ -57,6 +57,9 @@ class Seeds {
   }
 
   void write_all() {
+    for (const char pipeline : {'\0', '\1', '\2', '\3', '\4', '\5'}) {
+      write("states", std::string{pipeline, '\4'} + std::string(64, '\x5b'));  // four edits
+    }
     write("scans", std::string(400, '\x40'));  // choices of the generator, none of them the first
     const NamedArray points = array<double>("points", {2, 3}, {1, 2, 3, 4, 5, 6});
     std::string npy = formats::npy_bytes(points.array);

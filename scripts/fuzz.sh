@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Feeds the readers with damaged files, and every method with scans of any numbers (target `scans`), until something
-# breaks, under the address and undefined-behaviour sanitizers: libFuzzer, two targets at a time. Installs clang when it is missing.
+# Feeds the readers with damaged files, and every method with scans of any numbers (target `scans`) and changed states (`states`), until
+# something breaks, under the address and undefined-behaviour sanitizers: libFuzzer, two targets at a time. Installs clang when it is missing.
 # usage: scripts/fuzz.sh [SECONDS] [TARGET...]     each target for SECONDS (default 60); default: all targets
 # The random numbers begin with SEED (environment, default 1). Findings stay in build-fuzz/findings, inputs that reach new code in build-fuzz/corpus;
 # scripts/fuzz_table.py makes a table of what was tried. Status 1 after a finding.
@@ -10,7 +10,7 @@ cd "$(dirname "$0")/.."
 seconds=${1:-60}
 [[ $seconds =~ ^[1-9][0-9]*$ ]] || { echo "usage: scripts/fuzz.sh [SECONDS] [TARGET...]" >&2; exit 2; }
 shift $(($# > 0 ? 1 : 0))
-known=(npy npz pcd ply tum xyzd records aevascenes columns csv texts rosbag mcap db3 messages settings live scans)
+known=(npy npz pcd ply tum xyzd records aevascenes columns csv texts rosbag mcap db3 messages settings live scans states)
 targets=("$@")
 [[ $# -eq 0 ]] && targets=("${known[@]}")
 for target in "${targets[@]}"; do

@@ -37,6 +37,7 @@ READERS = {
                  "tools/benchmark/manifest"],
     "live": ["recording/live/access", "recording/live/protocol"],
     "scans": ["method/"],
+    "states": ["method/"],
 }
 
 

@@ -23,6 +23,7 @@ enum class DopplerKind : std::uint8_t {
   kRelative,    ///< as measured: the sensor's own motion is in it, s = u.(v_object - v_sensor)
   kCompensated  ///< the sensor's own motion was taken out before, s = u.v_object
 };
+constexpr DopplerKind last_of(DopplerKind /*any*/) { return DopplerKind::kCompensated; }
 
 /// What a sensor says of each point beside position, Doppler and time. A column is empty where the data has none, else
 /// as long as the points.

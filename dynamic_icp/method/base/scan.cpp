@@ -225,7 +225,35 @@ Scan Scan::select(std::span<const std::uint32_t> rows) const {
 
 void Scan::state(StateArchive& archive) {
   archive(stamp_, doppler_kind_, points_, directions_, doppler_, times_, records_, channels_.sensor, channels_.line,
-          channels_.face, channels_.intensity, channels_.return_number, mountings_);
+          channels_.face);
+  archive.any_numbers(channels_.intensity);
+  archive(channels_.return_number, mountings_);
+  check_read(archive);
+}
+
+/// Whether `from_raw` may have made it, or `transformed` of that.
+void Scan::check_read(const StateArchive& archive) {
+  if (!archive.reads()) {
+    return;
+  }
+  const auto is_point = [](const Eigen::Vector3d& point) {
+    return point.squaredNorm() > 0.0 && point.cwiseAbs().maxCoeff() <= 4.0 * kMaxCoordinate_m;
+  };
+  const auto is_direction = [](const Eigen::Vector3d& u) { return std::abs(u.squaredNorm() - 1.0) < 1e-3; };
+  for_each_column([&](const auto& column) { archive.require(column.empty() || column.size() == size(), "a column"); });
+  archive.require(directions_.size() == size() && doppler_.size() == size() && records_.size() == size(), "a column");
+  archive.require(std::ranges::all_of(points_, is_point), "a point");
+  archive.require(std::ranges::all_of(directions_, is_direction), "a line of sight");
+  archive.require(
+      std::ranges::all_of(doppler_, [](double doppler) { return std::abs(doppler) <= 2.0 * kMaxDoppler_mps; }),
+      "a Doppler value");
+  archive.require(std::ranges::all_of(times_, [](double time_s) { return std::abs(time_s) <= 4.0 * kMaxPointTime_s; }),
+                  "a time of a point");
+  archive.require(
+      mountings_.empty() ||
+          (channels_.sensor.size() == size() &&
+           std::ranges::all_of(channels_.sensor, [&](std::uint8_t one) { return one < mountings_.size(); })),
+      "a sensor of a point");
 }
 
 }  // namespace dynamic_icp

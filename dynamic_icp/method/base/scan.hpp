@@ -100,6 +100,7 @@ class Scan {
   template <class Visit>
   void for_each_column(Visit visit);
   void resize(std::size_t rows, const ScanView& raw);
+  void check_read(const StateArchive& archive);
 
   Stamp stamp_;
   DopplerKind doppler_kind_ = DopplerKind::kRelative;

@@ -5,10 +5,20 @@
 #include <algorithm>
 #include <cstring>
 
+#include <Eigen/LU>
+
 #include "dynamic_icp/method/base/error.hpp"
 
 namespace dynamic_icp {
 namespace {
+
+constexpr double kOrthogonality = 1e-3;  // rounding errors are far smaller
+
+bool is_rigid(const Eigen::Isometry3d& T) {
+  const Eigen::Matrix3d R = T.linear();
+  return (R.transpose() * R - Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff() < kOrthogonality &&
+         R.determinant() > 0.0 && T.matrix().row(3) == Eigen::RowVector4d(0.0, 0.0, 0.0, 1.0);
+}
 
 /// FNV-1a over words of eight bytes, the last one filled up with zeros. A step is invertible in each word: bytes that
 /// differ within one word never have the same sum.
@@ -38,15 +48,30 @@ StateArchive::StateArchive(std::string_view bytes) : reads_(true) {
 }
 
 std::string StateArchive::take() {
-  const std::uint64_t sum = checksum(written_);
-  written_.append(reinterpret_cast<const char*>(&sum), sizeof sum);
+  seal(written_);
   return std::exchange(written_, {});
+}
+
+void StateArchive::seal(std::string& bytes) {
+  const std::uint64_t sum = checksum(bytes);
+  bytes.append(reinterpret_cast<const char*>(&sum), sizeof sum);
 }
 
 void StateArchive::end() const {
   if (!unread_.empty()) {
     throw DataError("a saved state holds more than this program reads");
   }
+}
+
+void StateArchive::require(bool holds, std::string_view what) const {
+  if (reads_ && !holds) {
+    throw DataError("a saved state is none that this program writes: " + std::string(what) + " of it cannot be");
+  }
+}
+
+void StateArchive::value(Eigen::Isometry3d& T) {
+  value(T.matrix());
+  require(is_rigid(T), "a pose");
 }
 
 std::size_t StateArchive::size_of(std::size_t size, std::size_t each) {

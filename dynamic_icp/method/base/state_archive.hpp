@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
@@ -27,7 +28,13 @@ namespace dynamic_icp {
 /// One function of a class, `void state(StateArchive& archive)`, names what it remembers, `archive(a_, b_)`: it serves
 /// both directions, so that they cannot differ. Numbers keep all their bits. What is computed anew from the rest, or
 /// for each scan, is left out. The bytes are those of this machine and of this version of the program; a checksum at
-/// their end tells damaged ones.
+/// their end tells damaged ones. It is no signature: what a stranger wrote has one that fits, so that nothing that is
+/// read may be believed. Numbers must be finite, rotations be rotations and enumerations have values with names; what
+/// else must hold for the class to work (sizes that agree, indices in range, numbers in their limits) it asks for by
+/// `require`.
+///
+/// An enumeration is read where a function `last_of(Enumeration)` beside it names the last of its values, of which the
+/// first is 0.
 class StateArchive {
  public:
   /// Writes.
@@ -41,8 +48,15 @@ class StateArchive {
   /// What was written, with its checksum.
   [[nodiscard]] std::string take();
 
+  /// Appends their checksum to bytes.
+  static void seal(std::string& bytes);
+
   /// Throws DataError unless all was read.
   void end() const;
+
+  /// Throws DataError where what was read cannot have been written by this program: `holds` is false. `what` says what
+  /// it is of ("the map"). What is written is not asked.
+  void require(bool holds, std::string_view what) const;
 
   /// Writes these values, or reads them. Throws DataError when there are no bytes left.
   template <class... Values>
@@ -50,8 +64,15 @@ class StateArchive {
     (value(values), ...);
   }
 
-  /// The same for the elements of a vector: as many copies of `blank` are made as there were, and `state_of(element)`
-  /// reads each.
+  /// Numbers that may be anything, NaN among them.
+  template <class Number>
+  void any_numbers(std::vector<Number>& numbers) {
+    numbers.resize(size_of(numbers.size(), sizeof(Number)));
+    bytes(numbers.data(), numbers.size() * sizeof(Number));
+  }
+
+  /// Writes the elements of a vector, or reads them: as many copies of `blank` are made as there were, and
+  /// `state_of(element)` reads each.
   template <class Element, class StateOf>
   void each(std::vector<Element>& elements, const std::type_identity_t<Element>& blank, const StateOf& state_of) {
     const std::size_t size = size_of(elements.size());
@@ -72,8 +93,18 @@ class StateArchive {
 
  private:
   template <class Value>
-  requires(std::is_arithmetic_v<Value> || std::is_enum_v<Value>) void value(Value& number) {
+  requires(std::is_arithmetic_v<Value>) void value(Value& number) {
     bytes(&number, sizeof number);
+    check_numbers(&number, 1);
+  }
+
+  template <class Value>
+  requires(std::is_enum_v<Value>) void value(Value& choice) {
+    auto number = static_cast<std::underlying_type_t<Value>>(choice);
+    bytes(&number, sizeof number);
+    const auto wide = static_cast<std::int64_t>(number);
+    require(wide >= 0 && wide <= static_cast<std::int64_t>(last_of(choice)), "a choice");
+    choice = static_cast<Value>(number);
   }
 
   void value(bool& flag) {
@@ -121,6 +152,7 @@ class StateArchive {
     if constexpr (std::is_arithmetic_v<Element>) {
       elements.resize(size_of(elements.size(), sizeof(Element)));
       bytes(elements.data(), elements.size() * sizeof(Element));
+      check_numbers(elements.data(), elements.size());
     } else {
       const std::size_t size = size_of(elements.size());
       elements.resize(std::min(size, elements.size()));
@@ -160,9 +192,10 @@ class StateArchive {
       matrix.resize(static_cast<Eigen::Index>(height), static_cast<Eigen::Index>(width));
     }
     bytes(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(Number));
+    check_numbers(matrix.data(), static_cast<std::size_t>(matrix.size()));
   }
 
-  void value(Eigen::Isometry3d& T) { value(T.matrix()); }
+  void value(Eigen::Isometry3d& T);
 
   template <class Object>
   requires(requires(Object& object, StateArchive& archive) { object.state(archive); }) void value(Object& object) {
@@ -171,6 +204,17 @@ class StateArchive {
 
   /// Writes a number of elements, or reads one: no larger than the bytes that are left, `each` of one.
   std::size_t size_of(std::size_t size, std::size_t each = 1);
+
+  template <class Number>
+  void check_numbers(const Number* numbers, std::size_t count) const {
+    if constexpr (std::is_floating_point_v<Number>) {
+      const auto is_possible = [](Number number) { return std::abs(number) <= Number{kLargestInState}; };
+      require(!reads_ || std::all_of(numbers, numbers + count, is_possible), "a number");
+    }
+  }
+
+  /// Beyond all that is measured or estimated; a few of them can be multiplied.
+  static constexpr float kLargestInState = 1e30F;
   void bytes(void* data, std::size_t size);
 
   bool reads_ = false;

@@ -4,7 +4,9 @@
 
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -14,6 +16,7 @@ namespace dynamic_icp {
 namespace {
 
 enum class Colour : std::uint8_t { kRed, kBlue };
+constexpr Colour last_of(Colour /*any*/) { return Colour::kBlue; }
 
 struct Part {
   double number = 0.0;
@@ -62,7 +65,7 @@ Whole example() {
   whole.part = Part{1e-310, true};
   whole.both = {3, 0.25};
   whole.some = {std::nullopt, 5};
-  whole.numbers = {1.0 / 3.0, std::numeric_limits<double>::infinity(), std::nextafter(1.0, 2.0)};
+  whole.numbers = {1.0 / 3.0, 1e30, std::nextafter(1.0, 2.0)};
   whole.lists = {{1, 2, 3}, {}, {255}};
   whole.parts = {{1.0, true}, {2.0, false}};
   whole.by_colour = {{Colour::kBlue, {1.0}}, {Colour::kRed, {}}};
@@ -111,6 +114,58 @@ TEST(StateArchive, ReadsWhatItWrote) {
   EXPECT_EQ(back.matrix, whole.matrix);
   EXPECT_EQ(back.column, whole.column);
   EXPECT_EQ(back.T.matrix(), whole.T.matrix());
+}
+
+TEST(StateArchive, RefusesWhatCannotBe) {
+  const auto refusal = [](const auto& change) -> std::string {
+    Whole whole = example();
+    change(whole);
+    try {
+      (void)read(written(whole));
+    } catch (const DataError& error) {
+      return error.what();
+    }
+    return "none";
+  };
+  EXPECT_EQ(refusal([](Whole&) {}), "none");
+  for (const double number : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity(),
+                              -std::numeric_limits<double>::infinity(), 1e31}) {
+    for (const auto& change : std::vector<std::function<void(Whole&)>>{
+             [&](Whole& whole) { whole.maybe = number; }, [&](Whole& whole) { whole.numbers[1] = number; },
+             [&](Whole& whole) { whole.matrix(2, 4) = number; }, [&](Whole& whole) { whole.both.second = number; }}) {
+      EXPECT_NE(refusal(change).find("a number of it cannot be"), std::string::npos) << number;
+    }
+  }
+  EXPECT_NE(refusal([](Whole& whole) { whole.small = std::numeric_limits<float>::infinity(); }).find("a number"),
+            std::string::npos);
+  EXPECT_NE(refusal([](Whole& whole) { whole.colour = static_cast<Colour>(2); }).find("a choice"), std::string::npos);
+  EXPECT_NE(refusal([](Whole& whole) { whole.T.linear() *= 1.01; }).find("a pose"), std::string::npos);
+  EXPECT_NE(refusal([](Whole& whole) { whole.T.matrix()(3, 3) = 2.0; }).find("a pose"), std::string::npos);
+  EXPECT_NE(refusal([](Whole& whole) { whole.T.linear().col(0) *= -1.0; }).find("a pose"), std::string::npos)
+      << "a reflection";
+}
+
+TEST(StateArchive, NumbersThatMayBeAnythingComeBack) {
+  std::vector<float> numbers = {std::numeric_limits<float>::quiet_NaN(), -1.0F};
+  StateArchive writing;
+  writing.any_numbers(numbers);
+  const std::string bytes = writing.take();
+  std::vector<float> back;
+  StateArchive reading(bytes);
+  reading.any_numbers(back);
+  reading.end();
+  ASSERT_EQ(back.size(), 2U);
+  EXPECT_TRUE(std::isnan(back[0]));
+  EXPECT_EQ(back[1], -1.0F);
+}
+
+TEST(StateArchive, WhatIsRequiredIsAskedOfWhatIsRead) {
+  StateArchive writing;
+  EXPECT_NO_THROW(writing.require(false, "a test"));
+  const std::string bytes = writing.take();
+  StateArchive reading(bytes);
+  EXPECT_NO_THROW(reading.require(true, "a test"));
+  EXPECT_THROW(reading.require(false, "a test"), DataError);
 }
 
 TEST(StateArchive, ReplacesWhatWasThereBefore) {

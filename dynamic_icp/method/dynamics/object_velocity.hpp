@@ -36,6 +36,7 @@ enum class ClusterVerdict {
   kInliersIllConditioned,  ///< what is left of it has lines of sight too parallel
   kUncertain,              ///< the velocity is known worse than max_deviation_mps in some direction
 };
+constexpr ClusterVerdict last_of(ClusterVerdict /*any*/) { return ClusterVerdict::kUncertain; }
 
 std::string_view to_string(ClusterVerdict verdict);
 

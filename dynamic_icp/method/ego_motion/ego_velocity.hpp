@@ -22,6 +22,7 @@ enum class EgoVelocityStatus {
   kDegenerate,    ///< the lines of sight leave directions open: along those the velocity is the prior's
   kAmbiguous,     ///< two velocities explain the scan almost equally well, or none does, and no prior decides
 };
+constexpr EgoVelocityStatus last_of(EgoVelocityStatus /*any*/) { return EgoVelocityStatus::kAmbiguous; }
 
 std::string_view to_string(EgoVelocityStatus status);
 

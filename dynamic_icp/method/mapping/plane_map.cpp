@@ -9,7 +9,6 @@
 #include <utility>
 
 #include "dynamic_icp/method/base/quantile.hpp"
-#include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::mapping {
 namespace {
@@ -367,24 +366,6 @@ std::uint32_t PlaneMap::new_patch() {
   const auto number = static_cast<std::uint32_t>(patches_.size());
   patches_.emplace_back().id = number;
   return number;
-}
-
-void PlaneMap::state(StateArchive& archive) {
-  archive(scans_, oldest_, root_keys_, roots_, range_noise_.position, range_noise_.variance, free_cells_,
-          free_patches_);
-  archive.each(cells_, [&](Cell& cell) { archive(cell.parts, cell.patch, cell.last_scan, cell.is_stale); });
-  archive.each(moments_, [&](Moments& sums) { archive(sums.weight, sums.first, sums.second, sums.phase); });
-  archive.each(patches_, [&](Patch& patch) {
-    Plane& plane = patch.plane;
-    archive(plane.mean, plane.normal, plane.tangential, plane.variance, plane.points, plane.bend, plane.phase,
-            patch.id);
-  });
-  if (archive.reads()) {
-    root_numbers_.clear();
-    for (const std::uint64_t key : root_keys_) {
-      root_numbers_.number_of(key);
-    }
-  }
 }
 
 }  // namespace dynamic_icp::mapping

@@ -108,6 +108,7 @@ class PlaneMap {
   std::uint32_t root_at(std::uint64_t key);
   std::uint32_t new_cell();
   std::uint32_t new_patch();
+  void check_read(const StateArchive& archive) const;
   [[nodiscard]] bool is_old(const Cell& cell) const { return cell.last_scan < oldest_; }
   [[nodiscard]] double fade_since(std::uint32_t scan) const;
 

@@ -30,6 +30,7 @@ std::vector<double> declared_times(const VectorColumns& points, const SweepConfi
 
 /// Where the times of the points of a scan come from.
 enum class SweepTimes { kNone, kInData, kDeclared };
+constexpr SweepTimes last_of(SweepTimes /*any*/) { return SweepTimes::kDeclared; }
 
 /// What was found and done about the time a scan takes.
 struct SweepReport {

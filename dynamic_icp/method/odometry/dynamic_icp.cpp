@@ -178,6 +178,7 @@ void DynamicIcp::state(StateArchive& archive) {
   archive(stream_, by_geometry_, published_);
   bool is_there = last_ != nullptr;
   archive(is_there);
+  archive.require(is_there == stream_.has_begun(), "the last scan");
   if (!is_there) {
     last_.reset();
     return;
@@ -191,6 +192,11 @@ void DynamicIcp::state(StateArchive& archive) {
             cluster.smallest_singular_value, cluster.condition_number, cluster.members, cluster.centroid,
             cluster.extent);
   });
+  archive.require(last_->is_dynamic.size() == last_->scan.size(), "a column");
+  const auto is_row = [&](std::uint32_t row) { return row < last_->scan.size(); };
+  for (const dynamics::ObjectEstimate& cluster : last_->clusters) {
+    archive.require(std::ranges::all_of(cluster.members, is_row), "a point of an object");
+  }
 }
 
 }  // namespace dynamic_icp::odometry

@@ -36,6 +36,7 @@ enum class FrameStatus {
   kDiverged,      ///< not aligned: the alignment left what any vehicle can do, the predicted motion is kept
   kLost,          ///< nothing fits the local map: the predicted motion is kept, the map begins anew
 };
+constexpr FrameStatus last_of(FrameStatus /*any*/) { return FrameStatus::kLost; }
 
 std::string_view to_string(FrameStatus status);
 

@@ -53,7 +53,12 @@ FrameStatus ScanStream::obstacle(std::size_t points) const {
 
 void ScanStream::state(StateArchive& archive) {
   archive(first_usable_, last_usable_, last_, elapsed_s_, interval_s_, since_any_s_);
+  archive.require(first_usable_.has_value() == last_usable_.has_value() &&
+                      (!last_usable_ || (last_ && *first_usable_ <= *last_usable_ && *last_usable_ <= *last_)),
+                  "the order of scans");
 }
+
+double ScanStream::last_usable_s() const { return last_usable_ ? seconds_between(*first_usable_, *last_usable_) : 0.0; }
 
 bool is_skipped(FrameStatus obstacle) {
   return obstacle == FrameStatus::kTooFewPoints || obstacle == FrameStatus::kTooSoon;

@@ -36,6 +36,12 @@ class ScanStream {
   [[nodiscard]] double interval_s() const { return interval_s_; }
   [[nodiscard]] double since_any_s() const { return since_any_s_; }
 
+  /// Whether there was a usable scan, and when the last one was, after the first one.
+  [[nodiscard]] bool has_begun() const { return last_usable_.has_value(); }
+  [[nodiscard]] double last_usable_s() const;
+  /// Whether a scan was seen at this time or later.
+  [[nodiscard]] bool is_past(Stamp stamp) const { return last_ && stamp <= *last_; }
+
   /// The interval, but no longer than a motion is predicted ahead.
   [[nodiscard]] double prediction_time_s() const;
 

@@ -210,9 +210,12 @@ Config ScanToScanIcp::configuration() const {
 
 /// Search tree and normals of the last scan are found again from its points.
 void ScanToScanIcp::state(StateArchive& archive) {
+  const bool is_mounted = T_vehicle_sensor_.has_value();
   archive(stream_, T_vehicle_sensor_);
+  archive.require(T_vehicle_sensor_.has_value() == is_mounted, "the mounting");
   bool is_there = last_ != nullptr;
   archive(is_there);
+  archive.require(is_there == stream_.has_begun(), "the last scan");
   if (!is_there) {
     last_.reset();
     return;

@@ -20,6 +20,7 @@ enum class AlignStatus {
   kDegenerate,  ///< some directions are not constrained at all: see Alignment::degenerate
   kDiverged,    ///< a step was not finite or left the reach of any scan; the pose is the one before it
 };
+constexpr AlignStatus last_of(AlignStatus /*any*/) { return AlignStatus::kDiverged; }
 
 std::string_view to_string(AlignStatus status);
 

@@ -156,14 +156,19 @@ double VoxelHashMap::squared_gap(const Eigen::Vector3d& query, const Cell& cell)
 
 void VoxelHashMap::state(StateArchive& archive) {
   archive(counts_);
+  archive.require(std::ranges::all_of(counts_, [&](std::uint32_t count) { return count >= 1 && count <= capacity_; }) &&
+                      counts_.size() < kNone / capacity_,
+                  "the size of a voxel");
   points_.resize(counts_.size() * capacity_);
   for (std::size_t row = 0; row < counts_.size(); ++row) {
     for (std::uint32_t i = 0; i < counts_[row]; ++i) {
       archive(points_[row * capacity_ + i]);
     }
+    archive.require(cell_of(points_[row * capacity_]).has_value(), "a point of a voxel");
   }
   if (archive.reads()) {
     number_voxels();
+    archive.require(voxels_.count() == counts_.size(), "a voxel");
   }
 }
 

@@ -222,6 +222,15 @@ void BodyFilter::turn_around() {
   }
 }
 
-void BodyFilter::state(StateArchive& archive) { archive(x_, P_, level_); }
+void BodyFilter::state(StateArchive& archive) {
+  archive(x_, P_, level_);
+  constexpr double kFarthest_m = 1e7;  // of a place of the world
+  constexpr double kFastest = 1e6;     // m/s and rad/s, and turns in rad
+  constexpr double kLargest_m = 1e4;   // of a body
+  archive.require(position().cwiseAbs().maxCoeff() <= kFarthest_m &&
+                      x_.segment<kFirstFace - kVelocity>(kVelocity).cwiseAbs().maxCoeff() <= kFastest &&
+                      x_.tail<kStates - kFirstFace>().cwiseAbs().maxCoeff() <= kLargest_m,
+                  "the state of an object");
+}
 
 }  // namespace dynamic_icp::tracking

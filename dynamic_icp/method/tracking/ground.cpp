@@ -170,6 +170,7 @@ Ground GroundHeights::below(const Eigen::Vector3d& lowest) const {
 void GroundFilter::state(StateArchive& archive) {
   archive.each(last_, [&](Plane& plane) { archive(plane.normal, plane.height_m); });
   archive(next_, ground_.level, ground_.offset_m);
+  archive.require(last_.size() <= kMemory && next_ < kMemory, "the memory of the ground");
 }
 
 }  // namespace dynamic_icp::tracking

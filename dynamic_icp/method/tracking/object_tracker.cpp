@@ -24,6 +24,7 @@ constexpr double kMinSignal = 2.0;        // of the radial velocities of a new o
 constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
 constexpr double kLeastHeight_m = 0.25;   // of what is no ground
 constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
+constexpr int kMany = 1 << 30;            // no drive has so many scans or objects
 constexpr std::size_t kMinPoints = 3;     // of a detection: a velocity has three unknowns
 
 double latest_time(const Scan& scan) {
@@ -480,9 +481,17 @@ void ObjectTracker::state(StateArchive& archive) {
   archive.each(entries_, [&](Entry& entry) {
     archive(entry.id, entry.track, entry.confirmed, entry.has_moved, entry.moved_s, entry.age, entry.seen,
             entry.missed);
+    const auto is_count = [](int count) { return count >= 0 && count < kMany; };
+    archive.require(entry.id > 0 && is_count(entry.age) && is_count(entry.seen) && is_count(entry.missed), "an object");
   });
   living_ = entries_.size();
   archive(ground_, next_id_, first_stamp_, last_stamp_, T_world_last_);
+  archive.require(next_id_ > 0 && next_id_ < kMany &&
+                      std::ranges::all_of(entries_, [&](const Entry& entry) { return entry.id < next_id_; }),
+                  "the number of an object");
+  archive.require(first_stamp_.has_value() == last_stamp_.has_value() &&
+                      (!last_stamp_ || *first_stamp_ <= *last_stamp_) && (last_stamp_ || entries_.empty()),
+                  "the time of the objects");
 }
 
 }  // namespace dynamic_icp::tracking

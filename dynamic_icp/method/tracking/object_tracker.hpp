@@ -68,6 +68,9 @@ class ObjectTracker {
                                         const std::optional<ego_motion::SupportPlane>& support, const Workers& workers,
                                         const Eigen::Matrix3d& ego_covariance = Eigen::Matrix3d::Zero());
 
+  /// That of the last scan; nothing before the first.
+  [[nodiscard]] const std::optional<Stamp>& last_stamp() const { return last_stamp_; }
+
   /// What is known between two scans.
   void state(StateArchive& archive);
 

@@ -31,6 +31,7 @@ enum class FaceView {
   kHidden,   ///< seen before, not in this scan: by something nearer, the body itself or the edge of the field of view
   kSeen,     ///< in this scan
 };
+constexpr FaceView last_of(FaceView /*any*/) { return FaceView::kSeen; }
 
 /// A box that stands on the ground: its third axis is up.
 struct OrientedBox {

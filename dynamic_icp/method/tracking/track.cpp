@@ -22,6 +22,7 @@ constexpr double kVehicle_m = 2.0;           // what is longer moves along its s
 constexpr double kKnownDirection_rad = 0.2;  // standard deviation of the direction of a motion that shows a heading
 constexpr double kSameDirection_rad = 0.2;   // headings that differ less are one
 constexpr double kLogHopeless = -8.0;        // relative to the best hypothesis
+constexpr int kManyDetections = 1 << 30;     // no drive has so many
 constexpr int kDecisionDetections = 10;      // after so many the best hypothesis stays alone
 
 /// The sides of what a body shows that moves with `velocity`, where they are long enough to have a direction.
@@ -196,6 +197,9 @@ BoxEstimate Track::estimate() const {
 void Track::state(StateArchive& archive) {
   archive.each(hypotheses_, BoxFilter::blank(), [&](BoxFilter& one) { archive(one); });
   archive(best_, time_s_, detections_, has_sides_);
+  archive.require(best_ < hypotheses_.size() && hypotheses_.size() <= kMaxHypotheses && detections_ >= 0 &&
+                      detections_ < kManyDetections && std::abs(time_s_) < 1e9,
+                  "a track");
 }
 
 }  // namespace dynamic_icp::tracking

@@ -18,6 +18,7 @@ enum class TrackStatus {
   kConfirmed,  ///< seen in this scan
   kCoasting,   ///< believed, but without points in this scan: where and how fast it should be
 };
+constexpr TrackStatus last_of(TrackStatus /*any*/) { return TrackStatus::kCoasting; }
 
 std::string_view to_string(TrackStatus status);
 std::string_view to_string(FaceView view);

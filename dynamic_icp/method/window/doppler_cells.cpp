@@ -236,7 +236,15 @@ DopplerCell DopplerCells::mean_of(std::size_t cell, const Scan& scan, const std:
 }
 
 void DopplerCells::state(StateArchive& archive) {
-  archive(noise_.range_edges_m, noise_.intensity_edges, noise_.variance);
+  archive(noise_.range_edges_m);
+  archive.any_numbers(noise_.intensity_edges);
+  archive(noise_.variance);
+  archive.require(
+      noise_.range_edges_m.size() < DopplerNoise::kRanges &&
+          noise_.intensity_edges.size() < DopplerNoise::kIntensities &&
+          (noise_.variance.empty() || noise_.variance.size() == DopplerNoise::kRanges * DopplerNoise::kIntensities) &&
+          std::ranges::all_of(noise_.variance, [](double variance) { return variance > 0.0; }),
+      "the noise of the Doppler");
 }
 
 }  // namespace dynamic_icp::window

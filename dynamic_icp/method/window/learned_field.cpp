@@ -35,10 +35,14 @@ bool fits(const SensorCalibration& calibration, const DopplerErrorField& field) 
 
 }  // namespace
 
+bool is_possible(const FieldShape& shape) {
+  return !shape.views.empty() && shape.views.size() <= kMaxFileSensors && shape.lines() <= kMaxFileLines &&
+         shape.faces > 0 && shape.faces <= kMaxFileFaces;
+}
+
 LearnedField learned_field(const SensorCalibration& calibration) {
   const FieldShape& shape = calibration.shape;
-  if (shape.views.empty() || shape.views.size() > kMaxFileSensors || shape.lines() > kMaxFileLines ||
-      shape.faces == 0 || shape.faces > kMaxFileFaces) {
+  if (!is_possible(shape)) {
     throw UsageError(
         fmt::format("a calibration of {} sensors, {} lines and {} faces; expected 1 to {}, 0 to {} and 1 to {}",
                     shape.views.size(), shape.lines(), shape.faces, kMaxFileSensors, kMaxFileLines, kMaxFileFaces));

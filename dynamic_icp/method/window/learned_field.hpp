@@ -17,6 +17,9 @@ struct LearnedField {
   Eigen::VectorXd gradient;     ///< s/m, at theta without its prior
 };
 
+/// Whether a sensor or rig may have so many sensors, lines and faces: a field for more would fill the memory.
+bool is_possible(const FieldShape& shape);
+
 /// Throws UsageError when the parts of the calibration do not fit each other or cannot be of any sensor.
 LearnedField learned_field(const SensorCalibration& calibration);
 

@@ -83,6 +83,9 @@ double LearnedVariance::renew(double squares, double counts) {
 void LearnedVariance::state(StateArchive& archive) {
   archive(memory_, variance_, min_variance_, max_variance_, squares_, counts_, followed_squares_, followed_counts_,
           next_squares_, next_counts_);
+  archive.require(
+      memory_ >= 0.0 && memory_ <= 1.0 && min_variance_ >= 0.0 && min_variance_ <= max_variance_ && variance_ > 0.0,
+      "a learned variance");
 }
 
 }  // namespace dynamic_icp::window

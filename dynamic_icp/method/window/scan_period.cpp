@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/window/scan_period.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <functional>
 
 #include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/base/state_archive.hpp"
@@ -80,6 +82,10 @@ std::optional<KnownValue> ScanPeriod::expected(double interval_s) const {
   return KnownValue{*periods * period_s, *periods * *periods * residuals / (n - 2.0) / squares};
 }
 
-void ScanPeriod::state(StateArchive& archive) { archive(stamps_s_); }
+void ScanPeriod::state(StateArchive& archive) {
+  archive(stamps_s_);
+  archive.require(stamps_s_.size() <= kMaxStamps && std::ranges::is_sorted(stamps_s_, std::less_equal<>()),
+                  "the stamps of a period");
+}
 
 }  // namespace dynamic_icp::window

@@ -176,6 +176,17 @@ SampledMotion::SampledMotion(const SplineTrajectory& trajectory, double first_s,
   }
 }
 
-void SplineTrajectory::state(StateArchive& archive) { archive(first_, T_map_reference_, c_, v_); }
+void SplineTrajectory::state(StateArchive& archive) {
+  archive(first_, T_map_reference_, c_, v_);
+  constexpr double kLongest_s = 1e9;
+  archive.require(c_.size() == v_.size() && (c_.empty() || c_.size() >= kOrder), "the length of the trajectory");
+  archive.require(std::abs(static_cast<double>(first_)) * h_ < kLongest_s, "the time of the trajectory");
+}
+
+bool SplineTrajectory::spans(double from_s, double to_s) const {
+  constexpr double kSlack = 2.0;  // knot intervals, for the error of stamps
+  return c_.size() >= kOrder && interval_begin(0) <= from_s + kSlack * h_ &&
+         interval_begin(c_.size() - kOrder + 1) >= to_s - kSlack * h_;
+}
 
 }  // namespace dynamic_icp::window

@@ -85,6 +85,9 @@ class SplineTrajectory {
 
   void state(StateArchive& archive);
 
+  /// Whether it holds these times, but for the error of stamps.
+  [[nodiscard]] bool spans(double from_s, double to_s) const;
+
  private:
   double h_;
   long first_ = 0;  ///< number of the interval that the first coefficient begins

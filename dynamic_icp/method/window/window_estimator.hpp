@@ -195,6 +195,7 @@ class WindowEstimator {
 
   // window_state.cpp
   void field_state(StateArchive& archive);
+  void check_read(const StateArchive& archive) const;
 
   // window_uses.cpp
   [[nodiscard]] Matrix6d covariance_of(const Eigen::MatrixXd& rows) const;

@@ -197,7 +197,12 @@ void WindowQuadratic::walk(Eigen::Index begin, const Eigen::MatrixXd& W) {
 }
 
 void WindowQuadratic::state(StateArchive& archive) {
+  const bool vibrates = layout_.vibrates;
   archive(layout_.field, layout_.coefficients, layout_.vibrates, Q_, g_);
+  archive.require(layout_.vibrates == vibrates && layout_.field >= 0 && layout_.field <= Q_.rows() &&
+                      layout_.coefficients >= 0 && layout_.coefficients <= Q_.rows() && Q_.rows() == layout_.size() &&
+                      Q_.cols() == Q_.rows() && g_.size() == Q_.rows(),
+                  "the size of what past scans say");
 }
 
 }  // namespace dynamic_icp::window

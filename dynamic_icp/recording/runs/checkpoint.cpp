@@ -68,8 +68,10 @@ Checkpoint read_checkpoint(const fs::path& folder) {
 
 std::optional<std::string> difference(const std::string& identity_then, const std::string& identity_now) {
   using Json = nlohmann::ordered_json;
-  const Json whole_then = Json::parse(identity_then);
-  const Json whole_now = Json::parse(identity_now);
+  // What is nested deeper than any settings are is left out: the library walks through values by recursion.
+  const auto is_shallow = [](int depth, Json::parse_event_t, Json&) { return depth <= kMaxDepthOfSettings; };
+  const Json whole_then = Json::parse(identity_then, is_shallow);
+  const Json whole_now = Json::parse(identity_now, is_shallow);
   for (const auto& [name, part] : whole_now.items()) {
     if (!whole_then.contains(name)) {
       continue;

@@ -16,6 +16,9 @@ namespace dynamic_icp::runs {
 /// The file in the folder of a run from which the run can be resumed.
 inline constexpr const char* kCheckpointFile = "checkpoint";
 
+/// JSON of runs is nested no deeper.
+inline constexpr int kMaxDepthOfSettings = 16;
+
 /// A run between two scans.
 struct Checkpoint {
   std::string identity;         ///< JSON of what must be the same when it is resumed (run_identity)

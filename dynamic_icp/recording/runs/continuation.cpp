@@ -94,7 +94,10 @@ Continuation after_killed(const formats::OutputFolder& output, const fs::path& f
 Continuation after_written(const formats::OutputFolder& output, const fs::path& final, const std::string& identity,
                            bool replace, const std::function<void(const std::string& text)>& notice) {
   const std::string about = formats::read_text_file(final / "run.json");
-  const nlohmann::json json = nlohmann::json::parse(about, nullptr, false);
+  const auto is_shallow = [](int depth, nlohmann::json::parse_event_t, nlohmann::json&) {
+    return depth <= kMaxDepthOfSettings;
+  };
+  const nlohmann::json json = nlohmann::json::parse(about, is_shallow, false);
   if (!json.is_object()) {
     throw DataError(fmt::format("{}: is no JSON object", (final / "run.json").string()));
   }

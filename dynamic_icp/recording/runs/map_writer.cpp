@@ -155,6 +155,14 @@ void MapWriter::write(const fs::path& path) const {
   formats::write_whole_file(path, path.extension() == ".ply" ? formats::ply_bytes(table) : formats::pcd_bytes(table));
 }
 
-void MapWriter::state(StateArchive& archive) { archive(voxels_, regions_, is_ghost_, ghosts_); }
+void MapWriter::state(StateArchive& archive) {
+  archive(voxels_, regions_, is_ghost_, ghosts_);
+  const auto are_points = [&](const auto& region) {
+    return std::ranges::all_of(region.second, [&](std::uint32_t index) { return index < voxels_.size(); });
+  };
+  archive.require(
+      is_ghost_.size() == voxels_.size() && ghosts_ <= voxels_.size() && std::ranges::all_of(regions_, are_points),
+      "a point of the map");
+}
 
 }  // namespace dynamic_icp::runs

@@ -12,11 +12,14 @@
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/random_source.hpp"
+#include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/checkpoint.hpp"
 #include "dynamic_icp/recording/runs/run_recording.hpp"
 #include "dynamic_icp/recording/runs/scan_record.hpp"
 
+#include "testing/crafted_state.hpp"
 #include "testing/wall_drive.hpp"
 
 namespace dynamic_icp::runs {
@@ -361,6 +364,39 @@ TEST_F(ResumedRun, ACheckpointOfNoScanOrNoRunIsRefused) {
     write_checkpoint(left(), changed);
     EXPECT_NE(refusal().find("cannot resume the run: its run.json or checkpoint"), std::string::npos) << refusal();
   }
+  constexpr std::size_t kDeep = 300'000;
+  Checkpoint changed = written;
+  changed.identity = "{\"version\": " + std::string(kDeep, '[') + std::string(kDeep, ']') + "}";
+  write_checkpoint(left(), changed);
+  EXPECT_NE(refusal().find("cannot resume the run: version was"), std::string::npos) << refusal();
+}
+
+TEST_F(ResumedRun, ACraftedCheckpointIsToldByNameOrDoesNoHarm) {
+  settings_.resume = true;
+  run_until(3);
+  const Checkpoint written = read_checkpoint(left());
+  const fs::path kept = folder_.path() / "kept";
+  fs::copy(left(), kept, fs::copy_options::recursive);
+  const RandomSource random(7);
+  int told = 0;
+  for (std::uint64_t k = 0; k < 16; ++k) {
+    fs::remove_all(settings_.output);
+    fs::remove_all(left());
+    fs::copy(kept, folder_.path() / ".out.partial-1", fs::copy_options::recursive);
+    Checkpoint changed = written;
+    std::string& part = k % 2 == 0 ? changed.results : changed.odometry;
+    crafted::remove_checksum(part);
+    crafted::StateEdit(random.bits(2 * k), random.bits(2 * k + 1)).apply(part);
+    StateArchive::seal(part);
+    write_checkpoint(left(), changed);
+    notices_.clear();
+    ASSERT_TRUE(run()) << k;  // numbers that may be true are taken for it
+    if (was_told("the run begins anew")) {
+      ++told;
+      EXPECT_TRUE(was_told((settings_.output / kCheckpointFile).string())) << notices_.front();
+    }
+  }
+  EXPECT_GT(told, 2);
 }
 
 TEST_F(ResumedRun, WithoutItTheRunBeginsAnewAndSaysSo) {

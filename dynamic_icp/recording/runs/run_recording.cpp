@@ -248,7 +248,9 @@ class Run {
     } catch (const fs::filesystem_error& error) {
       fault = output.in_final_names(error.what());
     }
-    tell(fmt::format("{}; the run begins anew", fault));
+    const std::string checkpoint = (settings_.output / kCheckpointFile).string();
+    const bool is_named = fault.find(settings_.output.string()) != std::string::npos;  // one of the other files
+    tell(fmt::format("{}{}; the run begins anew", is_named ? "" : checkpoint + ": ", fault));
     from_.reset();
     remove_files_of_run(output.path());
     odometry = make_odometry();
