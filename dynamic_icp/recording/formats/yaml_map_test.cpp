@@ -10,6 +10,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
+#include "dynamic_icp/recording/formats/yaml_node.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -277,6 +278,27 @@ TEST(YamlMap, RefusesWhatIsNoMapOrNoYaml) {
   }
   EXPECT_EQ(fault_of("#" + std::string(8U << 20U, '[')),
             "file.yaml: has 8388609 bytes, expected at most 8388608 of YAML");
+  const auto nodes = [](std::size_t count) {  // the map, its key and the list are three of them
+    std::string text = "a: [0";
+    for (std::size_t k = 4; k < count; ++k) {
+      text += k % 100 == 0 ? ",\n0" : ",0";
+    }
+    return text + "]\n";
+  };
+  EXPECT_EQ(fault_of(nodes(kMaxYamlNodes)), "no DataError");
+  EXPECT_EQ(fault_of(nodes(kMaxYamlNodes + 1)).rfind("file.yaml: line 3001: has more than 300000 values", 0), 0U)
+      << fault_of(nodes(kMaxYamlNodes + 1));
+  // The parser makes nothing of a list in a list before it knows that it is no key.
+  for (const std::string opening : {"[", "{", "[\"]\","}) {
+    std::string text = "a: 1\nb: ";
+    while (text.size() < 3 * kMaxYamlPart) {
+      text += opening;
+    }
+    EXPECT_EQ(fault_of(text).rfind("file.yaml: line 2: ", 0), 0U) << fault_of(text);
+  }
+  EXPECT_EQ(fault_of("a: '" + std::string(kMaxYamlPart / 2, 'b') + "'\n"), "no DataError");
+  EXPECT_NE(fault_of("a: '" + std::string(2 * kMaxYamlPart, 'b') + "'\n").find("a part of more than 262144 bytes"),
+            std::string::npos);
   for (const char* text : {"a: {b: 1\n", "a: *nobody\n", "a: 1\n\x04 b: 2\n", "a: \xC3\n", "a: \xC0\x80\n",
                            "a: \xED\xA0\x80\n", "a: \xF5\x80\x80\x80\n", "a: \x80\n", "a: \xFF\n"}) {
     EXPECT_EQ(fault_of(text).rfind("file.yaml: line ", 0), 0u) << fault_of(text);

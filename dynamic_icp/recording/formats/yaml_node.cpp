@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cstddef>
 #include <cstdint>
-#include <sstream>
+#include <istream>
+#include <streambuf>
+#include <string>
 #include <vector>
 
 #include <fmt/format.h>
@@ -49,31 +51,77 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-/// Where the documents of a stream begin; what is in them does not matter.
+/// A text that the parser reads piece by piece, no farther than kMaxYamlPart beyond where it last made a node.
+class WatchedText final : public std::streambuf {
+ public:
+  WatchedText(std::string& text, const std::filesystem::path& origin) : origin_(origin) {
+    setg(text.data(), text.data(), text.data() + text.size());
+  }
+
+  void note_node() { noted_ = gptr(); }
+
+ private:
+  std::streamsize xsgetn(char* to, std::streamsize count) override {
+    const char* const from = noted_ == nullptr ? eback() : noted_;
+    if (gptr() - from > static_cast<std::ptrdiff_t>(kMaxYamlPart)) {
+      const auto line = static_cast<int>(std::count<const char*>(eback(), from, '\n')) + 1;
+      throw DataError(fmt::format("{}: here or soon after begins a part of more than {} bytes, expected none as long",
+                                  place(origin_, line), kMaxYamlPart));
+    }
+    return std::streambuf::xsgetn(to, count);
+  }
+
+  const std::filesystem::path& origin_;
+  const char* noted_ = nullptr;
+};
+
+/// Where the documents of a stream begin, and how many nodes they have; what is in them does not matter.
 class DocumentMarks final : public YAML::EventHandler {
  public:
+  DocumentMarks(WatchedText& text, const std::filesystem::path& origin) : text_(text), origin_(origin) {}
+
   std::vector<YAML::Mark> marks;
 
   void OnDocumentStart(const YAML::Mark& mark) override { marks.push_back(mark); }
   void OnDocumentEnd() override {}
-  void OnNull(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
-  void OnAlias(const YAML::Mark& /*mark*/, YAML::anchor_t /*anchor*/) override {}
-  void OnScalar(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                const std::string& /*value*/) override {}
-  void OnSequenceStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                       YAML::EmitterStyle::value /*style*/) override {}
+  void OnNull(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override { count(mark); }
+  void OnAlias(const YAML::Mark& mark, YAML::anchor_t /*anchor*/) override { count(mark); }
+  void OnScalar(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                const std::string& /*value*/) override {
+    count(mark);
+  }
+  void OnSequenceStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                       YAML::EmitterStyle::value /*style*/) override {
+    count(mark);
+  }
   void OnSequenceEnd() override {}
-  void OnMapStart(const YAML::Mark& /*mark*/, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
-                  YAML::EmitterStyle::value /*style*/) override {}
+  void OnMapStart(const YAML::Mark& mark, const std::string& /*tag*/, YAML::anchor_t /*anchor*/,
+                  YAML::EmitterStyle::value /*style*/) override {
+    count(mark);
+  }
   void OnMapEnd() override {}
+
+ private:
+  void count(const YAML::Mark& mark) {
+    text_.note_node();
+    if (++nodes_ > kMaxYamlNodes) {
+      throw DataError(fmt::format("{}: has more than {} values, lists and maps, expected no more in a file of YAML",
+                                  place(origin_, mark.line + 1), kMaxYamlNodes));
+    }
+  }
+
+  WatchedText& text_;
+  const std::filesystem::path& origin_;
+  std::size_t nodes_ = 0;
 };
 
-/// Throws DataError where a second document begins. YAML::LoadAll would not do: where nothing can begin, at a comma for
-/// instance, it finds empty documents without end.
-void refuse_more_documents(const std::string& text, const std::filesystem::path& origin) {
-  std::istringstream stream(text);
+/// Throws DataError where a second document begins, and where there are too many nodes. YAML::LoadAll would not do:
+/// where nothing can begin, at a comma for instance, it finds empty documents without end.
+void refuse_more_documents(std::string& text, const std::filesystem::path& origin) {
+  WatchedText watched(text, origin);
+  std::istream stream(&watched);
   YAML::Parser parser(stream);
-  DocumentMarks documents;
+  DocumentMarks documents(watched, origin);
   if (!parser.HandleNextDocument(documents) || !parser.HandleNextDocument(documents)) {
     return;
   }
@@ -124,7 +172,7 @@ YAML::Node parse_document(std::string_view text, const std::filesystem::path& or
     throw DataError(fmt::format("{}: is no YAML: has bytes that are not UTF-8", place(origin, line)));
   }
   try {
-    const std::string stream(text);
+    std::string stream(text);
     refuse_more_documents(stream, origin);
     const YAML::Node document = YAML::Load(stream);
     return document.IsNull() ? YAML::Node(YAML::NodeType::Undefined) : document;

@@ -15,8 +15,16 @@
 // The side of yaml_map.hpp that sees the YAML library.
 namespace dynamic_icp::formats {
 
-/// Longer documents are refused: the parser takes up to 240 bytes for each of theirs.
+/// Longer documents are refused.
 constexpr std::size_t kMaxYamlBytes = std::size_t{8} << 20U;
+
+/// So are those with more values, lists and maps: the parser takes half a kilobyte for each, and one byte of text can
+/// be one. The calibration of a sensor with 128 lines has 30,000, that of a rig of 32 sensors 250,000.
+constexpr std::size_t kMaxYamlNodes = 300'000;
+
+/// So is a part that is longer and of which the parser can make nothing before it has read all of it: a value, a
+/// comment, or a list in a list in a list, of which the parser keeps 240 bytes for each byte.
+constexpr std::size_t kMaxYamlPart = std::size_t{256} << 10U;
 
 /// "<origin>: line <line>".
 std::string place(const std::filesystem::path& origin, int line);
@@ -27,7 +35,7 @@ int line_of(const YAML::Node& node);
 std::string found(const YAML::Node& node);
 
 /// The node of a text that holds one document; undefined where it holds nothing. Throws DataError where the text is
-/// too long, not UTF-8 or no YAML.
+/// too long, has too many nodes or too long a part, is not UTF-8 or no YAML.
 YAML::Node parse_document(std::string_view text, const std::filesystem::path& origin);
 
 /// Sets fields from nested maps; every key may be set once, whether nested or dotted.
