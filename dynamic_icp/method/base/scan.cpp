@@ -126,7 +126,9 @@ void Scan::assign(const ScanView& raw, const RangeLimits& limits, const Workers&
       copy_value(raw.sensor, i, channels_.sensor, row);
       copy_value(raw.line, i, channels_.line, row);
       copy_value(raw.face, i, channels_.face, row);
-      copy_value(raw.intensity, i, channels_.intensity, row);
+      if (!raw.intensity.empty()) {  // one that is no number must not take the point with it, nor the mean of others
+        channels_.intensity[row] = std::isfinite(raw.intensity[i]) ? raw.intensity[i] : 0.0F;
+      }
       copy_value(raw.return_number, i, channels_.return_number, row);
       ++row;
     }

@@ -112,6 +112,18 @@ TEST(Scan, ChannelsStayWithTheirPoints) {
   EXPECT_TRUE(Scan::from_raw(three_points()).channels().line.empty());
 }
 
+TEST(Scan, AnIntensityThatIsNoNumberIsNone) {
+  RawScan raw;
+  raw.points = {{1.0, 2.0, 3.0}, {4.0, 5.0, 6.0}, {7.0, 8.0, 9.0}};
+  raw.doppler = {0.0, 0.0, 0.0};
+  raw.channels.intensity = {std::numeric_limits<float>::quiet_NaN(), 0.5F, -std::numeric_limits<float>::infinity()};
+  Scan::Dropped dropped;
+  const Scan scan = Scan::from_raw(raw, &dropped);
+  EXPECT_EQ(scan.size(), 3U) << "where they are and how fast is known";
+  EXPECT_EQ(dropped.total(), 0U);
+  EXPECT_EQ(scan.channels().intensity, (std::vector<float>{0.0F, 0.5F, 0.0F}));
+}
+
 TEST(Scan, AScanUsedAgainForgetsTheChannelsOfTheLast) {
   RawScan raw = three_points();
   raw.channels.line = {1, 2, 3};
