@@ -128,10 +128,11 @@ RecordingCheck check_recording(const datasets::Dataset& dataset, const datasets:
       finding.fix.doppler_kind = kind;
       return fix_in_words ? fmt::format(" ({})", fix_of(finding)) : "";
     };
+    const std::string& sentence = diagnosis.of(diagnosis::Question::kDopplerKind).sentence;  // may end by asking
     throw DataError(fmt::format(
-        "{}: {}. Take a method that needs none, such as kiss-icp; or state the kind of Doppler: compensated, to go by "
+        "{}: {}{} Take a method that needs none, such as kiss-icp; or state the kind of Doppler: compensated, to go by "
         "the shape of the scene alone{}, or relative, if it is Doppler all the same{}",
-        dataset.scan_file(scans.begin).string(), diagnosis.of(diagnosis::Question::kDopplerKind).sentence,
+        dataset.scan_file(scans.begin).string(), sentence, sentence.ends_with('?') ? "" : ".",
         with_kind(DopplerKind::kCompensated), with_kind(DopplerKind::kRelative)));
   }
   std::vector<const diagnosis::Finding*> stopping;
