@@ -25,7 +25,8 @@ constexpr std::size_t kInformativeBin = 60;
 constexpr double kNoiseGain = 0.35;
 constexpr double kShrinkage = 1.15;  // the mean of a cell was taken from the same points
 constexpr double kMinVariance = 1e-6;
-constexpr double kHidden = 0.1;  // an azimuth shows what stands with this share of its points
+constexpr double kHidden = 0.1;     // an azimuth shows what stands with this share of its points
+constexpr double kFewPoints = 0.5;  // of the mean of azimuths: fewer may be false ones
 
 /// Number of the direction sector around the vertical, to a thousandth of a sector; no trigonometry per point.
 std::size_t azimuth_sector(double x, double y) {
@@ -186,10 +187,18 @@ std::vector<double> DopplerCells::hidden_azimuths(const Scan& scan) const {
   }
   std::vector<double> hidden;
   for (const auto& of_sensor : azimuths) {
-    const auto seen = std::ranges::count_if(of_sensor, [](const Azimuth& one) { return one.seen > 0.0; });
-    const auto hides =
-        std::ranges::count_if(of_sensor, [](const Azimuth& one) { return one.standing < kHidden * one.seen; });
-    hidden.push_back(seen > 0 ? static_cast<double>(hides) / static_cast<double>(seen) : 0.0);
+    double points = 0.0;
+    double with_points = 0.0;
+    for (const Azimuth& one : of_sensor) {
+      points += one.seen;
+      with_points += one.seen > 0.0 ? 1.0 : 0.0;
+    }
+    const double enough = kFewPoints * points / std::max(1.0, with_points);
+    const auto in_view = [&](const Azimuth& one) { return one.seen > 0.0 && one.seen >= enough; };
+    const auto count = std::ranges::count_if(of_sensor, in_view);
+    const auto hides = std::ranges::count_if(
+        of_sensor, [&](const Azimuth& one) { return in_view(one) && one.standing < kHidden * one.seen; });
+    hidden.push_back(count > 0 ? static_cast<double>(hides) / static_cast<double>(count) : 0.0);
   }
   return hidden;
 }

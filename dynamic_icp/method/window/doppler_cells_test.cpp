@@ -123,6 +123,25 @@ TEST(DopplerCells, AzimuthsWithLittleThatStandsAreHidden) {
   EXPECT_DOUBLE_EQ(cells.hidden_azimuths(scan)[0], 1.0 / 3.0);
 }
 
+TEST(DopplerCells, AFewFalsePointsHideNoAzimuth) {
+  RawScan raw = Bundles{}.raw();
+  std::vector<std::uint8_t> is_moving(raw.points.size(), 0);
+  for (int k = 0; k < 60; ++k) {  // between the directions of the bundles
+    const double azimuth = -pi + kSector * (5.0 * k + 2.5);
+    raw.points.emplace_back(90.0 * std::cos(azimuth), 90.0 * std::sin(azimuth), 1.0);
+    raw.doppler.push_back(30.0);
+    raw.times.push_back(raw.times.front());
+    raw.channels.intensity.push_back(20.0F);
+    raw.channels.line.push_back(0);
+    is_moving.push_back(1);
+  }
+  const Scan scan = Scan::from_raw(raw);
+  DopplerCells cells;
+  cells.sort(scan, kInterval_s, kOneThread);
+  cells.average(scan, is_moving, scan.doppler(), std::vector<double>(scan.size(), 0.0), kGate_mps, kOneThread);
+  EXPECT_EQ(cells.hidden_azimuths(scan), std::vector<double>{0.0});
+}
+
 TEST(DopplerCells, HiddenAzimuthsAreThoseOfEachSensor) {
   RawScan raw = Bundles{}.raw();
   const std::size_t half = raw.points.size() / 2;
