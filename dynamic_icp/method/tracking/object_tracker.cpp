@@ -22,7 +22,7 @@ using Eigen::Vector3d;
 constexpr double kMax = 2.0;              // new objects are not wider than so many vehicles
 constexpr double kMinSignal = 2.0;        // of the radial velocities of a new object over their spread
 constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
-constexpr double kLeastHeight_m = 0.25;   // of what is no ground
+constexpr double kMinHeight_m = 0.25;     // of what is no ground
 constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
 constexpr int kMany = 1 << 30;            // no drive has so many scans or objects
 constexpr std::size_t kMinPoints = 3;     // of a detection: a velocity has three unknowns
@@ -50,7 +50,7 @@ bool is_ground(const Detection& detection) {
   }
   const Vector3d up = detection.ground.up();
   return std::ranges::all_of(detection.points, [&](const Vector3d& point) {
-    return up.dot(point) - *detection.ground.offset_m < kLeastHeight_m;
+    return up.dot(point) - *detection.ground.offset_m < kMinHeight_m;
   });
 }
 
@@ -276,6 +276,14 @@ void ObjectTracker::collect_members(const TrackingInput& input, const Workers& w
   workers.for_each(living_, 1, [&](std::size_t k) { correct(input, expected_[k], entries_[k]); });
 }
 
+/// What these rows of the scan show, among the headings of the tracks; false where it is the ground.
+bool ObjectTracker::detect(const TrackingInput& input, std::span<const std::uint32_t> rows,
+                           Detection& detection) const {
+  make_detection(input.scan, input.radial, rows, input.sensor, input.heights, &input.view, detection);
+  detection.headings = &headings_;
+  return !is_ground(detection);
+}
+
 /// Lets a track take in its points and such as stand but may be its own.
 void ObjectTracker::correct(const TrackingInput& input, const Expectation& expected, Entry& entry) const {
   const auto miss = [&] {
@@ -289,11 +297,9 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   }
   Track& corrected = entry.other;
   corrected = entry.track;
-  make_detection(input.scan, input.radial, entry.members, input.sensor, input.heights, &input.view, entry.detection);
-  if (is_ground(entry.detection)) {
+  if (!detect(input, entry.members, entry.detection)) {
     return miss();
   }
-  entry.detection.headings = &headings_;
   corrected.correct(entry.detection, input.stamp_s, config_.track);
   if (corrected.best().spread_mps() > config_.max_spread_mps) {
     return miss();
@@ -362,11 +368,9 @@ void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint3
   if (input.view.are_mirrored(rows)) {
     return;
   }
-  make_detection(input.scan, input.radial, rows, input.sensor, input.heights, &input.view, entry.detection);
-  if (is_ground(entry.detection)) {
+  if (!detect(input, rows, entry.detection)) {
     return;
   }
-  entry.detection.headings = &headings_;
   entry.track.begin(entry.detection, input.stamp_s, config_.track);
   // Errors around zero have more spread than signal.
   const BoxFilter& best = entry.track.best();

@@ -86,6 +86,7 @@ class ObjectTracker {
   void expect(double stamp_s, const SensorMotion& sensor, const Choice& choice);
   void collect_members(const TrackingInput& input, const Workers& workers);
   void gather_static(const TrackingInput& input, const Expectation& expected, Entry& entry) const;
+  bool detect(const TrackingInput& input, std::span<const std::uint32_t> rows, Detection& detection) const;
   void correct(const TrackingInput& input, const Expectation& expected, Entry& entry) const;
   void initiate_tracks(const TrackingInput& input, const Workers& workers);
   void begin(const TrackingInput& input, std::span<const std::uint32_t> rows, Entry& entry) const;
