@@ -43,10 +43,11 @@ elif [[ "${1:-}" == method ]]; then
   modules=(base spatial estimation preprocess ego_motion motion dynamics tracking registration mapping window odometry)
   configure method
   cmake --build --preset method --target $(printf 'dynamic_icp_%s_test ' "${modules[@]}") dynamic_icp_library_test
-  # Drives of the baselines, and many drives in one test, take minutes each here. Other tests reach the same code, and check.sh
-  # runs them.
-  run_tests method -R "^($(IFS='|'; echo "${modules[*]}")|library)\\." \
-    -E '^odometry\.(KissIcp|ScanToScanIcp|Symmetry)\.|StatesHowWellTheMotionIsKnown|StartsAtAnySpeed|UndoesSweeps|SavedState.(PresetDefault|ScansThat|WhatIsNoPart)'
+  # Drives of the baselines, and many drives in one test, take minutes each here. Other tests reach the same code (saved states: the
+  # fuzz target `states`), and check.sh runs them.
+  long=(KissIcp ScanToScanIcp Symmetry SavedState CraftedState StatesHowWellTheMotionIsKnown StartsAtAnySpeed UndoesSweeps
+    TheDopplerAloneShows GoesOnForLong EveryAblationRuns LearnsWhetherStamps)
+  run_tests method -R "^($(IFS='|'; echo "${modules[*]}")|library)\\." -E "\\.($(IFS='|'; echo "${long[*]}"))"
 else
   if scripts/install_dependencies.sh python; then
     python=ON
