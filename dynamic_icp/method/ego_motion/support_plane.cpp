@@ -31,10 +31,15 @@ constexpr double kMinWidth_m = 2.0;
 constexpr double kMinPlaneShare = 0.1;
 constexpr std::size_t kMinPlanePoints = 30;
 
+// Both sides of a road and its embankments are up to so much steep against each other: cosine.
+constexpr double kSameUp = 0.8;
+
 struct Count {
   std::size_t on = 0;
   std::size_t beyond = 0;
 };
+
+bool is_on(const SupportPlane& plane, const Eigen::Vector3d& x) { return std::abs(plane.height(x)) < kTolerance_m; }
 
 Count count(const SupportPlane& plane, const std::vector<Eigen::Vector3d>& points) {
   Count result;
@@ -56,7 +61,7 @@ std::optional<SupportPlane> fitted(const SupportPlane& plane, const std::vector<
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
   double n = 0.0;
   for (const Eigen::Vector3d& x : points) {
-    if (std::abs(plane.height(x)) < kTolerance_m) {
+    if (is_on(plane, x)) {
       mean += x;
       squares += x * x.transpose();
       n += 1.0;
@@ -83,19 +88,18 @@ std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points)
   return result;
 }
 
-}  // namespace
+struct Candidate {
+  SupportPlane plane;
+  std::size_t on = 0;  ///< points
+};
 
-std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d>& points) {
-  const std::vector<Eigen::Vector3d> few = thinned(points);
-  if (few.size() < kMinPlanePoints) {
-    return std::nullopt;
-  }
+/// Planes through three of the points each that have nearly all others on one side.
+std::vector<Candidate> bounding_planes(const std::vector<Eigen::Vector3d>& points) {
   const RandomSource random(0);
-  SupportPlane best;
-  std::size_t most = 0;
+  std::vector<Candidate> result;
   for (std::uint64_t k = 0; k < kPlanes; ++k) {
     const auto draw = [&](std::uint64_t which) -> const Eigen::Vector3d& {
-      return few[(random.bits(3 * k + which) >> 32) * few.size() >> 32];
+      return points[(random.bits(3 * k + which) >> 32) * points.size() >> 32];
     };
     const Eigen::Vector3d& x = draw(0);
     const Eigen::Vector3d normal = (draw(1) - x).cross(draw(2) - x);
@@ -104,17 +108,55 @@ std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d
     }
     for (const double sign : {1.0, -1.0}) {
       const SupportPlane plane{sign * normal.normalized(), sign * normal.normalized().dot(x)};
-      const Count found = count(plane, few);
-      if (found.on > most && bounds(found, few.size()) && fitted(plane, few)) {
-        best = plane;
-        most = found.on;
+      const Count found = count(plane, points);
+      if (bounds(found, points.size())) {
+        result.push_back({plane, found.on});
       }
     }
   }
-  if (most < std::max(kMinPlanePoints, static_cast<std::size_t>(kMinPlaneShare * static_cast<double>(few.size())))) {
+  return result;
+}
+
+/// The candidate with the largest `value`, at least `least`, that is wide; none: nullptr.
+template <typename Value>
+const Candidate* with_most(const std::vector<Candidate>& candidates, const std::vector<Eigen::Vector3d>& points,
+                           std::size_t least, const Value& value) {
+  const Candidate* best = nullptr;
+  for (const Candidate& one : candidates) {
+    const std::size_t found = value(one);
+    if (found >= least && fitted(one.plane, points)) {
+      best = &one;
+      least = found + 1;
+    }
+  }
+  return best;
+}
+
+}  // namespace
+
+std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d>& points) {
+  const std::vector<Eigen::Vector3d> few = thinned(points);
+  if (few.size() < kMinPlanePoints) {
     return std::nullopt;
   }
-  return fitted(best, few);
+  const std::size_t least =
+      std::max(kMinPlanePoints, static_cast<std::size_t>(kMinPlaneShare * static_cast<double>(few.size())));
+  const std::vector<Candidate> candidates = bounding_planes(few);
+  const Candidate* const widest = with_most(candidates, few, least, [](const Candidate& one) { return one.on; });
+  if (widest == nullptr) {
+    return std::nullopt;
+  }
+  // An embankment may show more points than the road, below which it passes near the carrier.
+  const Candidate* const nearer = with_most(candidates, few, least, [&](const Candidate& one) -> std::size_t {
+    if (one.plane.offset_m < widest->plane.offset_m - kBeyond_m ||
+        one.plane.normal.dot(widest->plane.normal) < kSameUp) {
+      return 0;
+    }
+    return static_cast<std::size_t>(std::count_if(few.begin(), few.end(), [&](const Eigen::Vector3d& x) {
+      return is_on(one.plane, x) && !is_on(widest->plane, x);
+    }));
+  });
+  return fitted((nearer == nullptr ? widest : nearer)->plane, few);
 }
 
 std::optional<SupportPlane> find_support_plane(const Scan& scan, const spatial::CellOrder& order) {
@@ -131,7 +173,7 @@ std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::Cell
                                            const SupportPlane& plane) {
   std::vector<std::uint32_t> on(order.cells(), 0);
   for (std::size_t i = 0; i < scan.size(); ++i) {
-    on[order.cell[i]] += std::abs(plane.height(scan.points()[i])) < kTolerance_m ? 1 : 0;
+    on[order.cell[i]] += is_on(plane, scan.points()[i]) ? 1 : 0;
   }
   std::vector<std::uint8_t> result(order.cells());
   for (std::size_t cell = 0; cell < result.size(); ++cell) {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/ego_motion/support_plane.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 #include <vector>
@@ -40,6 +41,15 @@ struct Street {
       add(ahead(random), across(random), -kHeight_m, true);
     }
   }
+  /// Rises by a fifth beyond 6 m to the right.
+  void add_embankment(std::size_t n) {
+    std::uniform_real_distribution<double> ahead(4.0, 40.0);
+    std::uniform_real_distribution<double> beyond(0.0, 14.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      const double from_edge = beyond(random);
+      add(ahead(random), -6.0 - from_edge, -kHeight_m + 0.2 * from_edge, false);
+    }
+  }
   /// The side of a lorry 2 m to the left, from the road to 2 m above the sensor.
   void add_lorry(std::size_t n) {
     std::uniform_real_distribution<double> along(0.0, 14.0);
@@ -67,6 +77,35 @@ TEST(SupportPlane, IsTheRoadHoweverTheSensorIsMounted) {
   const Vector3d up = street.R_sensor_level * Vector3d::UnitZ();
   EXPECT_GT(plane->normal.dot(up), std::cos(0.02)) << "up, where everything else is";
   EXPECT_NEAR(plane->offset_m, -kHeight_m, 0.15) << "the foot of the lorry is near it, too";
+}
+
+TEST(SupportPlane, IsTheRoadWhereAnEmbankmentShowsMorePoints) {
+  // Its plane bounds the scene, too: it passes 1.2 m below the road where the sensor is.
+  Street street;
+  street.add_road(150);
+  street.points.erase(
+      std::remove_if(street.points.begin(), street.points.end(),
+                     [&](const Vector3d& x) { return (street.R_sensor_level.transpose() * x).y() < -6.0; }),
+      street.points.end());
+  street.add_embankment(400);
+  street.add_clutter(100);
+  const std::optional<SupportPlane> plane = find_support_plane(street.points);
+  ASSERT_TRUE(plane);
+  EXPECT_GT(plane->normal.dot(street.R_sensor_level * Vector3d::UnitZ()), std::cos(0.03));
+  EXPECT_NEAR(plane->offset_m, -kHeight_m, 0.2);
+}
+
+TEST(SupportPlane, IsTheRoadBelowANearerCeiling) {
+  Street street;
+  street.add_road(300);
+  std::uniform_real_distribution<double> ahead(4.0, 40.0);
+  std::uniform_real_distribution<double> across(-10.0, 10.0);
+  for (int k = 0; k < 200; ++k) {
+    street.add(ahead(street.random), across(street.random), 0.8, false);
+  }
+  const std::optional<SupportPlane> plane = find_support_plane(street.points);
+  ASSERT_TRUE(plane);
+  EXPECT_GT(plane->normal.dot(street.R_sensor_level * Vector3d::UnitZ()), std::cos(0.02));
 }
 
 TEST(SupportPlane, IsNotTheSideOfALorry) {
