@@ -10,7 +10,8 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
-constexpr double kNoBox = 0.05;          // bodies end by this share of their size nearer or farther than boxes do
+constexpr double kLowestVehicle_m = 1.5;
+constexpr double kNoBox = 0.05;  // bodies end by this share of their size nearer or farther than boxes do
 
 LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
   LikelyExtent extent;
@@ -40,10 +41,17 @@ LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
 
 std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen, bool has_heading,
                                            bool may_be_person) {
-  const auto& [along, across, up] = seen;
-  // Above the field of view there may be more.
-  const Belief height{up.length(), up.ends_high ? 0.0 : kHiddenHeight_m * kHiddenHeight_m};
+  const auto& [along, across, as_seen_up] = seen;
   const bool is_as_seen = !has_heading || may_be_person;
+  SeenExtent up = as_seen_up;
+  Belief height{up.length(), 0.0};
+  if (!is_as_seen && !along.is_whole() && !across.is_whole()) {
+    up.ends_high = false;  // a hood; something hides the cabin
+    height.mean = std::max(kLowestVehicle_m, height.mean);
+  }
+  if (!up.ends_high) {
+    height.variance = kHiddenHeight_m * kHiddenHeight_m;
+  }
   // The width first: it varies least.
   Belief width{across.length(), 0.0};
   if (!is_as_seen && !across.is_whole()) {

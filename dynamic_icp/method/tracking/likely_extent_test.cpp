@@ -51,6 +51,21 @@ TEST(LikelyExtents, AHeightThatIsNotKnownMakesTheLengthUncertain) {
   EXPECT_NEAR(cut_off - known, 0.25 * slope * slope * 0.5 * 0.5, 0.01 * cut_off);
 }
 
+TEST(LikelyExtents, APartBetweenOtherThingsMayBeAHood) {
+  const SeenExtent part{0.5, 1.0, true, false};
+  const SeenExtent hood{0.3, 0.6, true, true};
+  const auto [along, across, up] = likely_extents({part, part, hood}, true, false);
+  EXPECT_GT(up.size, 1.3) << "no vehicle is lower";
+  EXPECT_NEAR(up.middle - 0.5 * up.size, -0.6, 1e-9) << "it stands where it stands";
+  EXPECT_GT(along.size, typical_length(1.5, 1.3).mean) << "of a car, not of a hood";
+  EXPECT_GT(up.variance, 0.2 * 0.2);
+  // Where one side is seen from end to end, so is what is above it.
+  EXPECT_DOUBLE_EQ(likely_extents({part, kWidth, hood}, true, false)[2].size, 0.9);
+  EXPECT_DOUBLE_EQ(likely_extents({SeenExtent{1.0, 1.0, true, true}, part, hood}, true, false)[2].size, 0.9);
+  const SeenExtent lorry{1.0, 1.5, true, true};
+  EXPECT_DOUBLE_EQ(likely_extents({part, part, lorry}, true, false)[2].size, 2.5) << "at least what is seen";
+}
+
 TEST(LikelyExtents, OfPeopleAndBodiesWithoutHeadingWhatIsSeenIsTheSize) {
   const SeenExtent part{0.3, 0.3, false, false};
   for (const bool has_heading : {false, true}) {
