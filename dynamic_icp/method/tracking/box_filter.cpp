@@ -107,11 +107,11 @@ bool BoxFilter::is_fast_for_sure() const {
   const double speed = body_.velocity().norm();
   const Vector3d ahead = body_.velocity().normalized();
   const double sigma = std::sqrt(ahead.dot(body_.velocity_covariance_at(Vector3d::Zero()) * ahead));
-  return !is_person_like(0.0, speed - kSureSigmas * sigma);
+  return !is_person_like(0.0, 0.0, speed - kSureSigmas * sigma);
 }
 
 bool BoxFilter::may_be_person() const {
-  return !was_vehicle_ && is_person_like(std::max(span(0), span(1)), body_.velocity().norm());
+  return !was_vehicle_ && is_person_like(std::max(span(0), span(1)), span(2), body_.velocity().norm());
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
@@ -377,8 +377,8 @@ BoxFilter BoxFilter::blank() {
 }
 
 void BoxFilter::state(StateArchive& archive) {
-  archive(body_, has_heading_, was_vehicle_, least_, faces_, log_likelihood_, size_log_likelihood_, spread_mps_,
-          signal_mps_);
+  archive(body_, has_heading_, was_vehicle_, least_, faces_, log_likelihood_, size_log_likelihood_, log_prior_,
+          spread_mps_, signal_mps_);
   for (std::optional<Interval>& seen : last_seen_) {
     bool is_known = seen.has_value();
     archive(is_known);

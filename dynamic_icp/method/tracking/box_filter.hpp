@@ -74,6 +74,10 @@ class BoxFilter {
   /// How well the hypothesis has explained what was seen; comparable between hypotheses about the same detections.
   [[nodiscard]] double log_likelihood() const { return log_likelihood_ + size_log_likelihood_; }
 
+  /// The same with what speaks for the hypothesis before anything of the body is seen.
+  [[nodiscard]] double log_posterior() const { return log_likelihood() + log_prior_; }
+  void set_log_prior(double log_prior) { log_prior_ = log_prior; }
+
   /// Spread of the last detection's radial velocities about those of a rigid body, m/s.
   [[nodiscard]] double spread_mps() const { return spread_mps_; }
 
@@ -112,6 +116,7 @@ class BoxFilter {
   std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last
   double log_likelihood_ = 0.0;                         ///< of the motion
   double size_log_likelihood_ = 0.0;                    ///< of the sizes
+  double log_prior_ = 0.0;                              ///< of heading and speed
   double spread_mps_ = 0.0;
   double signal_mps_ = 0.0;
 };

@@ -13,10 +13,10 @@
 
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/tracking/ground.hpp"
-#include "dynamic_icp/method/tracking/heading_prior.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/range_image.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
+#include "dynamic_icp/method/tracking/traffic_prior.hpp"
 
 namespace dynamic_icp::tracking {
 
@@ -32,7 +32,7 @@ struct Detection {
   Eigen::Isometry3d T_sensor_world = Eigen::Isometry3d::Identity();  ///< at the mean time
   Ground ground;                                                     ///< below it, world
   const RangeImage* view = nullptr;                                  ///< of the whole scan; none: nothing is hidden
-  const HeadingPrior* headings = nullptr;                            ///< around it; none: nothing is known of it
+  const TrafficPrior* traffic = nullptr;                             ///< around it; none: nothing is known of it
 };
 
 /// The mean of some points, at least one.

@@ -150,7 +150,7 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
 
   const TrackingInput input = prepare(scan, radial, is_moving, sensor, workers);
   expect(input.stamp_s, sensor, [](const Entry&) { return true; });
-  gather_headings(sensor);
+  gather_traffic(sensor);
   associate(input, expected_, config_.growth_m, owners_);
   collect_members(input, workers);
   initiate_tracks(input, workers);
@@ -202,12 +202,12 @@ void ObjectTracker::expect(double stamp_s, const SensorMotion& sensor, const Cho
   }
 }
 
-/// The headings of what is predicted, and that of the carrier.
-void ObjectTracker::gather_headings(const SensorMotion& sensor) {
-  headings_.clear(ground_.ground().level);
+/// How what is predicted moves, and the carrier.
+void ObjectTracker::gather_traffic(const SensorMotion& sensor) {
+  traffic_.clear(ground_.ground().level);
   const auto add = [&](const Vector3d& position, const Vector3d& velocity, const Vector3d& direction) {
     if (velocity.norm() > config_.slow_mps) {
-      headings_.add(position, direction);
+      traffic_.add(position, direction, velocity.norm());
     }
   };
   add(sensor.T_world_sensor.translation(), sensor.velocity_world, sensor.velocity_world);
@@ -276,11 +276,11 @@ void ObjectTracker::collect_members(const TrackingInput& input, const Workers& w
   workers.for_each(living_, 1, [&](std::size_t k) { correct(input, expected_[k], entries_[k]); });
 }
 
-/// What these rows of the scan show, among the headings of the tracks; false where it is the ground.
+/// What these rows of the scan show, in the traffic of the tracks; false where it is the ground.
 bool ObjectTracker::detect(const TrackingInput& input, std::span<const std::uint32_t> rows,
                            Detection& detection) const {
   make_detection(input.scan, input.radial, rows, input.sensor, input.heights, &input.view, detection);
-  detection.headings = &headings_;
+  detection.traffic = &traffic_;
   return !is_ground(detection);
 }
 

@@ -81,7 +81,7 @@ class ObjectTracker {
   void keep(Entry& entry);
   TrackingInput prepare(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
                         const SensorMotion& sensor, const Workers& workers);
-  void gather_headings(const SensorMotion& sensor);
+  void gather_traffic(const SensorMotion& sensor);
   template <typename Choice>
   void expect(double stamp_s, const SensorMotion& sensor, const Choice& choice);
   void collect_members(const TrackingInput& input, const Workers& workers);
@@ -114,7 +114,7 @@ class ObjectTracker {
   std::vector<std::uint32_t> groups_;  ///< of the cells
   std::vector<Eigen::Vector3d> cell_points_;
   std::vector<Eigen::Vector3d> cell_directions_;
-  HeadingPrior headings_;                    ///< of the tracks
+  TrafficPrior traffic_;                     ///< of the tracks
   std::vector<Expectation> expected_;        ///< of the tracks
   CellOwners owners_;                        ///< numbers of tracks
   std::vector<std::size_t> unowned_points_;  ///< of the groups

@@ -14,6 +14,7 @@ constexpr double kMinSection_m2 = 0.25;  // less was not seen whole
 constexpr double kMinSide_m = 0.3;
 constexpr double kLongest = 1.75;  // of the typical length: none was found longer
 constexpr double kPersonSide_m = 1.2;
+constexpr double kPersonHeight_m = 2.3;
 constexpr double kPersonSpeed_mps = 2.5;
 
 Belief about(double mean) { return {mean, kScatter * kScatter * mean * mean}; }
@@ -44,8 +45,8 @@ Belief typical_width(double length_m) { return about(std::clamp(0.41 * length_m,
 
 Belief typical_width_by_height(double height_m) { return about(std::min(2.5, 1.3 + 0.33 * height_m)); }
 
-bool is_person_like(double longest_side_m, double speed_mps) {
-  return longest_side_m < kPersonSide_m && speed_mps < kPersonSpeed_mps;
+bool is_person_like(double longest_side_m, double height_m, double speed_mps) {
+  return longest_side_m < kPersonSide_m && height_m < kPersonHeight_m && speed_mps < kPersonSpeed_mps;
 }
 
 }  // namespace dynamic_icp::tracking

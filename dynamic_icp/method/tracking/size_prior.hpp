@@ -33,6 +33,6 @@ Belief typical_width(double length_m);
 Belief typical_width_by_height(double height_m);
 
 /// Whether what is seen of a body is as small as a person and as slow: nothing suggests that there is more of it.
-bool is_person_like(double longest_side_m, double speed_mps);
+bool is_person_like(double longest_side_m, double height_m, double speed_mps);
 
 }  // namespace dynamic_icp::tracking

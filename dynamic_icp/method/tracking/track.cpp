@@ -42,7 +42,7 @@ std::optional<BodySides> sides_of(const Detection& detection, const Eigen::Vecto
 
 /// That of most others near by.
 std::optional<double> likeliest_heading(const Detection& detection) {
-  return detection.headings != nullptr ? detection.headings->likeliest_yaw(mean_of(detection.points)) : std::nullopt;
+  return detection.traffic != nullptr ? detection.traffic->likeliest_yaw(mean_of(detection.points)) : std::nullopt;
 }
 
 /// Whether directions agree, up to multiples of `period_rad`.
@@ -60,7 +60,7 @@ void Track::begin(const Detection& detection, double stamp_s, const TrackConfig&
   hypotheses_.clear();
   hypotheses_.emplace_back(detection, std::nullopt, BoxHistory{}, config);
   add_headings(detection, BoxHistory{}, config);
-  evaluate();
+  evaluate(detection, config);
 }
 
 /// The direction in which a body moves, level axes, where it is known and no person moves so fast: a vehicle of which
@@ -68,7 +68,7 @@ void Track::begin(const Detection& detection, double stamp_s, const TrackConfig&
 std::optional<double> Track::heading_of_motion() const {
   const Eigen::Vector3d v = body().level().transpose() * body().velocity();
   const double speed = v.head<2>().norm();
-  if (is_person_like(0.0, speed)) {
+  if (is_person_like(0.0, 0.0, speed)) {
     return std::nullopt;
   }
   const Eigen::Vector3d across = body().level() * Eigen::Vector3d(-v.y(), v.x(), 0.0) / speed;
@@ -77,16 +77,6 @@ std::optional<double> Track::heading_of_motion() const {
     return std::nullopt;
   }
   return std::atan2(v.y(), v.x());
-}
-
-/// A heading that is not among the hypotheses yet, with what others near by say of it.
-void Track::add_heading(const Detection& detection, double yaw_rad, const BoxHistory& history,
-                        const TrackConfig& config) {
-  BoxHistory with_prior = history;
-  if (detection.headings != nullptr) {
-    with_prior.log_likelihood += detection.headings->log_ratio(mean_of(detection.points), yaw_rad);
-  }
-  hypotheses_.emplace_back(detection, yaw_rad, with_prior, config);
 }
 
 /// The sides of what is seen, where they are long enough to show a direction, else the motion, else others near by.
@@ -98,9 +88,9 @@ void Track::add_headings(const Detection& detection, const BoxHistory& history, 
   } else if (has_heading()) {
     return;
   } else if (const std::optional<double> heading = heading_of_motion()) {
-    add_heading(detection, *heading, along_sides, config);
+    hypotheses_.emplace_back(detection, *heading, along_sides, config);
   } else if (const std::optional<double> likeliest = likeliest_heading(detection)) {
-    add_heading(detection, *likeliest, history, config);
+    hypotheses_.emplace_back(detection, *likeliest, history, config);
   }
 }
 
@@ -117,7 +107,7 @@ void Track::add_headings_along(const BodySides& sides, const Detection& detectio
       return one.has_heading() && is_along(one.body().yaw(), heading, std::numbers::pi);
     };
     if (std::none_of(hypotheses_.begin(), hypotheses_.end(), has_it)) {
-      add_heading(detection, heading, along_sides, config);
+      hypotheses_.emplace_back(detection, heading, along_sides, config);
       continue;
     }
     for (BoxFilter& one : hypotheses_) {
@@ -129,7 +119,7 @@ void Track::add_headings_along(const BodySides& sides, const Detection& detectio
   }
   if (const std::optional<double> likeliest = likeliest_heading(detection);
       likeliest && !is_along(*likeliest, sides.yaw_rad, kQuarterTurn)) {
-    add_heading(detection, *likeliest, along_sides, config);
+    hypotheses_.emplace_back(detection, *likeliest, along_sides, config);
   }
 }
 
@@ -151,25 +141,41 @@ void Track::correct(const Detection& detection, double stamp_s, const TrackConfi
     const BoxFilter anew(detection, std::nullopt, BoxHistory{}, config);
     add_headings(detection, {best().log_likelihood() - anew.log_likelihood(), best().was_vehicle()}, config);
   }
-  evaluate();
+  evaluate(detection, config);
 }
 
 bool Track::has_heading() const {
   return std::any_of(hypotheses_.begin(), hypotheses_.end(), [](const BoxFilter& one) { return one.has_heading(); });
 }
 
-void Track::evaluate() {
+/// What the traffic around, as it is known now, says of the hypotheses.
+void Track::ask_traffic(const Detection& detection, const TrackConfig& config) {
+  if (detection.traffic == nullptr) {
+    return;
+  }
+  const Eigen::Vector3d position = mean_of(detection.points);
+  for (BoxFilter& one : hypotheses_) {
+    if (one.has_heading()) {  // else it may be anything
+      one.set_log_prior(
+          detection.traffic->log_ratio_of_heading(position, one.body().yaw()) +
+          detection.traffic->log_ratio_of_speed(position, one.body().velocity().norm(), config.prior_speed_mps));
+    }
+  }
+}
+
+void Track::evaluate(const Detection& detection, const TrackConfig& config) {
   if (hypotheses_.size() == 1) {
     best_ = 0;
     return;
   }
-  const auto better = [](const BoxFilter& a, const BoxFilter& b) { return a.log_likelihood() < b.log_likelihood(); };
+  ask_traffic(detection, config);
+  const auto better = [](const BoxFilter& a, const BoxFilter& b) { return a.log_posterior() < b.log_posterior(); };
   const BoxFilter best = *std::max_element(hypotheses_.begin(), hypotheses_.end(), better);
   if (detections_ >= kDecisionDetections) {
     hypotheses_ = {best};
   }
   std::erase_if(hypotheses_, [&](const BoxFilter& hypothesis) {
-    return hypothesis.log_likelihood() - best.log_likelihood() < kLogHopeless;
+    return hypothesis.log_posterior() - best.log_posterior() < kLogHopeless;
   });
   best_ =
       static_cast<std::size_t>(std::max_element(hypotheses_.begin(), hypotheses_.end(), better) - hypotheses_.begin());
@@ -181,7 +187,7 @@ BoxEstimate Track::estimate() const {
   Eigen::Matrix3d centre = Eigen::Matrix3d::Zero();
   double weights = 0.0;
   for (const BoxFilter& hypothesis : hypotheses_) {
-    const double weight = std::exp(hypothesis.log_likelihood() - best().log_likelihood());
+    const double weight = std::exp(hypothesis.log_posterior() - best().log_posterior());
     const BoxEstimate other = hypothesis.estimate();
     const Eigen::Vector3d dv = other.velocity - result.velocity;
     const Eigen::Vector3d dc = other.box.centre - result.box.centre;

@@ -66,10 +66,10 @@ class Track {
   void add_headings(const Detection& detection, const BoxHistory& history, const TrackConfig& config);
   void add_headings_along(const BodySides& sides, const Detection& detection, const BoxHistory& along_sides,
                           const TrackConfig& config);
-  void add_heading(const Detection& detection, double yaw_rad, const BoxHistory& history, const TrackConfig& config);
   [[nodiscard]] std::optional<double> heading_of_motion() const;
   [[nodiscard]] bool has_heading() const;
-  void evaluate();
+  void ask_traffic(const Detection& detection, const TrackConfig& config);
+  void evaluate(const Detection& detection, const TrackConfig& config);
 
   std::vector<BoxFilter> hypotheses_;
   std::size_t best_ = 0;

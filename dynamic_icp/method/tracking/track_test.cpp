@@ -99,7 +99,7 @@ TEST(Track, CovarianceIncludesTheDisagreementOfTheHypotheses) {
 /// Of something that drives away a part of its rear, with a height of `height_m`; `speed_mps` by the number of the
 /// scan.
 Track track_of_part(const std::function<double(int)>& speed_mps, double height_m,
-                    const HeadingPrior* headings = nullptr) {
+                    const TrafficPrior* traffic = nullptr) {
   const TrackConfig config;
   const Vector3d size(0.2, 0.7, height_m);
   Vector3d centre(20.0, -4.0, 0.0);
@@ -107,7 +107,7 @@ Track track_of_part(const std::function<double(int)>& speed_mps, double height_m
   for (int scan = 0; scan < 20; ++scan) {
     const Vector3d velocity(speed_mps(scan), 0.0, 0.0);
     Detection detection = car_at(centre, velocity, static_cast<std::uint64_t>(scan) + 1, 0.0, size);
-    detection.headings = headings;
+    detection.traffic = traffic;
     if (track) {
       track->correct(detection, 0.1 * scan, config);
     } else {
@@ -118,8 +118,8 @@ Track track_of_part(const std::function<double(int)>& speed_mps, double height_m
   return *track;
 }
 
-Track track_of_part(double speed_mps, double height_m, const HeadingPrior* headings = nullptr) {
-  return track_of_part([&](int /*scan*/) { return speed_mps; }, height_m, headings);
+Track track_of_part(double speed_mps, double height_m, const TrafficPrior* traffic = nullptr) {
+  return track_of_part([&](int /*scan*/) { return speed_mps; }, height_m, traffic);
 }
 
 TEST(Track, WhatIsFasterThanAPersonPointsWhereItMovesThoughLittleIsSeenOfIt) {
@@ -140,14 +140,14 @@ TEST(Track, AVehicleThatSlowsDownIsNoPerson) {
 }
 
 TEST(Track, OfWhatLittleIsSeenTheTrafficTellsTheHeading) {
-  HeadingPrior headings;
+  TrafficPrior traffic;
   for (const double x : {10.0, 25.0, 40.0}) {
-    headings.add({x, -8.0, 0.0}, Vector3d::UnitX());
+    traffic.add({x, -8.0, 0.0}, Vector3d::UnitX(), 3.0);
   }
   // Slower than a person may be, and 11 degrees off the line of sight.
   const Track alone = track_of_part(2.0, 2.4);
   EXPECT_FALSE(alone.best().has_heading());
-  const Track among_others = track_of_part(2.0, 2.4, &headings);
+  const Track among_others = track_of_part(2.0, 2.4, &traffic);
   ASSERT_TRUE(among_others.best().has_heading());
   EXPECT_GT(among_others.estimate().box.axes.col(0).x(), 0.99);
   const auto across_sigma = [](const Track& track) { return std::sqrt(track.estimate().velocity_covariance(1, 1)); };
@@ -157,9 +157,9 @@ TEST(Track, OfWhatLittleIsSeenTheTrafficTellsTheHeading) {
 
 TEST(Track, WhatCrossesTheTrafficDoesSo) {
   // Sides are believed against what others do.
-  HeadingPrior headings;
+  TrafficPrior traffic;
   for (const double x : {10.0, 15.0, 20.0, 25.0, 30.0}) {
-    headings.add({x, 6.0, 0.0}, Vector3d::UnitX());
+    traffic.add({x, 6.0, 0.0}, Vector3d::UnitX(), 10.0);
   }
   const TrackConfig config;
   const Vector3d velocity(0.0, 6.0, 0.0);
@@ -167,7 +167,7 @@ TEST(Track, WhatCrossesTheTrafficDoesSo) {
   std::optional<Track> track;
   for (int scan = 0; scan < 12; ++scan) {
     Detection detection = car_at(centre, velocity, static_cast<std::uint64_t>(scan) + 1);
-    detection.headings = &headings;
+    detection.traffic = &traffic;
     if (track) {
       track->correct(detection, 0.1 * scan, config);
     } else {
