@@ -48,6 +48,9 @@ void Client::accept(const HttpRequest& request, std::string_view subprotocol) {
     self->is_open_ = true;
     self->tell(self->server_.info);
     self->tell(self->server_.advertisement);
+    if (self->server_.time.bytes) {
+      self->offer_time(self->server_.time);
+    }
     self->read_next();
   });
 }
@@ -63,8 +66,10 @@ void Client::offer(const Outgoing& message) {
 }
 
 void Client::offer_time(const Outgoing& message) {
-  queue_.push(message);
-  write_next();
+  if (is_open_) {
+    queue_.push(message);
+    write_next();
+  }
 }
 
 void Client::finish(const std::string& text) {

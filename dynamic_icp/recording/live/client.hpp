@@ -29,6 +29,7 @@ struct ServerState {
   std::chrono::milliseconds request_time{};  ///< see ServerSettings
   std::chrono::milliseconds silence_time{};
   std::vector<Outgoing> latest;                       ///< by channel; without bytes: none yet
+  Outgoing time;                                      ///< the last that was told; without bytes: none yet
   std::unique_ptr<std::atomic<int>[]> subscriptions;  ///< by channel, of all clients
 };
 
@@ -46,7 +47,7 @@ class Client : public std::enable_shared_from_this<Client> {
   /// A message of a channel, if the client wants it.
   void offer(const Outgoing& message);
 
-  /// What every client is sent.
+  /// What every client is sent. Who is still being greeted is told the last one then.
   void offer_time(const Outgoing& message);
 
   /// Disconnects it once what waits is sent.

@@ -160,7 +160,9 @@ class LiveServer::Server {
       for (const std::shared_ptr<Client>& client : std::set(clients_)) {
         is_time ? client->offer_time(*message) : client->offer(*message);
       }
-      if (!is_time && channels_[message->channel].is_kept) {
+      if (is_time) {
+        state_.time = std::move(*message);
+      } else if (channels_[message->channel].is_kept) {
         const std::size_t channel = message->channel;
         state_.latest[channel] = std::move(*message);
       }

@@ -52,7 +52,8 @@ class LiveServer {
   /// Sends a message to all who want it. One thread at a time.
   void publish(std::size_t channel, Stamp stamp, std::string bytes);
 
-  /// Tells all clients which time it is in the recording.
+  /// Tells all clients which time it is in the recording, and those that come later before they are sent a message:
+  /// players count from the first time that they are told.
   void tell_time(Stamp stamp);
 
   /// Sends what still waits, for at most a second or two, tells all clients that nothing more comes, and disconnects

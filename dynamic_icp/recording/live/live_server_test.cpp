@@ -131,6 +131,20 @@ TEST_F(LiveServerTest, TellsTheTimeAndAnswersPings) {
   EXPECT_EQ(time->bytes, std::string("\x02\x02\x01\0\0\0\0\0\0", 9));
 }
 
+TEST_F(LiveServerTest, WhoComesLateIsToldTheTimeBeforeTheLastMessage) {
+  server_.publish(0, Stamp{1}, "old");
+  server_.tell_time(Stamp{1});
+  server_.publish(0, Stamp{0x0304}, "last");
+  server_.tell_time(Stamp{0x0304});
+  SocketClient client(port());
+  greet(client);
+  subscribe(client, 1, 0);
+  const auto time = client.read_frame();
+  ASSERT_TRUE(time);
+  EXPECT_EQ(time->bytes, std::string("\x02\x04\x03\0\0\0\0\0\0", 9));
+  EXPECT_TRUE(client.read_message().ends_with("last"));
+}
+
 TEST_F(LiveServerTest, MessagesInPiecesAreRead) {
   SocketClient client(port());
   greet(client);
