@@ -3,6 +3,10 @@
 // What is in the file is read by @mcap/core in tests/interop.
 #include "dynamic_icp/recording/runs/mcap_recorder.hpp"
 
+#include <array>
+#include <cmath>
+#include <string>
+
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
@@ -115,6 +119,39 @@ TEST(FoxgloveLayout, IsJson) {
     }
   }
   EXPECT_EQ(panels, layout["configById"].size());
+}
+
+/// Of a channel of "#rrggbb" in [0, 1], by the transfer function of sRGB (IEC 61966-2-1).
+double linear_light(const std::string& colour, std::size_t channel) {
+  const double value = std::stoi(colour.substr(1 + 2 * channel, 2), nullptr, 16) / 255.0;
+  return value <= 0.04045 ? value / 12.92 : std::pow((value + 0.055) / 1.055, 2.4);
+}
+
+// Lichtblick mixes the ends of a gradient in linear light.
+TEST(FoxgloveLayout, PointsThatStandAreGrey) {
+  const nlohmann::json layout = nlohmann::json::parse(foxglove_layout());
+  const nlohmann::json& points = layout["configById"]["3D!dynamic-icp"]["topics"]["/points"];
+  ASSERT_EQ(points["colorMode"], "gradient");
+  EXPECT_EQ(points["colorField"], "doppler_compensated");
+  EXPECT_EQ(points["minValue"].get<double>(), -points["maxValue"].get<double>());
+  std::array<double, 3> middle = {};
+  for (std::size_t channel = 0; channel < 3; ++channel) {
+    for (const nlohmann::json& end : points["gradient"]) {
+      middle[channel] += linear_light(end.get<std::string>(), channel) / 2.0;
+    }
+  }
+  EXPECT_NEAR(middle[0], middle[1], 0.02);
+  EXPECT_NEAR(middle[2], middle[1], 0.02);
+}
+
+TEST(FoxgloveLayout, PanelsHaveTheirTitlesUnderTheNamesOfBothPrograms) {
+  const nlohmann::json layout = nlohmann::json::parse(foxglove_layout());
+  for (const auto& [name, panel] : layout["configById"].items()) {
+    if (name.starts_with("Plot!")) {
+      EXPECT_FALSE(panel.value("foxglovePanelTitle", "").empty()) << name;
+      EXPECT_EQ(panel.value("foxglovePanelTitle", ""), panel.value("lichtblickPanelTitle", "")) << name;
+    }
+  }
 }
 
 }  // namespace
