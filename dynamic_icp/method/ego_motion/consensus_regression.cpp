@@ -216,9 +216,14 @@ ModeHypothesis choose_mode(const DopplerRows& rows, const EgoPrior& prior, const
                          prior_factor(prior, model, mode.x, config.prior_weight);
   });
   remove_duplicates(few.rows, config.tukey_cutoff * hypothesis.noise_mps, modes);
-  hypothesis.x = modes.front().x;
-  hypothesis.support = modes.front().inlier_weight;
-  hypothesis.ambiguous = modes.size() > 1 && modes[1].inlier_weight > config.ambiguity_ratio * modes[0].inlier_weight;
+  const double enough = config.ambiguity_ratio * modes.front().inlier_weight;
+  hypothesis.ambiguous = modes.size() > 1 && modes[1].inlier_weight > enough;
+  // Where votes do not decide, the one that is expected.
+  const auto expected = std::ranges::find_if(
+      modes, [&](const VelocityMode& mode) { return mode.inlier_weight > enough && agrees(prior, mode.x.head<3>()); });
+  const VelocityMode& chosen = expected == modes.end() ? modes.front() : *expected;
+  hypothesis.x = chosen.x;
+  hypothesis.support = chosen.inlier_weight;
   return hypothesis;
 }
 

@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "dynamic_icp/method/spatial/cell_key.hpp"
@@ -96,6 +97,44 @@ void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& worker
   });
   rows.sector.resize(order.cells());
   number_sectors(rows);
+}
+
+void without_rows(const DopplerRows& rows, const spatial::CellOrder& order, std::span<const std::uint8_t> flags,
+                  DopplerRows& kept) {
+  std::vector<std::uint32_t> flagged(rows.cells(), 0);
+  for (std::size_t i = 0; i < flags.size(); ++i) {
+    flagged[order.cell[i]] += flags[i] != 0 ? 1 : 0;
+  }
+  kept.reference_time_s = rows.reference_time_s;
+  kept.duration_s = rows.duration_s;
+  kept.takes_time = rows.takes_time;
+  kept.first.assign(1, 0);
+  constexpr std::array kColumns = {&DopplerRows::ux, &DopplerRows::uy, &DopplerRows::uz, &DopplerRows::s,
+                                   &DopplerRows::dt};
+  for (const auto column : kColumns) {
+    (kept.*column).clear();
+  }
+  kept.range.clear();
+  kept.key.clear();
+  kept.on_support.clear();
+  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
+    const std::uint32_t begin = rows.first[cell];
+    const std::uint32_t end = rows.first[cell + 1];
+    if (2 * flagged[cell] > end - begin) {
+      continue;
+    }
+    for (const auto column : kColumns) {
+      (kept.*column).insert((kept.*column).end(), (rows.*column).begin() + begin, (rows.*column).begin() + end);
+    }
+    kept.first.push_back(static_cast<std::uint32_t>(kept.s.size()));
+    kept.range.push_back(rows.range[cell]);
+    kept.key.push_back(rows.key[cell]);
+    if (!rows.on_support.empty()) {
+      kept.on_support.push_back(rows.on_support[cell]);
+    }
+  }
+  kept.sector.resize(kept.range.size());
+  number_sectors(kept);
 }
 
 ConsensusSet sample(const DopplerRows& rows, std::size_t most) {

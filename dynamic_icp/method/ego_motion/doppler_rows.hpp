@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -46,6 +47,11 @@ DopplerRows sort_into_cells(const Scan& scan, double cell_size_m, const Workers&
 /// The same into `rows`; its memory and that of `order`, the cells of the points, are used again.
 void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& workers, spatial::CellOrder& order,
                      DopplerRows& rows);
+
+/// The rows of the cells of which at most half of the points are flagged (one flag per point of the scan, which `order`
+/// sorted), into the memory of `kept`.
+void without_rows(const DopplerRows& rows, const spatial::CellOrder& order, std::span<const std::uint8_t> flags,
+                  DopplerRows& kept);
 
 /// Rows that vote on what is static, and the weight of each vote; the weights sum to one.
 struct ConsensusSet {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/ego_motion/doppler_rows.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
@@ -127,6 +128,41 @@ TEST(ConsensusSet, IsNoLargerThanAllowedAndTakesCellsEvenly) {
   EXPECT_EQ(consensus_set.rows.size(), 500u);
   EXPECT_EQ(consensus_set.rows.cells(), 500u);
   EXPECT_NEAR(std::accumulate(consensus_set.weights.begin(), consensus_set.weights.end(), 0.0), 1.0, 1e-12);
+}
+
+TEST(WithoutRows, LeavesOutCellsOfWhichMoreThanHalfIsFlagged) {
+  const Scan scan = random_scan(7, 3000, 10.0);
+  spatial::CellOrder order;
+  DopplerRows rows;
+  sort_into_cells(scan, 4.0, Workers(1), order, rows);
+  rows.on_support.assign(rows.cells(), 0);
+  rows.on_support.back() = 1;
+  // All of the points on one side, and a few of the others.
+  std::vector<std::uint8_t> flags(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i) {
+    flags[i] = scan.points()[i].x() < 0.0 || i % 5 == 0 ? 1 : 0;
+  }
+  DopplerRows kept = rows;  // memory of something else
+  without_rows(rows, order, flags, kept);
+  std::vector<double> expected;
+  for (std::size_t c = 0; c < rows.cells(); ++c) {
+    const auto begin = rows.s.begin() + rows.first[c];
+    const auto end = rows.s.begin() + rows.first[c + 1];
+    const auto flagged = std::count_if(begin, end, [&](double s) { return flags[static_cast<std::size_t>(s)] != 0; });
+    if (2 * flagged <= end - begin) {
+      expected.insert(expected.end(), begin, end);
+    }
+  }
+  EXPECT_EQ(kept.s, expected);
+  ASSERT_GT(kept.size(), 0u);
+  ASSERT_EQ(kept.first.size(), kept.cells() + 1);
+  ASSERT_EQ(kept.on_support.size(), kept.cells());
+  for (std::size_t c = 0; c < kept.cells(); ++c) {
+    const auto i = static_cast<std::size_t>(kept.s[kept.first[c]]);
+    EXPECT_NEAR(kept.range[c], scan.points()[i].norm(), 1e-12);
+    EXPECT_LT(kept.sector[c], kept.sectors);
+  }
+  EXPECT_LT(kept.cells(), rows.cells());
 }
 
 TEST(SortIntoCells, UsesItsMemoryAgain) {

@@ -55,6 +55,7 @@ class WindowOdometry final : public Odometry {
     std::vector<std::uint8_t> is_moving;
     std::vector<std::uint8_t> may_be_object;  ///< of these, those that the tracker is to look at
     ego_motion::DopplerRows rows;
+    ego_motion::DopplerRows voting_rows;  ///< of these
     preprocess::VoxelMemory voxels;
     spatial::CellOrder sort;
   };
@@ -62,6 +63,7 @@ class WindowOdometry final : public Odometry {
   [[nodiscard]] ScanView with_mountings(ScanView raw) const;
   void thin_and_sort(const ScanView& raw, Frame& frame);
   [[nodiscard]] tracking::SensorMotion predicted_motion() const;
+  [[nodiscard]] const ego_motion::DopplerRows& rows_to_vote();
   void separate_static_points();
   [[nodiscard]] ego_motion::VelocityFilterConfig filter_for(const ego_motion::EgoVelocity& ego) const;
   [[nodiscard]] window::WindowScan scan_at(double stamp_s) const;

@@ -49,7 +49,7 @@ ego_motion::EgoPrior WindowOdometry::ego_prior() const {
   return prior;
 }
 
-/// Where no Doppler tells: the velocity at the end of the trajectory.
+/// Before the Doppler tells: the velocity at the end of the trajectory.
 ego_motion::EgoVelocity WindowOdometry::velocity_before() const {
   ego_motion::EgoVelocity ego = unknown_velocity();
   if (estimator_.scans() > 1) {
@@ -71,12 +71,31 @@ tracking::SensorMotion WindowOdometry::predicted_motion() const {
   return sensor;
 }
 
+/// The rows of the scan at hand that vote on what stands: not those where a track expects its object. In a jam traffic
+/// has far more points than what stands, and moves hardly faster.
+const ego_motion::DopplerRows& WindowOdometry::rows_to_vote() {
+  if (estimator_.scans() < 2) {
+    return memory_.rows;
+  }
+  const Scan& whole = memory_.whole;
+  ego_ = velocity_before();
+  ego_motion::compensated_doppler(whole, ego_, workers_, memory_.radial);
+  memory_.is_moving.assign(whole.size(), 0);
+  tracker_.flag_expected(whole, memory_.radial, predicted_motion(), workers_, memory_.is_moving);
+  if (std::ranges::count(memory_.is_moving, 1) == 0) {
+    return memory_.rows;
+  }
+  ego_motion::without_rows(memory_.rows, memory_.sort, memory_.is_moving, memory_.voting_rows);
+  return memory_.voting_rows;
+}
+
 /// What is static, by the velocity that most of the scene agrees on and by what was seen to move.
 void WindowOdometry::separate_static_points() {
   const Scan& whole = memory_.whole;
   const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
-  ego_ = is_relative ? ego_motion::estimate_velocity(memory_.rows, ego_prior(), config_.ego_motion.consensus, workers_)
-                     : velocity_before();
+  ego_ = is_relative
+             ? ego_motion::estimate_velocity(rows_to_vote(), ego_prior(), config_.ego_motion.consensus, workers_)
+             : velocity_before();
   if (lever_arm_omega_) {
     ego_.rotation = rig_rotation_;
   }

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/odometry/window_odometry.hpp"
 
+#include <cmath>
+
 #include <gtest/gtest.h>
 
 #include "testing/synthetic_drive.hpp"
@@ -42,6 +44,41 @@ TEST(WindowOdometry, SaysThatItMayFollowTheTraffic) {
   }
   for (const Frame& frame : run_divided(0, 4)) {
     EXPECT_EQ(verdict(frame.status), "ok") << "one motion alone";
+  }
+}
+
+/// A sensor that comes to a queue, and creeps in it.
+Path into_a_queue() {
+  return [](double t) {
+    Eigen::Isometry3d T = Eigen::Isometry3d::Identity();
+    T.translation() = Vector3d(0.9 * t + 14.0 * (1.0 - std::exp(-t)), 0.0, kHeight_m);
+    return T;
+  };
+}
+
+/// Lorries close to both sides and ahead hide all but a hundredth of the street, and are hardly faster than what
+/// stands.
+World queue() {
+  World world = street();
+  const Vector3d creeps(0.8, 0.0, 0.0);
+  for (const double y : {-4.2, 1.7}) {
+    for (const double x : {8.0, 21.0}) {
+      world.cars.push_back({{x, y, 0.3}, {x + 9.0, y + 2.5, 3.8}, creeps});
+    }
+  }
+  world.cars.push_back({{21.0, -1.25, 0.3}, {31.0, 1.25, 2.3}, creeps});
+  return world;
+}
+
+TEST(WindowOdometry, WhatWasSeenToMoveHasNoVoteOnWhatStands) {
+  Sensor sensor;
+  sensor.doppler_noise_mps = 0.17;
+  const Drive drive{queue(), into_a_queue(), sensor};
+  const std::vector<Frame> frames = drive.run(WindowOdometryConfig{}, 24);
+  for (int k = 1; k < 24; ++k) {
+    const Frame& frame = frames[static_cast<std::size_t>(k)];
+    EXPECT_LT(error_of(drive, frame, k - 1, k).move_m, 0.03) << k << ": 0.08 with the lorries";
+    EXPECT_NE(frame.status, FrameStatus::kLost) << k;
   }
 }
 
