@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <cstddef>
 #include <limits>
 
 #include "dynamic_icp/method/base/raw_scan.hpp"
@@ -14,6 +15,8 @@ namespace dynamic_icp {
 inline constexpr double kMaxCoordinate_m = 1e5;   ///< of a point, per axis: 100 km
 inline constexpr double kMaxDoppler_mps = 1e4;    ///< faster than a satellite in orbit
 inline constexpr double kMaxPointTime_s = 100.0;  ///< of a point, before or after the stamp of its scan
+
+inline constexpr std::size_t kMaxSensors = 256;  ///< of a rig: Channels::sensor
 
 inline constexpr double kMaxAcceleration_mps2 = 1e4;  ///< of the sensor: a thousand times gravity
 

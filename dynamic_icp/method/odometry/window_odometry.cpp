@@ -335,14 +335,13 @@ void WindowOdometry::state(StateArchive& archive) {
   archive(mountings_, map_, estimator_, first_points_, tracker_, stream_, T_world_sensor_, stamp_s_, usual_match_,
           is_map_bent_, is_map_renewed_, clear_scans_);
   constexpr double kLargestStampError_s = 1.0;
-  constexpr std::size_t kMostSensors = 256;
   archive.require(
       stream_.has_begun() == (estimator_.scans() > 0) &&
           (!stream_.has_begun() || (std::abs(estimator_.stamp_s() - stream_.last_usable_s()) <= kLargestStampError_s &&
                                     stamp_s_ == stream_.last_usable_s())),
       "the time of the last scan");
   archive.require(!tracker_.last_stamp() || stream_.is_past(*tracker_.last_stamp()), "the time of the objects");
-  archive.require(mountings_.size() <= kMostSensors && clear_scans_ >= 0 && clear_scans_ <= kClearScans,
+  archive.require(mountings_.size() <= kMaxSensors && clear_scans_ >= 0 && clear_scans_ <= kClearScans,
                   "the state between two scans");
 }
 

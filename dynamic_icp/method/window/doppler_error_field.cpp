@@ -112,7 +112,7 @@ std::vector<double> mean_elevations(const std::vector<DopplerCell>& cells, std::
 }  // namespace
 
 std::size_t DopplerErrorField::add_group(std::string_view name, Eigen::MatrixXd K, double tau, bool is_learned) {
-  Group group{name, size_, std::move(K), {}, {}, tau, is_learned};
+  Group group{name, size_, std::move(K), {}, {}, tau, is_learned, kMaxTau};
   group.inverse = group.K.inverse();
   group.inverse_root = group.inverse.llt().matrixL();
   size_ += group.size();
@@ -174,6 +174,7 @@ DopplerErrorField::DopplerErrorField(const FieldShape& shape) : shape_(shape) {
       }
     }
     c.range = add_group("range and intensity", identity(3), kStartTau, true);
+    groups_.back().max_tau = kMaxRangeTau;
     c.velocity = add_group("velocity", identity(3), kStartVelocityTau, false);
     sensors_.push_back(c);
   }
@@ -278,8 +279,7 @@ void DopplerErrorField::learn_scales(const Eigen::VectorXd& theta, const Eigen::
                              : (group.inverse_root.triangularView<Eigen::Lower>().transpose() * M).squaredNorm();
     const double unknown = trace / (group.tau * group.tau);
     const double known = std::clamp(static_cast<double>(n) - unknown, 0.0, static_cast<double>(n));
-    group.tau = std::clamp(std::sqrt((squares + kPriorTau * kPriorTau) / (known + 1.0)), kMinTau,
-                           group.name == "range and intensity" ? kMaxRangeTau : kMaxTau);
+    group.tau = std::clamp(std::sqrt((squares + kPriorTau * kPriorTau) / (known + 1.0)), kMinTau, group.max_tau);
     if (group.name == "azimuth" || group.name == "cross") {
       largest = std::max(largest, group.tau);
     }

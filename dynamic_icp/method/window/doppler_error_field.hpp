@@ -100,6 +100,7 @@ class DopplerErrorField {
     Eigen::MatrixXd inverse_root;  ///< L with the inverse L L^T
     double tau = 0.05;             ///< m/s
     bool is_learned = true;
+    double max_tau = 0.0;                         ///< m/s, of what is learned
     std::optional<VariancePrior> tau_prior = {};  ///< of tau^2, of a group of one column
     [[nodiscard]] std::size_t size() const { return static_cast<std::size_t>(K.rows()); }
   };

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/scan_limits.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::datasets {
@@ -20,7 +21,6 @@ using nlohmann::json;
 constexpr const char* kVehicle = "T_V_to_S";
 constexpr const char* kSensors = "sensors";
 constexpr const char* kMounting = "T_scan_sensor";
-constexpr std::size_t kMaxSensors = 256;  // Channels::sensor
 
 Eigen::Isometry3d transform_in(const json& object, const std::string& origin) {
   const json& t = object.at("translation");
