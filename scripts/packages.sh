@@ -3,7 +3,8 @@
 # usage: scripts/packages.sh
 set -euo pipefail
 cd "$(dirname "$0")/.."
-is_clone() { [[ -e .git ]] && command -v git >/dev/null; }  # a container may have the one without the other
+# A container may have .git without git, or a .git that points to a folder outside.
+is_clone() { [[ -e .git ]] && git rev-parse --verify --quiet HEAD >/dev/null 2>&1; }
 
 scripts/install_dependencies.sh pictures packages
 scripts/build.sh -DDYNAMIC_ICP_BUILD_PYTHON=ON all
