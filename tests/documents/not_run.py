@@ -13,7 +13,7 @@ REASONS = [
     (r"cmake --", "builds all; tests/install_test.sh installs and links"),
     (r"scripts/(benchmark_\w+|mean_over_seeds)\.|benchmarks/summary\.py", "takes an hour"),
     (r"snakemake", "needs Snakemake or Slurm; scripts/test_workflow.sh"),
-    (r"dynamic-icp-(speed|kernels)|python_cost", "measures; dynamic-icp-speed is tested where it is built"),
+    (r"dynamic-icp-(speed|kernels)|python_cost|hdbscan_peers", "measures; dynamic-icp-speed is tested where it is built"),
     (r"--live(?!=0)", "takes a port of the machine, which others may have; tests/interop/live.test.mjs"),
     (r"--manifest", "the recordings are not at hand; tests/benchmark_test.cpp"),
     (r"/usr/bin/time|aeries_ii.lidar.rows=32", "measures a drive of 1,000 scans"),
