@@ -33,6 +33,12 @@ DYNAMIC_ICP_INLINE void keep_larger(Lanes& a, const Lanes& b) {
   a = (Lanes)(((LaneMask)a & a_is_larger) | ((LaneMask)b & ~a_is_larger));
 }
 
+/// The smaller of two lanes each, `b` where they cannot be compared.
+DYNAMIC_ICP_INLINE void keep_smaller(Lanes& a, const Lanes& b) {
+  const LaneMask a_is_smaller = a < b;
+  a = (Lanes)(((LaneMask)a & a_is_smaller) | ((LaneMask)b & ~a_is_smaller));
+}
+
 /// Zero where the mask is 0.
 DYNAMIC_ICP_INLINE void keep_where(Lanes& a, const LaneMask& mask) { a = (Lanes)((LaneMask)a & mask); }
 

@@ -5,12 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory_resource>
 
 #include <Eigen/Geometry>
 
 #include "dynamic_icp/method/base/simd.hpp"
-#include "dynamic_icp/method/tracking/memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -21,17 +19,9 @@ constexpr double kGateSigmas = 2.0;
 constexpr double kMaxGate_m = 2.0;
 constexpr double kMaxGate_mps = 3.0;
 constexpr double kWidthSlack_m = 0.1;
-constexpr double kUnseenRatio = 0.9;  // of points where the body is likely but was not seen yet
-
 constexpr double kGroundClearance_m = 0.3;  // points lower in a box may be the road ...
 constexpr double kGroundShare = 0.25;       // ... but at most so much of its height is left out
-
-OrientedBox above_ground(OrientedBox box) {
-  const double clearance = std::min(kGroundClearance_m, kGroundShare * box.size.z());
-  box.size.z() -= clearance;
-  box.centre += 0.5 * clearance * box.axes.col(2);
-  return box;
-}
+constexpr double kUnseenRatio = 0.9;        // of points where the body is likely but was not seen yet
 
 /// Which points are not farther from a place than `reach_m`.
 void find_near(std::span<const Vector3d> points, const Vector3d& place, double reach_m,
@@ -55,30 +45,6 @@ void find_near(std::span<const Vector3d> points, const Vector3d& place, double r
 }
 
 constexpr double kRounding_m = 0.01;  // more than rounding moves a point
-
-/// A box in which rows are looked for, and the sphere around them.
-struct Searched {
-  OrientedBox box;  ///< world
-  double reach_m = 0.0;
-  Vector3d centre_sensor;  ///< m, sensor frame at the stamp
-};
-
-OrientedBox flagged_box(const Expectation& expected) {
-  OrientedBox box = above_ground(expected.box);
-  box.size.head<2>().array() += 2.0 * expected.gate_m;
-  box.size.z() += expected.gate_m;
-  box.centre += 0.5 * expected.gate_m * box.axes.col(2);
-  return box;
-}
-
-/// How far from where the pose at the stamp puts them points of a patch may lie, against a body of this velocity (m/s,
-/// world): the sensor moves and turns meanwhile.
-double largest_shift_m(const Eigen::AlignedBox3d& patch, double latest_s, const SensorMotion& sensor,
-                       const Vector3d& velocity) {
-  const double farthest = patch.min().cwiseAbs().cwiseMax(patch.max().cwiseAbs()).norm();
-  const double turned_rad = latest_s * sensor.angular_velocity_sensor.norm();
-  return latest_s * (sensor.velocity_world - velocity).norm() + turned_rad * (1.0 + 0.5 * turned_rad) * farthest;
-}
 
 }  // namespace
 
@@ -125,9 +91,17 @@ bool Expectation::may_appear_static(const Vector3d& sensor_world, double slow_mp
   return std::abs(to_object.dot(W)) / range < slow_mps + difference;
 }
 
+OrientedBox Expectation::box_above_ground() const {
+  OrientedBox above = box;
+  const double clearance = std::min(kGroundClearance_m, kGroundShare * box.size.z());
+  above.size.z() -= clearance;
+  above.centre += 0.5 * clearance * box.axes.col(2);
+  return above;
+}
+
 void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows) {
   rows.clear();
-  const OrientedBox box = above_ground(expected.box);
+  const OrientedBox box = expected.box_above_ground();
   // What moves during the sweep is not seen where it is at the stamp.
   const double reach = 0.5 * box.size.norm() + input.sweep_s * expected.velocity.norm() + kRounding_m;
   const Vector3d centre_sensor = input.sensor.T_world_sensor.inverse() * box.centre;
@@ -144,50 +118,6 @@ void find_static_rows(const TrackingInput& input, const Expectation& expected, s
       }
     }
   });
-}
-
-void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
-               std::span<const Expectation> expectations, const Workers& workers,
-               std::vector<std::uint8_t>& is_moving) {
-  const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
-  StackMemory<32768> memory;
-  std::pmr::vector<Searched> flagged(memory.resource());
-  flagged.reserve(expectations.size());
-  for (const Expectation& expected : expectations) {
-    const OrientedBox box = flagged_box(expected);
-    flagged.push_back({box, 0.5 * box.size.norm(), T_sensor_world * box.centre});
-  }
-  const auto time_of = [&](std::size_t row) { return scan.has_times() ? scan.times()[row] : 0.0; };
-  const auto flag_patch = [&](std::size_t begin, std::size_t end) {
-    Eigen::AlignedBox3d patch;
-    double latest_s = 0.0;
-    for (std::size_t row = begin; row < end; ++row) {
-      patch.extend(scan.points()[row]);
-      latest_s = std::max(latest_s, std::abs(time_of(row)));
-    }
-    for (std::size_t i = 0; i < flagged.size(); ++i) {
-      const auto& [box, reach, centre_sensor] = flagged[i];
-      const Expectation& expected = expectations[i];
-      if (patch.exteriorDistance(centre_sensor) >
-          reach + largest_shift_m(patch, latest_s, sensor, expected.velocity) + kRounding_m) {
-        continue;
-      }
-      for (std::size_t row = begin; row < end; ++row) {
-        const double time_s = time_of(row);
-        const Vector3d point = sensor.point_world(scan.points()[row], time_s) - time_s * expected.velocity;
-        if ((point - box.centre).squaredNorm() < reach * reach && distance_outside(box, point) <= 0.0 &&
-            expected.gate_ratio(sensor.direction_world(scan.directions()[row], time_s), radial[row]) < 1.0) {
-          is_moving[row] = 1;
-        }
-      }
-    }
-  };
-  workers.for_blocks(flagged.empty() ? 0 : scan.size(), kPointBlock,
-                     [&](std::size_t, std::size_t block_begin, std::size_t block_end) {
-                       for (std::size_t begin = block_begin; begin < block_end; begin += RangeImage::kPatch) {
-                         flag_patch(begin, std::min(begin + RangeImage::kPatch, block_end));
-                       }
-                     });
 }
 
 }  // namespace dynamic_icp::tracking

@@ -50,6 +50,9 @@ struct Expectation {
   /// Deviation of a radial velocity from the expected one as a share of what is allowed.
   [[nodiscard]] double gate_ratio(const Eigen::Vector3d& direction_world, double radial_mps) const;
 
+  /// The box without its lowest part, where the ground may be.
+  [[nodiscard]] OrientedBox box_above_ground() const;
+
   /// Whether some of its points may be as slow along the line of sight as what stands, though it moves.
   [[nodiscard]] bool may_appear_static(const Eigen::Vector3d& sensor_world, double slow_mps) const;
 };
@@ -78,10 +81,5 @@ struct TrackingInput {
 /// The rows, ascending, of the points that are not among the moving ones in the box of an expectation, without the
 /// lowest part of the box, where the ground may be.
 void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows);
-
-/// Sets `is_moving` of the rows of a scan that is not deskewed that an expectation may take for its own: in its box,
-/// without the lowest part but with its gate around, and with the radial velocity that it expects.
-void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
-               std::span<const Expectation> expectations, const Workers& workers, std::vector<std::uint8_t>& is_moving);
 
 }  // namespace dynamic_icp::tracking

@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "dynamic_icp/method/base/state_archive.hpp"
+#include "dynamic_icp/method/tracking/coordinates.hpp"
+#include "dynamic_icp/method/tracking/expected_rows.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/track_merging.hpp"
 
@@ -28,11 +30,8 @@ constexpr int kMany = 1 << 30;            // no drive has so many scans or objec
 constexpr std::size_t kMinPoints = 3;     // of a detection: a velocity has three unknowns
 
 double latest_time(const Scan& scan) {
-  double latest_s = 0.0;
-  for (const double time_s : scan.times()) {
-    latest_s = std::max(latest_s, std::abs(time_s));
-  }
-  return latest_s;
+  const Interval times = scan.times().empty() ? Interval{} : interval_around(scan.times());
+  return std::max(std::abs(times.low), std::abs(times.high));
 }
 
 /// Whether a point that stands cannot be part of a body that makes it expect a radial velocity.
@@ -230,6 +229,9 @@ void ObjectTracker::clear_carrier(const Scan& scan, const Workers& workers,
                                   std::vector<std::uint8_t>& is_moving) const {
   const double squared_m2 = config_.min_range_m * config_.min_range_m;
   workers.for_each(scan.size(), kPointBlock, [&](std::size_t row) {
+    if (is_moving[row] == 0) {
+      return;
+    }
     const Vector3d origin =
         scan.is_of_rig() ? Vector3d(scan.mountings()[scan.channels().sensor[row]].translation()) : Vector3d::Zero();
     if ((scan.points()[row] - origin).squaredNorm() < squared_m2) {

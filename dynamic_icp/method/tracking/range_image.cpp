@@ -3,20 +3,20 @@
 #include "dynamic_icp/method/tracking/range_image.hpp"
 
 #include <algorithm>
-#include <array>
 #include <bitset>
 #include <cmath>
 #include <cstddef>
 #include <limits>
 #include <span>
 
-#include "dynamic_icp/method/base/lanes.hpp"
 #include "dynamic_icp/method/base/simd.hpp"
+#include "dynamic_icp/method/tracking/coordinates.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 constexpr std::size_t kBlock = RangeImage::kSector;  // of points
+static_assert(kBlock <= Coordinates::kMost);
 constexpr int kColumns = 720;
 constexpr int kRows = 120;
 constexpr double kSlopePerRow = 0.0175;  // a degree
@@ -49,24 +49,6 @@ DYNAMIC_ICP_INLINE Cell cell_of(double x, double y, double z) {
 Cell cell_of(const Eigen::Vector3d& point) { return cell_of(point.x(), point.y(), point.z()); }
 
 std::size_t place(int column, int row) { return static_cast<std::size_t>(column * kRows + row); }
-
-/// The coordinates of up to kBlock points.
-struct Coordinates {
-  std::array<double, kBlock> x;
-  std::array<double, kBlock> y;
-  std::array<double, kBlock> z;
-
-  void take(const Eigen::Vector3d* points, std::size_t count) {
-    simd::run([&]() DYNAMIC_ICP_KERNEL {
-      const double* p = points->data();
-      for (std::size_t i = 0; i < count; ++i) {
-        x[i] = p[3 * i];
-        y[i] = p[3 * i + 1];
-        z[i] = p[3 * i + 2];
-      }
-    });
-  }
-};
 
 // The kernels keep what they sum up to themselves until the end: a store through a pointer could change anything else.
 
@@ -119,41 +101,6 @@ void take_back_motion(const Coordinates& sight, const double* times, const Eigen
   });
 }
 
-/// The least and the greatest of `count` values.
-DYNAMIC_ICP_INLINE void extremes(const double* values, std::size_t count, double& least, double& greatest) {
-  least = greatest = values[0];
-  std::size_t i = 0;
-  if (count >= simd::kLanes) {
-    simd::Lanes high;
-    simd::Lanes low;  // of the negative values
-    simd::load(high, values);
-    low = -high;
-    for (i = simd::kLanes; i + simd::kLanes <= count; i += simd::kLanes) {
-      simd::Lanes value;
-      simd::load(value, &values[i]);
-      simd::keep_larger(high, value);
-      simd::keep_larger(low, -value);
-    }
-    greatest = std::max({high[0], high[1], high[2], high[3]});
-    least = -std::max({low[0], low[1], low[2], low[3]});
-  }
-  for (; i < count; ++i) {
-    least = std::min(least, values[i]);
-    greatest = std::max(greatest, values[i]);
-  }
-}
-
-/// The box around some of the points.
-RangeImage::Patch box_around(const Coordinates& at, std::size_t begin, std::size_t count) {
-  RangeImage::Patch patch;
-  simd::run([&]() DYNAMIC_ICP_KERNEL {
-    extremes(&at.x[begin], count, patch.min().x(), patch.max().x());
-    extremes(&at.y[begin], count, patch.min().y(), patch.max().y());
-    extremes(&at.z[begin], count, patch.min().z(), patch.max().z());
-  });
-  return patch;
-}
-
 }  // namespace
 
 double RangeImage::cell_width() { return 8.0 / kColumns; }  // where the measure grows most slowly, at 45 degrees
@@ -173,7 +120,7 @@ void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, 
     measure_squared(at, count, &squared_[begin]);
     sectors_[block].setEmpty();
     for (std::size_t row = begin; row < end; row += kPatch) {
-      patches_[row / kPatch] = box_around(at, row - begin, std::min(kPatch, end - row));
+      patches_[row / kPatch] = box_around(&scan.points()[row], std::min(kPatch, end - row));
       sectors_[block].extend(patches_[row / kPatch]);
     }
     if (scan.has_times()) {

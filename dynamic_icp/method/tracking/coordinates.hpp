@@ -1,0 +1,33 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/tracking/oriented_box.hpp"
+
+namespace dynamic_icp::tracking {
+
+/// The coordinates of the points of a small block, each in an array of its own: loops over them become vectors.
+struct Coordinates {
+  static constexpr std::size_t kMost = 512;
+  std::array<double, kMost> x;
+  std::array<double, kMost> y;
+  std::array<double, kMost> z;
+
+  /// Those of `count` points, at most kMost.
+  void take(const Eigen::Vector3d* points, std::size_t count);
+};
+
+/// The box around `count` points, at least one.
+[[nodiscard]] Eigen::AlignedBox3d box_around(const Eigen::Vector3d* points, std::size_t count);
+
+/// The interval around some values, at least one.
+[[nodiscard]] Interval interval_around(std::span<const double> values);
+
+}  // namespace dynamic_icp::tracking
