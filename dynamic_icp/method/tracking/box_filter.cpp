@@ -115,9 +115,7 @@ bool BoxFilter::may_be_person() const {
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
-  DetectionMemory memory;
-  const ClusterVelocity measured = fit_cluster_velocity(
-      detection.directions, radial_at_sensor(detection, body_.yaw_rate(), memory), config.doppler_sigma_mps);
+  const ClusterVelocity measured = motion_of(detection, body_.yaw_rate(), config.doppler_sigma_mps);
   spread_mps_ = measured.spread_mps;
   signal_mps_ = measured.signal_mps;
   // Roll and pitch of the body look like a vertical velocity, the more the farther it is.

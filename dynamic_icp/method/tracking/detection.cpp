@@ -47,9 +47,17 @@ void make_detection(const Scan& scan, std::span<const double> radial, std::span<
   detection.mean_time_s /= static_cast<double>(detection.points.size());
   detection.sensor = sensor.position(detection.mean_time_s);
   detection.T_sensor_world = sensor.pose(detection.mean_time_s).inverse();
-  detection.ground = heights.below(*std::min_element(
-      detection.points.begin(), detection.points.end(),
-      [&](const Eigen::Vector3d& a, const Eigen::Vector3d& b) { return heights.up().dot(a) < heights.up().dot(b); }));
+  const Eigen::Vector3d up = heights.up();
+  const Eigen::Vector3d* lowest = &detection.points.front();
+  double lowest_m = up.dot(*lowest);
+  for (const Eigen::Vector3d& point : detection.points) {
+    if (const double height_m = up.dot(point); height_m < lowest_m) {
+      lowest = &point;
+      lowest_m = height_m;
+    }
+  }
+  detection.ground = heights.below(*lowest);
+  detection.motion.reset();
   detection.view = view;
 }
 
@@ -59,6 +67,20 @@ std::pmr::vector<double> radial_at_sensor(const Detection& detection, double yaw
     radial[i] -= yaw_rate_rps * detection.directions[i].dot(detection.ground.up().cross(detection.levers[i]));
   }
   return radial;
+}
+
+void fit_motion(double sigma_mps, Detection& detection) {
+  if (detection.levers.empty()) {
+    detection.motion = fit_cluster_velocity(detection.directions, detection.radial, sigma_mps);
+  }
+}
+
+ClusterVelocity motion_of(const Detection& detection, double yaw_rate_rps, double sigma_mps) {
+  if (detection.motion) {
+    return *detection.motion;
+  }
+  DetectionMemory memory;
+  return fit_cluster_velocity(detection.directions, radial_at_sensor(detection, yaw_rate_rps, memory), sigma_mps);
 }
 
 std::pmr::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity,

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory_resource>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -12,6 +13,7 @@
 #include <Eigen/Geometry>
 
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/tracking/cluster_velocity.hpp"
 #include "dynamic_icp/method/tracking/ground.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/range_image.hpp"
@@ -31,6 +33,7 @@ struct Detection {
   Eigen::Vector3d sensor = Eigen::Vector3d::Zero();                  ///< where the sensor was at the mean time
   Eigen::Isometry3d T_sensor_world = Eigen::Isometry3d::Identity();  ///< at the mean time
   Ground ground;                                                     ///< below it, world
+  std::optional<ClusterVelocity> motion;                             ///< by fit_motion; none: to be fitted
   const RangeImage* view = nullptr;                                  ///< of the whole scan; none: nothing is hidden
   const TrafficPrior* traffic = nullptr;                             ///< around it; none: nothing is known of it
 };
@@ -52,6 +55,13 @@ using DetectionMemory = StackMemory<kMaxDetectionPoints * sizeof(Eigen::Vector3d
 /// The radial velocities (m/s) as one sensor at `sensor` would measure them along the same lines of sight, if the body
 /// turns with `yaw_rate_rps` about the upward axis: without Omega z x l of the lever arms.
 std::pmr::vector<double> radial_at_sensor(const Detection& detection, double yaw_rate_rps, DetectionMemory& memory);
+
+/// Fits the motion of the body once for all who will ask, unless it is seen by a rig: then it depends on its turning.
+void fit_motion(double sigma_mps, Detection& detection);
+
+/// What the Doppler says of a body that turns with `yaw_rate_rps` about the upward axis, as one sensor at `sensor`
+/// would measure it; `sigma_mps` as in fit_cluster_velocity.
+ClusterVelocity motion_of(const Detection& detection, double yaw_rate_rps, double sigma_mps);
 
 /// The points where they would be seen at the mean time if all moved with `velocity` (m/s, world).
 std::pmr::vector<Eigen::Vector3d> points_at_mean_time(const Detection& detection, const Eigen::Vector3d& velocity,

@@ -82,6 +82,28 @@ TEST(Detection, LeverArmsOfARigDoNotLookLikeMotion) {
   }
 }
 
+TEST(Detection, ItsMotionIsFittedOnceUnlessARigSeesIt) {
+  Detection detection;
+  for (std::uint64_t i = 0; i < 40; ++i) {
+    const RandomSource one = RandomSource(9).fork(i);
+    detection.directions.push_back(Vector3d(10.0, one.uniform(0, -2, 2), one.uniform(1, -1, 1)).normalized());
+    detection.radial.push_back(detection.directions.back().dot(Vector3d(4.0, -3.0, 1.0)) + one.uniform(2, -0.1, 0.1));
+  }
+  const ClusterVelocity anew = motion_of(detection, 0.5, 0.05);
+  EXPECT_LT((anew.W - Vector3d(4.0, -3.0, 1.0)).norm(), 0.5);
+  fit_motion(0.05, detection);
+  ASSERT_TRUE(detection.motion);
+  EXPECT_EQ(detection.motion->W, anew.W);
+  EXPECT_EQ(detection.motion->information, anew.information);
+  EXPECT_EQ(motion_of(detection, -0.5, 0.05).W, anew.W);
+  Detection of_rig = detection;
+  of_rig.motion.reset();
+  of_rig.levers.assign(40, Vector3d(0.0, 1.0, 0.0));
+  fit_motion(0.05, of_rig);
+  EXPECT_FALSE(of_rig.motion);
+  EXPECT_NE(motion_of(of_rig, 0.5, 0.05).W, motion_of(of_rig, -0.5, 0.05).W);
+}
+
 TEST(Detection, OfManyRowsAnEvenPartFromEndToEnd) {
   const Scan scan = scan_of(5000);
   std::vector<std::uint32_t> rows(5000);

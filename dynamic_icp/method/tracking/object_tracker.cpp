@@ -283,7 +283,11 @@ bool ObjectTracker::detect(const TrackingInput& input, std::span<const std::uint
                            Detection& detection) const {
   make_detection(input.scan, input.radial, rows, input.sensor, input.heights, &input.view, detection);
   detection.traffic = &traffic_;
-  return !is_ground(detection);
+  if (is_ground(detection)) {
+    return false;
+  }
+  fit_motion(config_.track.doppler_sigma_mps, detection);
+  return true;
 }
 
 /// Lets a track take in its points and such as stand but may be its own.
