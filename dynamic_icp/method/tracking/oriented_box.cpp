@@ -11,20 +11,27 @@
 #include <utility>
 #include <vector>
 
+#include "dynamic_icp/method/base/lanes.hpp"
+#include "dynamic_icp/method/base/simd.hpp"
+#include "dynamic_icp/method/tracking/coordinates.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 constexpr std::size_t kMinPointsOfAYaw = 5;
-constexpr int kMaxPointsOfAYaw = 200;
+constexpr std::size_t kMaxPointsOfAYaw = 200;
 constexpr double kCoarseStep_rad = 0.052;  // 3 degrees
 constexpr double kFineStep_rad = 0.0087;   // half a degree
 constexpr double kNearestToEdge_m = 0.05;  // closer than the noise of the range is not better
 
-/// Points in a plane, and a value for each, on the stack.
-using PlanePoints = Eigen::Array<double, 2, Eigen::Dynamic, Eigen::ColMajor, 2, kMaxPointsOfAYaw>;
-using PlaneValues = Eigen::Array<double, Eigen::Dynamic, 1, Eigen::ColMajor, kMaxPointsOfAYaw, 1>;
+/// A value for each of some points, and points in a plane, on the stack.
+using PlaneValues = std::array<double, kMaxPointsOfAYaw>;
+struct PlanePoints {
+  PlaneValues x;
+  PlaneValues y;
+  std::size_t count = 0;
+};
 
 /// The value that has `rank` others before it.
 double ranked(std::vector<double>& values, std::size_t rank) {
@@ -67,26 +74,68 @@ Interval span_without_few(std::span<const double> values, std::size_t rank) {
 double closeness(const PlanePoints& points, double yaw) {
   const double c = std::cos(yaw);
   const double s = std::sin(yaw);
-  PlaneValues along = c * points.row(0).transpose() + s * points.row(1).transpose();
-  PlaneValues across = c * points.row(1).transpose() - s * points.row(0).transpose();
-  const Eigen::Array2d low(along.minCoeff(), across.minCoeff());
-  const Eigen::Array2d high(along.maxCoeff(), across.maxCoeff());
-  along = (along - low[0]).min(high[0] - along);
-  across = (across - low[1]).min(high[1] - across);
-  return along.min(across).max(kNearestToEdge_m).inverse().sum();
+  PlaneValues along;
+  PlaneValues across;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const std::size_t n = points.count;
+    const double cosine = c;
+    const double sine = s;
+    for (std::size_t i = 0; i < n; ++i) {
+      along[i] = cosine * points.x[i] + sine * points.y[i];
+      across[i] = cosine * points.y[i] - sine * points.x[i];
+    }
+  });
+  const Interval length = interval_around(std::span(along).first(points.count));
+  const Interval width = interval_around(std::span(across).first(points.count));
+  double total = 0.0;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const std::size_t n = points.count;
+    const simd::Lanes nearest_that_counts = kNearestToEdge_m - simd::Lanes{};
+    simd::Lanes sums{};
+    std::size_t i = 0;
+    for (; i + simd::kLanes <= n; i += simd::kLanes) {
+      simd::Lanes u, v;
+      simd::load(u, &along[i]);
+      simd::load(v, &across[i]);
+      simd::Lanes distance = u - length.low;
+      simd::keep_smaller(distance, length.high - u);
+      simd::keep_smaller(distance, v - width.low);
+      simd::keep_smaller(distance, width.high - v);
+      simd::keep_larger(distance, nearest_that_counts);
+      sums += 1.0 / distance;
+    }
+    const auto inverse_distance = [&](std::size_t k) DYNAMIC_ICP_KERNEL {
+      const double lengthwise = std::min(along[k] - length.low, length.high - along[k]);
+      const double widthwise = std::min(across[k] - width.low, width.high - across[k]);
+      return 1.0 / std::max(std::min(lengthwise, widthwise), kNearestToEdge_m);
+    };
+    double even = sums[0] + sums[2];
+    double odd = sums[1] + sums[3];
+    if (i + 2 <= n) {
+      even += inverse_distance(i);
+      odd += inverse_distance(i + 1);
+      i += 2;
+    }
+    total = even + odd + (i < n ? inverse_distance(i) : 0.0);
+  });
+  return total;
 }
 
-/// The best of the yaws within `range` of `middle`, a step apart.
-double best_yaw(const PlanePoints& points, double middle, double range, double step) {
+/// A yaw with its closeness.
+struct ScoredYaw {
+  double yaw = 0.0;
+  double score = 0.0;
+};
+
+/// The best of the yaws within `range` of one, a step apart.
+ScoredYaw best_yaw(const PlanePoints& points, const ScoredYaw& middle, double range, double step) {
   const int steps = std::max(1, static_cast<int>(std::ceil(range / step)));
-  double best = middle;
-  double highest = closeness(points, middle);
+  ScoredYaw best = middle;
   for (int i = 1; i <= steps; ++i) {
-    for (const double yaw : {middle - i * range / steps, middle + i * range / steps}) {
+    for (const double yaw : {middle.yaw - i * range / steps, middle.yaw + i * range / steps}) {
       const double score = closeness(points, yaw);
-      if (score > highest) {
-        highest = score;
-        best = yaw;
+      if (score > best.score) {
+        best = {yaw, score};
       }
     }
   }
@@ -203,13 +252,16 @@ std::optional<double> fit_yaw(std::span<const Eigen::Vector3d> points, const Eig
     return std::nullopt;
   }
   const std::size_t stride = (points.size() + kMaxPointsOfAYaw - 1) / kMaxPointsOfAYaw;
-  PlanePoints plane(2, static_cast<Eigen::Index>((points.size() + stride - 1) / stride));
-  for (Eigen::Index i = 0; i < plane.cols(); ++i) {
+  PlanePoints plane;
+  for (std::size_t i = 0; i < points.size(); i += stride) {
     // Relative to one of them: coordinates in the world may be large.
-    plane.col(i) = level.leftCols<2>().transpose() * (points[static_cast<std::size_t>(i) * stride] - points.front());
+    const Eigen::Vector2d place = level.leftCols<2>().transpose() * (points[i] - points.front());
+    plane.x[plane.count] = place.x();
+    plane.y[plane.count++] = place.y();
   }
-  const double coarse = best_yaw(plane, near_yaw_rad, range_rad, kCoarseStep_rad);
-  return best_yaw(plane, coarse, kCoarseStep_rad, kFineStep_rad);
+  const ScoredYaw near{near_yaw_rad, closeness(plane, near_yaw_rad)};
+  const ScoredYaw coarse = best_yaw(plane, near, range_rad, kCoarseStep_rad);
+  return best_yaw(plane, coarse, kCoarseStep_rad, kFineStep_rad).yaw;
 }
 
 }  // namespace dynamic_icp::tracking
