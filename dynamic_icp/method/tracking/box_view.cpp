@@ -8,7 +8,7 @@
 #include <memory_resource>
 #include <vector>
 
-#include "dynamic_icp/method/tracking/memory.hpp"
+#include "dynamic_icp/method/base/simd.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -72,15 +72,33 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, c
   return true;
 }
 
-AxisView view_along(const Vector3d& direction, const Vector3d& across, const Vector3d& reference,
-                    std::span<const Vector3d> points) {
+/// Where points (m, from the reference) are along each axis.
+using PlacesAlong = std::array<std::span<double>, 3>;
+
+void find_places_along(const Matrix3d& axes, const Vector3d& reference, std::span<const Vector3d> points,
+                       const PlacesAlong& along) {
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const double* const p = points.data()->data();
+    const std::size_t n = points.size();
+    const Matrix3d a = axes;
+    const Vector3d origin = reference;
+    double* const first = along[0].data();
+    double* const second = along[1].data();
+    double* const third = along[2].data();
+    for (std::size_t i = 0; i < n; ++i) {
+      const double x = p[3 * i] - origin.x();
+      const double y = p[3 * i + 1] - origin.y();
+      const double z = p[3 * i + 2] - origin.z();
+      first[i] = x * a(0, 0) + y * a(1, 0) + z * a(2, 0);
+      second[i] = x * a(0, 1) + y * a(1, 1) + z * a(2, 1);
+      third[i] = x * a(0, 2) + y * a(1, 2) + z * a(2, 2);
+    }
+  });
+}
+
+/// `along` and `across`: places of the points along the axis and one at right angles to it.
+AxisView view_along(std::span<const double> along, std::span<const double> across, std::span<const Vector3d> points) {
   AxisView view;
-  StackMemory<kMaxDetectionPoints * sizeof(double)> memory;
-  std::pmr::vector<double> along(memory.resource());
-  along.reserve(points.size());
-  for (const Vector3d& point : points) {
-    along.push_back((point - reference).dot(direction));
-  }
   view.seen = span_of(along, kViewTrim);
   const auto look_at = [&](EndView& end, auto&& inwards) {  // how far inwards of the end a point lies
     double count = 0.0;
@@ -90,11 +108,10 @@ AxisView view_along(const Vector3d& direction, const Vector3d& across, const Vec
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double depth = inwards(along[i]);
       if (depth <= kEndDepth_m) {
-        const double side = (points[i] - reference).dot(across);
         end.middle += points[i];
         count += 1.0;
-        sum += side;
-        squares += side * side;
+        sum += across[i];
+        squares += across[i] * across[i];
       }
       if (depth > kSamePlace_m) {
         end.gap = std::min(end.gap, depth);
@@ -112,9 +129,14 @@ AxisView view_along(const Vector3d& direction, const Vector3d& across, const Vec
 
 std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& reference, std::span<const Vector3d> points,
                                     const Vector3d& W, const Detection& detection) {
+  DetectionMemory memory;
+  std::pmr::vector<double> places(3 * points.size(), memory.resource());
+  const auto part = [&](std::size_t axis) { return std::span(places).subspan(axis * points.size(), points.size()); };
+  const PlacesAlong along{part(0), part(1), part(2)};
+  find_places_along(axes, reference, points, along);
   std::array<AxisView, 3> views;
   std::array<bool, 2> faces_sensor{};
-  views[2] = view_along(axes.col(2), axes.col(1), reference, points);
+  views[2] = view_along(along[2], along[1], points);
   // Over something nearer often the cabin of a car is seen, and neither its hood nor its boot.
   const double ground =
       detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
@@ -128,8 +150,8 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     return is_true_end(end.middle, outward, axes.col(2).dot(end.middle - reference) - full, W, detection);
   };
   for (const int axis : {0, 1}) {
-    AxisView& view = views[static_cast<std::size_t>(axis)] =
-        view_along(axes.col(axis), axes.col(1 - axis), reference, points);
+    const auto k = static_cast<std::size_t>(axis);
+    AxisView& view = views[k] = view_along(along[k], along[1 - k], points);
     const double sensor = axes.col(axis).dot(detection.sensor - reference);
     const double grazing = kGrazing * (detection.sensor - reference).norm();
     view.high.is_true = sensor > view.seen.high && is_end(view.high, axes.col(axis));
