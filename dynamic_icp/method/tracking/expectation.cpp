@@ -3,12 +3,9 @@
 #include "dynamic_icp/method/tracking/expectation.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include <Eigen/Geometry>
-
-#include "dynamic_icp/method/base/simd.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -22,29 +19,6 @@ constexpr double kWidthSlack_m = 0.1;
 constexpr double kGroundClearance_m = 0.3;  // points lower in a box may be the road ...
 constexpr double kGroundShare = 0.25;       // ... but at most so much of its height is left out
 constexpr double kUnseenRatio = 0.9;        // of points where the body is likely but was not seen yet
-
-/// Which points are not farther from a place than `reach_m`.
-void find_near(std::span<const Vector3d> points, const Vector3d& place, double reach_m,
-               std::array<std::uint8_t, RangeImage::kPatch>& is_near) {
-  simd::run([&]() DYNAMIC_ICP_KERNEL {
-    const double* const p = points.data()->data();
-    const std::size_t n = points.size();
-    const Vector3d centre = place;
-    const double squared_m2 = reach_m * reach_m;
-    std::array<double, RangeImage::kPatch> squared;
-    for (std::size_t i = 0; i < n; ++i) {
-      const double x = p[3 * i] - centre.x();
-      const double y = p[3 * i + 1] - centre.y();
-      const double z = p[3 * i + 2] - centre.z();
-      squared[i] = x * x + (y * y + z * z);
-    }
-    for (std::size_t i = 0; i < n; ++i) {
-      is_near[i] = squared[i] > squared_m2 ? 0 : 1;
-    }
-  });
-}
-
-constexpr double kRounding_m = 0.01;  // more than rounding moves a point
 
 }  // namespace
 
@@ -97,27 +71,6 @@ OrientedBox Expectation::box_above_ground() const {
   above.size.z() -= clearance;
   above.centre += 0.5 * clearance * box.axes.col(2);
   return above;
-}
-
-void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows) {
-  rows.clear();
-  const OrientedBox box = expected.box_above_ground();
-  // What moves during the sweep is not seen where it is at the stamp.
-  const double reach = 0.5 * box.size.norm() + input.sweep_s * expected.velocity.norm() + kRounding_m;
-  const Vector3d centre_sensor = input.sensor.T_world_sensor.inverse() * box.centre;
-  std::array<std::uint8_t, RangeImage::kPatch> is_near;
-  input.view.visit_patches(centre_sensor, reach, [&](std::size_t begin, std::size_t end) {
-    find_near(std::span(input.scan.points()).subspan(begin, end - begin), centre_sensor, reach, is_near);
-    for (std::size_t row = begin; row < end; ++row) {
-      if (is_near[row - begin] == 0 || input.is_moving[row] != 0) {
-        continue;
-      }
-      const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
-      if (distance_outside(box, point - input.time_s(row) * expected.velocity) <= 0.0) {
-        rows.push_back(static_cast<std::uint32_t>(row));
-      }
-    }
-  });
 }
 
 }  // namespace dynamic_icp::tracking

@@ -78,8 +78,4 @@ struct TrackingInput {
   }
 };
 
-/// The rows, ascending, of the points that are not among the moving ones in the box of an expectation, without the
-/// lowest part of the box, where the ground may be.
-void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows);
-
 }  // namespace dynamic_icp::tracking

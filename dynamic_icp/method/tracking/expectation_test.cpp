@@ -2,9 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/tracking/expectation.hpp"
 
-#include <algorithm>
 #include <cmath>
-#include <set>
 
 #include <gtest/gtest.h>
 
@@ -55,45 +53,6 @@ TEST(Expectation, OnlyWhatCrossesTheLineOfSightMayAppearStatic) {
   const Vector3d eye = Vector3d::Zero();
   EXPECT_TRUE(expectation_of({20.0, 0.0, 0.0}, {0.0, 8.0, 0.0}).may_appear_static(eye, 1.0));
   EXPECT_FALSE(expectation_of({20.0, 0.0, 0.0}, {8.0, 0.0, 0.0}).may_appear_static(eye, 1.0));
-}
-
-TEST(Expectation, VisitsTheStaticPointsInItsBoxAboveTheGround) {
-  const Vector3d centre(20.0, 3.0, 0.0);
-  const Expectation expected = expectation_of(centre, {0.0, 8.0, 0.0});
-  ASSERT_GT(expected.box.size.z(), 1.0);
-  RawScan raw;
-  std::set<std::uint32_t> inside;
-  std::vector<std::uint8_t> is_moving;
-  const RandomSource random(9);
-  for (std::uint32_t i = 0; i < 3000; ++i) {
-    const RandomSource one = random.fork(i);
-    const Vector3d p = centre + Vector3d(one.uniform(0, -5, 5), one.uniform(1, -5, 5), one.uniform(2, -1.5, 1.5));
-    raw.points.push_back(p);
-    raw.doppler.push_back(0.0);
-    is_moving.push_back(one.uniform(3) < 0.3 ? 1 : 0);
-    const Vector3d q = expected.box.axes.transpose() * (p - expected.box.centre);
-    const double above = q.z() + 0.5 * expected.box.size.z();
-    const bool in_box = (q.cwiseAbs().array() <= 0.5 * expected.box.size.array()).all();
-    if (in_box && above >= std::min(0.3, 0.25 * expected.box.size.z()) && is_moving.back() == 0) {
-      inside.insert(i);
-    }
-  }
-  ASSERT_GT(inside.size(), 20u);
-  const Scan scan = Scan::from_raw(raw);
-  ASSERT_EQ(scan.size(), raw.points.size());
-  const std::vector<double> radial(scan.size(), 0.0);
-  for (const int threads : {1, 2}) {
-    const Workers workers(threads);
-    const RangeImage view(scan, Vector3d::Zero(), workers);
-    const MovingCells moving;
-    const GroundHeights heights;
-    const TrackingInput input{scan, radial, is_moving, {}, 0.0, 0.0, moving, {}, {}, {}, view, heights};
-    std::vector<std::uint32_t> visited{77};
-    find_static_rows(input, expected, visited);
-    EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end()));
-    EXPECT_EQ(std::set<std::uint32_t>(visited.begin(), visited.end()), inside);
-    EXPECT_EQ(visited.size(), inside.size()) << "none twice";
-  }
 }
 
 }  // namespace

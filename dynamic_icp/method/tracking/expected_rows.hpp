@@ -18,4 +18,8 @@ namespace dynamic_icp::tracking {
 void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
                std::span<const Expectation> expectations, const Workers& workers, std::vector<std::uint8_t>& is_moving);
 
+/// The rows, ascending, of the points that are not among the moving ones in the box of an expectation, without the
+/// lowest part of the box, where the ground may be.
+void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows);
+
 }  // namespace dynamic_icp::tracking

@@ -6,7 +6,6 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <cstring>
 #include <limits>
 #include <numbers>
 #include <numeric>
@@ -14,6 +13,7 @@
 
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 #include "dynamic_icp/method/spatial/cell_order.hpp"
+#include "dynamic_icp/method/tracking/flags.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 
@@ -37,34 +37,13 @@ void prefetch_point(const Scan& scan, std::uint32_t row) {
   __builtin_prefetch(&scan.directions()[row]);
 }
 
-/// Calls visit(row) for each row of [begin, end) that moves, ascending: eight flags at a time, for most of them are 0.
-template <typename Visit>
-void visit_moving(std::span<const std::uint8_t> is_moving, std::size_t begin, std::size_t end, const Visit& visit) {
-  constexpr std::size_t kFlags = sizeof(std::uint64_t);
-  std::size_t row = begin;
-  for (; row + kFlags <= end; row += kFlags) {
-    std::uint64_t flags = 0;
-    std::memcpy(&flags, &is_moving[row], kFlags);
-    for (std::size_t i = 0; flags != 0 && i < kFlags; ++i) {
-      if (is_moving[row + i] != 0) {
-        visit(row + i);
-      }
-    }
-  }
-  for (; row < end; ++row) {
-    if (is_moving[row] != 0) {
-      visit(row);
-    }
-  }
-}
-
 /// The rows that move, ascending.
 void find_moving_rows(std::span<const std::uint8_t> is_moving, const Workers& workers, MovingCells& result) {
   std::vector<std::uint32_t>& end_of_block = result.end_of_block;
   end_of_block.resize(Workers::block_count(is_moving.size(), kPointBlock));
   workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::uint32_t count = 0;
-    visit_moving(is_moving, begin, end, [&](std::size_t) { ++count; });
+    visit_flagged(is_moving, begin, end, [&](std::size_t) { ++count; });
     end_of_block[block] = count;
   });
   std::partial_sum(end_of_block.begin(), end_of_block.end(), end_of_block.begin());
@@ -73,8 +52,8 @@ void find_moving_rows(std::span<const std::uint8_t> is_moving, const Workers& wo
   result.rows.resize(rows);
   workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
     std::uint32_t next = block == 0 ? 0 : end_of_block[block - 1];
-    visit_moving(is_moving, begin, end,
-                 [&](std::size_t row) { result.rows[next++] = static_cast<std::uint32_t>(row); });
+    visit_flagged(is_moving, begin, end,
+                  [&](std::size_t row) { result.rows[next++] = static_cast<std::uint32_t>(row); });
   });
 }
 

@@ -53,18 +53,18 @@ class RangeImage {
   using Patch = Eigen::AlignedBox3d;
   static constexpr std::size_t kPatch = 64;
   static constexpr std::size_t kSector = 512;
-  /// Calls visit(begin, end) for the rows [begin, end) of each patch that comes nearer to a place (m, sensor frame)
-  /// than `reach_m`, ascending.
+  /// Calls visit(begin, end) for the rows [begin, end) of each patch that has a part in a region (m, sensor frame),
+  /// ascending.
   template <typename Visit>
-  void visit_patches(const Eigen::Vector3d& place, double reach_m, const Visit& visit) const {
+  void visit_patches(const Eigen::AlignedBox3d& region, const Visit& visit) const {
     constexpr std::size_t kPatches = kSector / kPatch;
     for (std::size_t sector = 0; sector < sectors_.size(); ++sector) {
-      if (sectors_[sector].squaredExteriorDistance(place) > reach_m * reach_m) {
+      if (!sectors_[sector].intersects(region)) {
         continue;
       }
       const std::size_t end = std::min((sector + 1) * kPatches, patches_.size());
       for (std::size_t patch = sector * kPatches; patch < end; ++patch) {
-        if (!(patches_[patch].squaredExteriorDistance(place) > reach_m * reach_m)) {
+        if (patches_[patch].intersects(region)) {
           visit(patch * kPatch, std::min((patch + 1) * kPatch, places_.size()));
         }
       }
