@@ -25,6 +25,22 @@ DYNAMIC_ICP_INLINE void load(Lanes& lanes, const double* from) {
 }
 DYNAMIC_ICP_INLINE void store(double* to, const Lanes& lanes) { *reinterpret_cast<LanesInMemory*>(to) = lanes; }
 
+/// The three columns of four rows that follow each other.
+DYNAMIC_ICP_INLINE void load_columns(Lanes& x, Lanes& y, Lanes& z, const double* rows) {
+  typedef double PairInMemory __attribute__((vector_size(16), aligned(8), may_alias));
+  const auto pairs = [rows](std::size_t first, std::size_t second, Lanes& lanes) DYNAMIC_ICP_KERNEL {
+    lanes = __builtin_shufflevector(*reinterpret_cast<const PairInMemory*>(rows + first),
+                                    *reinterpret_cast<const PairInMemory*>(rows + second), 0, 1, 2, 3);
+  };
+  Lanes a, b, c;
+  pairs(0, 6, a);   // x0 y0 x2 y2
+  pairs(2, 8, b);   // z0 x1 z2 x3
+  pairs(4, 10, c);  // y1 z1 y3 z3
+  x = __builtin_shufflevector(a, b, 0, 5, 2, 7);
+  y = __builtin_shufflevector(a, c, 1, 4, 3, 6);
+  z = __builtin_shufflevector(b, c, 0, 5, 2, 7);
+}
+
 // Bits instead of a ?: b : c, which not every machine has for lanes.
 
 /// The larger of two lanes each, `b` where they cannot be compared.

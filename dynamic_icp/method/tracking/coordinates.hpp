@@ -7,7 +7,6 @@
 #include <span>
 
 #include <Eigen/Core>
-#include <Eigen/Geometry>
 
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
 
@@ -23,9 +22,6 @@ struct Coordinates {
   /// Those of `count` points, at most kMost.
   void take(const Eigen::Vector3d* points, std::size_t count);
 };
-
-/// The box around `count` points, at least one.
-[[nodiscard]] Eigen::AlignedBox3d box_around(const Eigen::Vector3d* points, std::size_t count);
 
 /// The interval around some values, at least one.
 [[nodiscard]] Interval interval_around(std::span<const double> values);

@@ -33,19 +33,6 @@ TEST(Coordinates, AreThoseOfThePoints) {
   }
 }
 
-TEST(Coordinates, TheBoxIsThatWhichEigenFindsPointByPoint) {
-  const std::vector<Vector3d> points = random_points(70);
-  for (std::size_t count = 1; count <= points.size(); ++count) {
-    Eigen::AlignedBox3d expected;
-    for (std::size_t i = 0; i < count; ++i) {
-      expected.extend(points[i]);
-    }
-    const Eigen::AlignedBox3d box = box_around(points.data(), count);
-    EXPECT_EQ(box.min(), expected.min()) << count;
-    EXPECT_EQ(box.max(), expected.max()) << count;
-  }
-}
-
 TEST(Coordinates, TheIntervalHoldsAllValuesAndNoMore) {
   std::vector<double> values{3.0};
   for (std::uint64_t i = 0; i < 20; ++i) {

@@ -6,81 +6,55 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
-#include <limits>
 #include <memory_resource>
 
 #include <Eigen/Geometry>
 
 #include "dynamic_icp/method/base/simd.hpp"
-#include "dynamic_icp/method/tracking/coordinates.hpp"
 #include "dynamic_icp/method/tracking/flags.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
+#include "dynamic_icp/method/tracking/patches.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kRoundingOfPlaces_m = 0.01;  // more than rounding moves a point
-constexpr std::size_t kRowsOfPatch = RangeImage::kPatch;
-constexpr std::size_t kPatchesOfBlock = 8;
-constexpr double kNever = std::numeric_limits<double>::infinity();
 constexpr std::size_t kMostSought = 64;  // bodies on the stack; more cost an allocation
+constexpr std::size_t kTogether = 16;    // bodies for which points are put into the world at once
 
 /// A box in which rows are looked for.
 struct SoughtBox {
-  OrientedBox box;         ///< world, at the stamp
-  Vector3d centre_sensor;  ///< m, sensor frame at the stamp
-  Vector3d half_sensor;    ///< m, of the box around it along the axes of the sensor
-  Vector3d drift_sensor;   ///< m/s, of the sensor against it
+  OrientedBox box;    ///< world, at the stamp
+  SoughtPlace place;  ///< of the box, seen from the sensor
 };
 
+/// The cylinder around a box in the frame of the sensor that moves with `drift` (m/s).
+SoughtPlace place_of(const OrientedBox& box, const Vector3d& drift) {
+  const double lean_m = box.size.z() * box.axes.col(2).head<2>().norm();
+  return {box.centre, drift, 0.5 * (box.size.head<2>().norm() + lean_m), 0.5 * aligned_extent(box).z()};
+}
+
+OrientedBox moved_by(const Eigen::Isometry3d& T, const OrientedBox& box) {
+  return {T * box.centre, T.linear() * box.axes, box.size};
+}
+
 SoughtBox sought_box(const Expectation& expected, const SensorMotion& sensor) {
-  SoughtBox sought;
-  OrientedBox& box = sought.box = expected.box_above_ground();
+  OrientedBox box = expected.box_above_ground();
   box.size.head<2>().array() += 2.0 * expected.gate_m;
   box.size.z() += expected.gate_m;
   box.centre += 0.5 * expected.gate_m * box.axes.col(2);
   const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
-  sought.centre_sensor = T_sensor_world * box.centre;
-  sought.half_sensor = 0.5 * aligned_extent({box.centre, T_sensor_world.linear() * box.axes, box.size});
-  sought.drift_sensor = T_sensor_world.linear() * (sensor.velocity_world - expected.velocity);
-  return sought;
+  const Vector3d drift = T_sensor_world.linear() * (expected.velocity - sensor.velocity_world);
+  return {box, place_of(moved_by(T_sensor_world, box), drift)};
 }
-
-/// Where and when some rows of a scan were measured.
-struct Whereabouts {
-  Eigen::AlignedBox3d around;         ///< m, sensor frames
-  Interval seconds{kNever, -kNever};  ///< after the stamp
-
-  void extend(const Whereabouts& other) {
-    around.extend(other.around);
-    seconds = {std::min(seconds.low, other.seconds.low), std::max(seconds.high, other.seconds.high)};
-  }
-
-  /// How far the turn of the sensor since the stamp may move them, m.
-  [[nodiscard]] double turned_m(const SensorMotion& sensor) const {
-    const double latest_s = std::max(std::abs(seconds.low), std::abs(seconds.high));
-    const double turned_rad = latest_s * sensor.angular_velocity_sensor.norm();
-    return turned_rad * (1.0 + 0.5 * turned_rad) * around.min().cwiseAbs().cwiseMax(around.max().cwiseAbs()).norm();
-  }
-
-  /// Whether some of them may be in a box, as far as they may be moved.
-  [[nodiscard]] bool may_meet(const SoughtBox& sought, double moved_m) const {
-    const Eigen::Array3d place = sought.centre_sensor - seconds.middle() * sought.drift_sensor;
-    const Eigen::Array3d reach =
-        (sought.half_sensor + 0.5 * seconds.length() * sought.drift_sensor.cwiseAbs()).array() +
-        (moved_m + kRoundingOfPlaces_m);
-    return (place + reach >= around.min().array()).all() && (place - reach <= around.max().array()).all();
-  }
-};
 
 /// Points of a patch with the times of their measurement.
 struct TimedPatch {
-  std::array<double, kRowsOfPatch> x;  ///< m
-  std::array<double, kRowsOfPatch> y;
-  std::array<double, kRowsOfPatch> z;
-  std::array<double, kRowsOfPatch> time;  ///< s after the stamp
+  std::array<double, PatchBlock::kRows> x;  ///< m
+  std::array<double, PatchBlock::kRows> y;
+  std::array<double, PatchBlock::kRows> z;
+  std::array<double, PatchBlock::kRows> time;  ///< s after the stamp
   std::size_t count = 0;
 };
 
@@ -130,14 +104,14 @@ void put_into_world(const SensorMotion& sensor, TimedPatch& patch) {
 
 /// Whether each point of a patch is in a box that moves with this velocity (m/s), all in one frame.
 void find_inside(const TimedPatch& patch, const OrientedBox& box, const Vector3d& velocity,
-                 std::array<std::uint8_t, kRowsOfPatch>& is_inside) {
+                 std::array<std::uint8_t, PatchBlock::kRows>& is_inside) {
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     const std::size_t n = patch.count;
     const Eigen::Matrix3d axes = box.axes;
     const Vector3d centre = box.centre;
     const Vector3d v = velocity;
     const Vector3d half = 0.5 * box.size;
-    std::array<double, kRowsOfPatch> beyond;  // the farthest of the faces, m
+    std::array<double, PatchBlock::kRows> beyond;  // the farthest of the faces, m
     for (std::size_t i = 0; i < n; ++i) {
       const double x = patch.x[i] - patch.time[i] * v.x() - centre.x();
       const double y = patch.y[i] - patch.time[i] * v.y() - centre.y();
@@ -166,72 +140,59 @@ void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMot
     sought.push_back(sought_box(expected, sensor));
   }
   const auto flag_patch = [&](std::size_t begin, const TimedPatch& patch, std::size_t k) {
-    std::array<std::uint8_t, kRowsOfPatch> is_inside;
+    std::array<std::uint8_t, PatchBlock::kRows> is_inside;
     find_inside(patch, sought[k].box, expectations[k].velocity, is_inside);
     visit_flagged(is_inside, 0, patch.count, [&](std::size_t i) {
       const std::size_t row = begin + i;
-      if (is_moving[row] == 0 &&
-          expectations[k].gate_ratio(sensor.direction_world(scan.directions()[row], patch.time[i]), radial[row]) <
-              1.0) {
+      const auto is_expected = [&] {
+        const Vector3d direction = sensor.direction_world(scan.directions()[row], patch.time[i]);
+        return expectations[k].gate_ratio(direction, radial[row]) < 1.0;
+      };
+      if (is_moving[row] == 0 && is_expected()) {
         is_moving[row] = 1;
       }
     });
   };
-  // Few blocks of rows are near any body, and few patches of these.
-  const auto flag_block = [&](std::size_t begin, std::size_t end) {
-    std::array<Whereabouts, kPatchesOfBlock> patches;
-    Whereabouts block;
-    for (std::size_t row = begin; row < end; row += kRowsOfPatch) {
-      const std::size_t count = std::min(kRowsOfPatch, end - row);
-      Whereabouts& where = patches[(row - begin) / kRowsOfPatch];
-      where.around = box_around(&scan.points()[row], count);
-      where.seconds = scan.has_times() ? interval_around(std::span(scan.times()).subspan(row, count)) : Interval{};
-      block.extend(where);
-    }
-    const double turned_m = block.turned_m(sensor);
-    if (std::none_of(sought.begin(), sought.end(),
-                     [&](const SoughtBox& one) { return block.may_meet(one, turned_m); })) {
-      return;
-    }
-    for (std::size_t row = begin; row < end; row += kRowsOfPatch) {
-      const Whereabouts& where = patches[(row - begin) / kRowsOfPatch];
-      const double where_turned_m = where.turned_m(sensor);
-      TimedPatch patch;
-      for (std::size_t k = 0; k < sought.size(); ++k) {
-        if (!where.may_meet(sought[k], where_turned_m)) {
-          continue;
+  // Few patches are near any body. Their points are put into the world for some bodies together.
+  const double turn_rps = sensor.angular_velocity_sensor.norm();
+  const auto flag_block = [&](std::size_t, std::size_t begin, std::size_t end) {
+    PatchBlock patches;
+    patches.bound(scan, begin, end, turn_rps);
+    for (std::size_t first = 0; first < sought.size(); first += kTogether) {
+      const std::size_t together = std::min(kTogether, sought.size() - first);
+      std::array<PatchBlock::Flags, kTogether> may_hold;
+      PatchBlock::Flags is_needed{};
+      for (std::size_t k = 0; k < together; ++k) {
+        patches.find(sought[first + k].place, may_hold[k]);
+        for (std::size_t patch = 0; patch < patches.count(); ++patch) {
+          is_needed[patch] |= may_hold[k][patch];
         }
-        if (patch.count == 0) {
-          take_patch(scan, row, std::min(kRowsOfPatch, end - row), patch);
-          put_into_world(sensor, patch);
-        }
-        flag_patch(row, patch, k);
       }
+      visit_flagged(is_needed, 0, patches.count(), [&](std::size_t patch) {
+        const std::size_t row = begin + patch * PatchBlock::kRows;
+        TimedPatch points;
+        take_patch(scan, row, std::min(PatchBlock::kRows, end - row), points);
+        put_into_world(sensor, points);
+        for (std::size_t k = 0; k < together; ++k) {
+          if (may_hold[k][patch] != 0) {
+            flag_patch(row, points, first + k);
+          }
+        }
+      });
     }
   };
-  constexpr std::size_t kRowsOfBlock = kPatchesOfBlock * kRowsOfPatch;
-  workers.for_blocks(sought.empty() ? 0 : scan.size(), kPointBlock,
-                     [&](std::size_t, std::size_t block_begin, std::size_t block_end) {
-                       for (std::size_t begin = block_begin; begin < block_end; begin += kRowsOfBlock) {
-                         flag_block(begin, std::min(begin + kRowsOfBlock, block_end));
-                       }
-                     });
+  workers.for_blocks(sought.empty() ? 0 : scan.size(), PatchBlock::kRows * PatchBlock::kPatches, flag_block);
 }
 
 void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows) {
   rows.clear();
   const Eigen::Isometry3d T_sensor_world = input.sensor.T_world_sensor.inverse();
-  OrientedBox box = expected.box_above_ground();  // in the frame of the points
-  box.centre = T_sensor_world * box.centre;
-  box.axes = T_sensor_world.linear() * box.axes;
+  const OrientedBox box = moved_by(T_sensor_world, expected.box_above_ground());
   const Vector3d velocity = T_sensor_world.linear() * expected.velocity;
-  // What moves during the sweep is not seen where it is at the stamp.
-  const Vector3d half = 0.5 * aligned_extent(box) + input.sweep_s * velocity.cwiseAbs();
-  const Vector3d reach = half + Vector3d::Constant(kRoundingOfPlaces_m);
-  input.view.visit_patches({box.centre - reach, box.centre + reach}, [&](std::size_t begin, std::size_t end) {
+  input.view.visit_patches(place_of(box, velocity), [&](std::size_t begin, std::size_t end) {
     TimedPatch patch;
     take_patch(input.scan, begin, end - begin, patch);
-    std::array<std::uint8_t, kRowsOfPatch> is_inside;
+    std::array<std::uint8_t, PatchBlock::kRows> is_inside;
     find_inside(patch, box, velocity, is_inside);
     visit_flagged(is_inside, 0, patch.count, [&](std::size_t i) {
       if (input.is_moving[begin + i] == 0) {

@@ -15,8 +15,7 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::size_t kBlock = RangeImage::kSector;  // of points
-static_assert(kBlock <= Coordinates::kMost);
+constexpr std::size_t kBlock = Coordinates::kMost;  // of points
 constexpr int kColumns = 720;
 constexpr int kRows = 120;
 constexpr double kSlopePerRow = 0.0175;  // a degree
@@ -108,27 +107,29 @@ double RangeImage::cell_width() { return 8.0 / kColumns; }  // where the measure
 void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, const Workers& workers) {
   const std::size_t rows = scan.size();
   nearest_squared_.assign(static_cast<std::size_t>(kColumns * kRows), std::numeric_limits<float>::infinity());
-  patches_.resize(Workers::block_count(rows, kPatch));
-  sectors_.resize(Workers::block_count(rows, kBlock));
+  constexpr std::size_t kRowsOfPatches = PatchBlock::kRows * PatchBlock::kPatches;
+  patches_.resize(Workers::block_count(rows, kRowsOfPatches));
   places_.resize(rows);
   squared_.resize(rows);
   rows_of_block_.resize(Workers::block_count(rows, kBlock));
-  workers.for_blocks(rows, kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+  const auto draw_block = [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     Coordinates at;
     at.take(&scan.points()[begin], count);
     measure_squared(at, count, &squared_[begin]);
-    sectors_[block].setEmpty();
-    for (std::size_t row = begin; row < end; row += kPatch) {
-      patches_[row / kPatch] = box_around(&scan.points()[row], std::min(kPatch, end - row));
-      sectors_[block].extend(patches_[row / kPatch]);
-    }
     if (scan.has_times()) {
       at.take(&scan.directions()[begin], count);
       take_back_motion(at, &scan.times()[begin], velocity_sensor, count, &squared_[begin]);
     }
-    rows_of_block_[block] = find_places(at, count, &places_[begin]);
-  });
+    rows_of_block_[begin / kBlock] = find_places(at, count, &places_[begin]);
+  };
+  workers.for_blocks(rows, kRowsOfPatches,
+                     [&](std::size_t patches, std::size_t patches_begin, std::size_t patches_end) {
+                       patches_[patches].bound(scan, patches_begin, patches_end, 0.0);
+                       for (std::size_t begin = patches_begin; begin < patches_end; begin += kBlock) {
+                         draw_block(begin, std::min(begin + kBlock, patches_end));
+                       }
+                     });
   for (std::size_t row = 0; row < rows; ++row) {
     float& nearest = nearest_squared_[places_[row]];
     nearest = std::min(nearest, squared_[row]);

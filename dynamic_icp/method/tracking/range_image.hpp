@@ -13,6 +13,8 @@
 
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
+#include "dynamic_icp/method/tracking/flags.hpp"
+#include "dynamic_icp/method/tracking/patches.hpp"
 
 namespace dynamic_icp::tracking {
 
@@ -48,26 +50,19 @@ class RangeImage {
   /// a fence or leaves is more.
   [[nodiscard]] bool are_mirrored(std::span<const std::uint32_t> rows) const;
 
-  /// Rows that follow each other are seen near each other more often than not: the boxes (m, sensor frame) around each
-  /// `kPatch` and each `kSector` rows of the deskewed scan.
-  using Patch = Eigen::AlignedBox3d;
-  static constexpr std::size_t kPatch = 64;
-  static constexpr std::size_t kSector = 512;
-  /// Calls visit(begin, end) for the rows [begin, end) of each patch that has a part in a region (m, sensor frame),
-  /// ascending.
+  /// Calls visit(begin, end) for the rows [begin, end) of each patch of the deskewed scan that may have points in a
+  /// place, ascending.
   template <typename Visit>
-  void visit_patches(const Eigen::AlignedBox3d& region, const Visit& visit) const {
-    constexpr std::size_t kPatches = kSector / kPatch;
-    for (std::size_t sector = 0; sector < sectors_.size(); ++sector) {
-      if (!sectors_[sector].intersects(region)) {
-        continue;
-      }
-      const std::size_t end = std::min((sector + 1) * kPatches, patches_.size());
-      for (std::size_t patch = sector * kPatches; patch < end; ++patch) {
-        if (patches_[patch].intersects(region)) {
-          visit(patch * kPatch, std::min((patch + 1) * kPatch, places_.size()));
-        }
-      }
+  void visit_patches(const SoughtPlace& place, const Visit& visit) const {
+    std::size_t block_begin = 0;
+    for (const PatchBlock& patches : patches_) {
+      PatchBlock::Flags may_hold;
+      patches.find(place, may_hold);
+      visit_flagged(may_hold, 0, patches.count(), [&](std::size_t patch) {
+        const std::size_t begin = block_begin + patch * PatchBlock::kRows;
+        visit(begin, std::min(begin + PatchBlock::kRows, places_.size()));
+      });
+      block_begin += PatchBlock::kRows * PatchBlock::kPatches;
     }
   }
 
@@ -84,8 +79,7 @@ class RangeImage {
   std::vector<float> nearest_squared_;  ///< m^2, column by column; infinite where nothing is seen
   std::vector<char> column_seen_;
   Rows seen_rows_;
-  std::vector<Patch> patches_;
-  std::vector<Patch> sectors_;
+  std::vector<PatchBlock> patches_;
 
   void find_seen_columns();
   [[nodiscard]] bool is_in_view(int column) const;

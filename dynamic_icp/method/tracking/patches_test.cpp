@@ -1,0 +1,72 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/patches.hpp"
+
+#include <cmath>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/random_source.hpp"
+#include "dynamic_icp/method/tracking/sensor_motion.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Columns of points one above the other, up to 60 m away, as a sensor sees them that looks around in 0.1 s.
+Scan columns(std::size_t rows, bool has_times) {
+  RawScan raw;
+  for (std::size_t i = 0; i < rows; ++i) {
+    const RandomSource one = RandomSource(6).fork(i);
+    const double azimuth = 0.02 * std::floor(static_cast<double>(i) / 50.0);
+    const double range = one.uniform(0, 4.0, 60.0);
+    raw.points.emplace_back(range * std::cos(azimuth), range * std::sin(azimuth), one.uniform(1, -2.0, 6.0));
+    raw.doppler.push_back(0.0);
+    if (has_times) {
+      raw.times.push_back(0.1 * static_cast<double>(i) / static_cast<double>(rows) - 0.02);
+    }
+  }
+  return Scan::from_raw(raw);
+}
+
+TEST(PatchBlock, APatchWithPointsInAPlaceIsFoundWhileTheSensorTurns) {
+  const Vector3d turning(0.3, -0.2, 1.0);
+  for (const std::size_t rows : {1u, 63u, 66u, 131u, 4096u}) {
+    for (const bool has_times : {false, true}) {
+      const Scan scan = columns(rows, has_times);
+      SensorMotion sensor;  // it does not move: what is sought does
+      sensor.angular_velocity_sensor = turning;
+      PatchBlock patches;
+      patches.bound(scan, 0, rows, turning.norm());
+      ASSERT_EQ(patches.count(), (rows + 63) / 64);
+      std::size_t found = 0;
+      std::size_t needed = 0;
+      for (std::uint64_t k = 0; k < 200; ++k) {
+        const RandomSource one = RandomSource(7).fork(k);
+        const Vector3d at = scan.points()[static_cast<std::size_t>(one.uniform(0, 0.0, 1.0) * double(rows - 1))];
+        const SoughtPlace place{at, 20.0 * Vector3d(one.uniform(1, -1, 1), one.uniform(2, -1, 1), 0.0), 2.0, 0.8};
+        PatchBlock::Flags may_hold{};
+        patches.find(place, may_hold);
+        std::vector<std::uint8_t> holds(patches.count(), 0);
+        for (std::size_t i = 0; i < rows; ++i) {
+          const double time = has_times ? scan.times()[i] : 0.0;
+          const Vector3d apart = sensor.point_world(scan.points()[i], time) - place.centre - time * place.drift;
+          const bool is_there = apart.head<2>().norm() <= place.reach_m && std::abs(apart.z()) <= place.half_height_m;
+          holds[i / 64] |= is_there ? 1 : 0;
+        }
+        for (std::size_t patch = 0; patch < holds.size(); ++patch) {
+          EXPECT_LE(holds[patch], may_hold[patch]) << patch << " of " << rows;
+          needed += holds[patch];
+          found += may_hold[patch];
+        }
+      }
+      EXPECT_GE(needed, 150u);
+      EXPECT_LE(found, (has_times ? 8 : 3) * needed) << "of " << rows << " rows";
+    }
+  }
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
