@@ -64,7 +64,6 @@ struct TrackingInput {
   std::span<const std::uint8_t> is_moving;  ///< for each row
   SensorMotion sensor;
   double stamp_s = 0.0;  ///< since the first scan
-  double sweep_s = 0.0;  ///< largest time of a point, before or after the stamp
   const MovingCells& moving;
   std::span<const std::uint32_t> groups;             ///< of the cells
   std::span<const Eigen::Vector3d> cell_points;      ///< their centroids, world

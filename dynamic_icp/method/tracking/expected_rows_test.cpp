@@ -152,7 +152,7 @@ TEST(ExpectedRows, StaticOnesAreThoseInTheBoxAboveTheGround) {
     const RangeImage view(scan, Vector3d::Zero(), workers);
     const MovingCells moving;
     const GroundHeights heights;
-    const TrackingInput input{scan, radial, is_moving, {}, 0.0, 0.0, moving, {}, {}, {}, view, heights};
+    const TrackingInput input{scan, radial, is_moving, {}, 0.0, moving, {}, {}, {}, view, heights};
     std::vector<std::uint32_t> visited{77};
     find_static_rows(input, expected, visited);
     EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end()));

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "dynamic_icp/method/base/state_archive.hpp"
-#include "dynamic_icp/method/tracking/coordinates.hpp"
 #include "dynamic_icp/method/tracking/expected_rows.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/track_merging.hpp"
@@ -21,18 +20,11 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMax = 2.0;              // new objects are not wider than so many vehicles
-constexpr double kMinSignal = 2.0;        // of the radial velocities of a new object over their spread
-constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
-constexpr double kMinHeight_m = 0.25;     // of what is no ground
-constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
-constexpr int kMany = 1 << 30;            // no drive has so many scans or objects
-constexpr std::size_t kMinPoints = 3;     // of a detection: a velocity has three unknowns
-
-double latest_time(const Scan& scan) {
-  const Interval times = scan.times().empty() ? Interval{} : interval_around(scan.times());
-  return std::max(std::abs(times.low), std::abs(times.high));
-}
+constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
+constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
+constexpr double kMinHeight_m = 0.25;  // of what is no ground
+constexpr int kMany = 1 << 30;         // no drive has so many objects
+constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
 
 /// Whether a point that stands cannot be part of a body that makes it expect a radial velocity.
 bool contradicts(const Expectation& expected, const Vector3d& direction, double radial_mps,
@@ -64,58 +56,13 @@ bool are_finite(std::span<const double> values) {
 
 }  // namespace
 
-/// A track with what is known of it besides its motion. Its memory is used again by another one.
-struct ObjectTracker::Entry {
-  std::int64_t id = 0;
-  Track track;                             ///< at the mean time of its last detection
-  Track predicted;                         ///< at the stamp of the present scan, with what that scan shows
-  BoxEstimate now = {};                    ///< of the latter
-  std::optional<double> predicted_s = {};  ///< that stamp
-  bool confirmed = false;
-  bool has_moved = false;  ///< beyond doubt
-  double moved_s = 0.0;    ///< when it moved last
-  int age = 0;
-  int seen = 0;
-  int missed = 0;
-  std::vector<std::uint32_t> members = {};
-
-  // Entries change their places: without room from the beginning each would grow on its own.
-  Entry() {
-    for (std::vector<std::uint32_t>* rows : {&members, &static_rows, &merged}) {
-      rows->reserve(kUsualRows);
-    }
-  }
-
-  // For their memory
-  Track other;
-  Detection detection = {};
-  std::vector<std::uint32_t> static_rows = {};
-  std::vector<std::uint32_t> merged = {};
-
-  /// The track at the stamp of a scan. It is asked for several times a scan.
-  void predict(double stamp_s, const TrackConfig& config) {
-    if (predicted_s == stamp_s) {
-      return;
-    }
-    predicted = track;
-    predicted.predict(stamp_s, config);
-    now = predicted.estimate();
-    predicted_s = stamp_s;
-  }
-
-  [[nodiscard]] SeenTrack seen_track() const { return {predicted, now, members.size()}; }
-};
-
 ObjectTracker::ObjectTracker(const TrackerConfig& config) : config_(config) { check_fields(fields(config_)); }
-ObjectTracker::~ObjectTracker() = default;
-ObjectTracker::ObjectTracker(ObjectTracker&&) noexcept = default;
-ObjectTracker& ObjectTracker::operator=(ObjectTracker&&) noexcept = default;
 
-std::span<ObjectTracker::Entry> ObjectTracker::living() { return std::span(entries_).first(living_); }
+std::span<TrackRecord> ObjectTracker::living() { return std::span(entries_).first(living_); }
 
 /// Makes an entry behind the living ones the last of these.
-void ObjectTracker::keep(Entry& entry) {
-  if (Entry& last = entries_[living_++]; &last != &entry) {
+void ObjectTracker::keep(TrackRecord& entry) {
+  if (TrackRecord& last = entries_[living_++]; &last != &entry) {
     std::swap(last, entry);
   }
 }
@@ -140,7 +87,8 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
                   : SensorMotion{T_world_sensor};
   last_stamp_ = scan.stamp();
   T_world_last_ = T_world_sensor;
-  ego_covariance_world_ = T_world_sensor.linear() * ego_covariance * T_world_sensor.linear().transpose();
+  ego_error_ = {T_world_sensor.translation(),
+                T_world_sensor.linear() * ego_covariance * T_world_sensor.linear().transpose()};
 
   if (support) {
     const Vector3d normal = T_world_sensor.linear() * support->normal;
@@ -148,14 +96,16 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
   }
 
   const TrackingInput input = prepare(scan, radial, is_moving, sensor, workers);
-  expect(input.stamp_s, sensor, [](const Entry&) { return true; });
+  expect(input.stamp_s, sensor, [](const TrackRecord&) { return true; });
   gather_traffic(sensor);
   associate(input, expected_, config_.growth_m, owners_);
   collect_members(input, workers);
   initiate_tracks(input, workers);
   delete_tracks(input);
   objects_.resize(std::max(objects_.size(), living_));
-  workers.for_each(living_, 1, [&](std::size_t k) { report(sensor, ego_covariance, entries_[k], objects_[k]); });
+  workers.for_each(living_, 1, [&](std::size_t k) {
+    entries_[k].report(T_world_sensor, ego_covariance, ground_.ground().up(), config_, objects_[k]);
+  });
   return std::span(objects_).first(living_);
 }
 
@@ -175,17 +125,8 @@ TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> r
     cell_points_.push_back(sensor.T_world_sensor * cell.centroid);
     cell_directions_.push_back(sensor.direction_world(cell.direction, cell.time_s));
   }
-  return {scan,
-          radial,
-          is_moving,
-          sensor,
-          seconds_between(*first_stamp_, scan.stamp()),
-          latest_time(scan),
-          moving_,
-          groups_,
-          cell_points_,
-          cell_directions_,
-          view_,
+  return {scan,     radial,  is_moving,    sensor,           seconds_between(*first_stamp_, scan.stamp()),
+          moving_,  groups_, cell_points_, cell_directions_, view_,
           *heights_};
 }
 
@@ -193,7 +134,7 @@ TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> r
 template <typename Choice>
 void ObjectTracker::expect(double stamp_s, const SensorMotion& sensor, const Choice& choice) {
   expected_.clear();
-  for (Entry& entry : living()) {
+  for (TrackRecord& entry : living()) {
     if (choice(entry)) {
       entry.predict(stamp_s, config_.track);
       expected_.emplace_back(entry.predicted, entry.now, sensor, config_);
@@ -210,7 +151,7 @@ void ObjectTracker::gather_traffic(const SensorMotion& sensor) {
     }
   };
   add(sensor.T_world_sensor.translation(), sensor.velocity_world, sensor.velocity_world);
-  for (const Entry& entry : living()) {
+  for (const TrackRecord& entry : living()) {
     if (entry.confirmed && entry.predicted.is_sure_of_heading()) {
       add(entry.now.box.centre, entry.now.velocity, entry.now.box.axes.col(0));
     }
@@ -220,7 +161,8 @@ void ObjectTracker::gather_traffic(const SensorMotion& sensor) {
 void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
                                   const Workers& workers, std::vector<std::uint8_t>& is_moving) {
   if (living_ > 0) {
-    expect(seconds_between(*first_stamp_, scan.stamp()), sensor, [](const Entry& entry) { return entry.confirmed; });
+    expect(seconds_between(*first_stamp_, scan.stamp()), sensor,
+           [](const TrackRecord& entry) { return entry.confirmed; });
     flag_rows(scan, radial, sensor, expected_, workers, is_moving);
   }
 }
@@ -241,7 +183,7 @@ void ObjectTracker::clear_carrier(const Scan& scan, const Workers& workers,
 }
 
 /// Adds to a slow track the points in its box that are not among the moving ones but move as it does.
-void ObjectTracker::gather_static(const TrackingInput& input, const Expectation& expected, Entry& entry) const {
+void ObjectTracker::gather_static(const TrackingInput& input, const Expectation& expected, TrackRecord& entry) const {
   if (!entry.has_moved || !expected.may_appear_static(input.sensor.T_world_sensor.translation(), config_.slow_mps)) {
     return;
   }
@@ -266,7 +208,7 @@ void ObjectTracker::gather_static(const TrackingInput& input, const Expectation&
 
 /// Lets each track take in its points.
 void ObjectTracker::collect_members(const TrackingInput& input, const Workers& workers) {
-  for (Entry& entry : living()) {
+  for (TrackRecord& entry : living()) {
     entry.members.clear();
   }
   for (std::size_t i = 0; i < input.moving.rows.size(); ++i) {
@@ -291,7 +233,7 @@ bool ObjectTracker::detect(const TrackingInput& input, std::span<const std::uint
 }
 
 /// Lets a track take in its points and such as stand but may be its own.
-void ObjectTracker::correct(const TrackingInput& input, const Expectation& expected, Entry& entry) const {
+void ObjectTracker::correct(const TrackingInput& input, const Expectation& expected, TrackRecord& entry) const {
   const auto miss = [&] {
     ++entry.missed;
     entry.members.clear();
@@ -317,28 +259,8 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   ++entry.seen;
   const bool seen_often =
       entry.seen >= config_.confirm_scans || entry.members.size() >= static_cast<std::size_t>(config_.confirm_points);
-  entry.confirmed = entry.confirmed || (seen_often && is_credible(entry));
-  note_motion(entry, input.stamp_s);
-}
-
-/// Whether the velocity is worth reporting: known well enough, or as well as it will be.
-bool ObjectTracker::is_credible(const Entry& entry) const {
-  // What stands seems to move with the error of the velocity of the sensor.
-  const Vector3d sight = (entry.now.box.centre - T_world_last_.translation()).normalized();
-  const double ego_sigma = std::sqrt(sight.dot(ego_covariance_world_ * sight));
-  if (entry.track.best().signal_mps() < kBeyondEgo * ego_sigma) {
-    return false;
-  }
-  const double variance = entry.now.velocity_covariance.topLeftCorner<2, 2>().trace();
-  return variance < config_.confirm_sigma_mps * config_.confirm_sigma_mps || entry.seen >= config_.confirm_anyway_scans;
-}
-
-void ObjectTracker::note_motion(Entry& entry, double stamp_s) const {
-  const double speed = entry.now.velocity.norm();
-  entry.has_moved = entry.has_moved || (entry.confirmed && speed > config_.slow_mps);
-  if (speed >= config_.min_speed_mps) {
-    entry.moved_s = stamp_s;
-  }
+  entry.confirmed = entry.confirmed || (seen_often && entry.is_credible(ego_error_, config_));
+  entry.note_motion(input.stamp_s, config_);
 }
 
 /// Groups nobody owns become tracks.
@@ -369,7 +291,7 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const Workers& w
 }
 
 /// Makes a new track of these rows of the scan. It was never seen if they are no object.
-void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint32_t> rows, Entry& entry) const {
+void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint32_t> rows, TrackRecord& entry) const {
   entry.seen = 0;
   if (input.view.are_mirrored(rows)) {
     return;
@@ -404,100 +326,39 @@ void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint3
   entry.has_moved = false;
   entry.moved_s = 0.0;
   const bool seen_often = rows.size() >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
-  entry.confirmed = seen_often && is_credible(entry);
-  note_motion(entry, input.stamp_s);
-}
-
-/// Whether nothing is to be expected of a track any more.
-bool ObjectTracker::is_over(const Entry& entry, double stamp_s) const {
-  if (!entry.confirmed) {
-    return entry.missed > 0 || entry.now.velocity.norm() < config_.min_speed_mps;
-  }
-  if (!entry.has_moved && entry.now.velocity.norm() < config_.min_speed_mps) {
-    return true;
-  }
-  const double variance = entry.now.centre_covariance.topLeftCorner<2, 2>().trace();
-  const bool is_vague = variance > config_.coast_sigma_m * config_.coast_sigma_m;
-  return (entry.missed > 0 && (is_vague || stamp_s - entry.track.time_s() > config_.coast_s)) ||
-         stamp_s - entry.moved_s > config_.stand_s;
+  entry.confirmed = seen_often && entry.is_credible(ego_error_, config_);
+  entry.note_motion(input.stamp_s, config_);
 }
 
 /// Ends tracks of which nothing is to be expected any more, and makes one of those that share a place.
 void ObjectTracker::delete_tracks(const TrackingInput& input) {
-  const std::span<Entry> all = living();
+  const std::span<TrackRecord> all = living();
   living_ = 0;
-  for (Entry& entry : all) {
-    if (is_over(entry, input.stamp_s)) {
+  for (TrackRecord& entry : all) {
+    if (entry.is_over(input.stamp_s, config_)) {
       continue;
     }
-    const std::span<Entry> kept = living();
-    const auto same = std::find_if(kept.begin(), kept.end(), [&](const Entry& older) {
+    const std::span<TrackRecord> kept = living();
+    const auto same = std::find_if(kept.begin(), kept.end(), [&](const TrackRecord& older) {
       return are_same_object(older.seen_track(), entry.seen_track(), input.view, input.sensor.T_world_sensor, config_);
     });
     if (same == kept.end()) {
       keep(entry);
     } else if (entry.members.size() > same->members.size()) {
-      // The name of the older one continues with the state of what is seen more of.
-      entry.id = same->id;
-      entry.age = same->age;
-      entry.seen = same->seen;
-      entry.confirmed = same->confirmed || entry.confirmed;
-      entry.has_moved = same->has_moved || entry.has_moved;
+      entry.take_name_of(*same);
       std::swap(*same, entry);
     }
   }
 }
 
-void ObjectTracker::report(const SensorMotion& sensor, const Eigen::Matrix3d& ego_covariance, Entry& entry,
-                           TrackedObject& object) const {
-  const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
-  const Eigen::Matrix3d R = T_sensor_world.linear();
-  const BodyFilter& body = entry.predicted.body();
-  object.id = entry.id;
-  object.status = !entry.confirmed   ? TrackStatus::kTentative
-                  : entry.missed > 0 ? TrackStatus::kCoasting
-                                     : TrackStatus::kConfirmed;
-  object.velocity_sensor = R * entry.now.velocity;
-  object.covariance = R * entry.now.velocity_covariance * R.transpose() + ego_covariance;
-  object.yaw_rate_rps = body.yaw_rate();
-  object.yaw_rate_variance = body.covariance()(BodyFilter::kYawRate, BodyFilter::kYawRate);
-  object.box = entry.now.box;
-  object.box.centre = T_sensor_world * object.box.centre;
-  object.box.axes = R * object.box.axes;
-  object.centre_covariance = R * entry.now.centre_covariance * R.transpose();
-  object.faces = entry.now.faces;
-  object.centroid = object.box.centre;
-  object.extent = aligned_extent(object.box);
-  // Not of unit length: straight above the sensor it is zero, and nothing counts as observed.
-  const Vector3d across = (R * ground_.ground().up()).cross(object.centroid);
-  const double sigma_mps = config_.tangential_sigma_mps;
-  object.tangential_observed = across.dot(object.covariance * across) < sigma_mps * sigma_mps * across.squaredNorm();
-  Track& later = entry.other;
-  later = entry.predicted;
-  later.predict(later.time_s() + object.prediction.after_s, config_.track);
-  const BoxEstimate then = later.estimate();
-  object.prediction.centre = T_sensor_world * then.box.centre;
-  const double after_s = object.prediction.after_s;
-  object.prediction.centre_covariance = R * then.centre_covariance * R.transpose() + after_s * after_s * ego_covariance;
-  object.prediction.velocity_sensor = R * then.velocity;
-  object.age_scans = entry.age;
-  object.scans_seen = entry.seen;
-  refill(object.members, std::span<const std::uint32_t>(entry.members));
-}
-
 /// What tracks predict is computed from their states; what lies behind the living ones is memory.
 void ObjectTracker::state(StateArchive& archive) {
   entries_.resize(living_);
-  archive.each(entries_, [&](Entry& entry) {
-    archive(entry.id, entry.track, entry.confirmed, entry.has_moved, entry.moved_s, entry.age, entry.seen,
-            entry.missed);
-    const auto is_count = [](int count) { return count >= 0 && count < kMany; };
-    archive.require(entry.id > 0 && is_count(entry.age) && is_count(entry.seen) && is_count(entry.missed), "an object");
-  });
+  archive.each(entries_, [&](TrackRecord& entry) { archive(entry); });
   living_ = entries_.size();
   archive(ground_, next_id_, first_stamp_, last_stamp_, T_world_last_);
   archive.require(next_id_ > 0 && next_id_ < kMany &&
-                      std::ranges::all_of(entries_, [&](const Entry& entry) { return entry.id < next_id_; }),
+                      std::ranges::all_of(entries_, [&](const TrackRecord& entry) { return entry.id < next_id_; }),
                   "the number of an object");
   archive.require(first_stamp_.has_value() == last_stamp_.has_value() &&
                       (!last_stamp_ || *first_stamp_ <= *last_stamp_) && (last_stamp_ || entries_.empty()),

@@ -17,6 +17,7 @@
 #include "dynamic_icp/method/tracking/expectation.hpp"
 #include "dynamic_icp/method/tracking/ground.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
+#include "dynamic_icp/method/tracking/track_record.hpp"
 #include "dynamic_icp/method/tracking/tracked_object.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
@@ -41,9 +42,6 @@ class ObjectTracker {
  public:
   /// Throws UsageError when the configuration is out of range.
   explicit ObjectTracker(const TrackerConfig& config);
-  ~ObjectTracker();
-  ObjectTracker(ObjectTracker&&) noexcept;
-  ObjectTracker& operator=(ObjectTracker&&) noexcept;
 
   /// Sets `is_moving` of the rows that confirmed tracks expect to be theirs in a scan that is not deskewed: what
   /// crosses the line of sight has no radial velocity, and tells itself from what stands by its past alone.
@@ -75,37 +73,30 @@ class ObjectTracker {
   void state(StateArchive& archive);
 
  private:
-  struct Entry;
-
-  [[nodiscard]] std::span<Entry> living();
-  void keep(Entry& entry);
+  [[nodiscard]] std::span<TrackRecord> living();
+  void keep(TrackRecord& entry);
   TrackingInput prepare(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
                         const SensorMotion& sensor, const Workers& workers);
   void gather_traffic(const SensorMotion& sensor);
   template <typename Choice>
   void expect(double stamp_s, const SensorMotion& sensor, const Choice& choice);
   void collect_members(const TrackingInput& input, const Workers& workers);
-  void gather_static(const TrackingInput& input, const Expectation& expected, Entry& entry) const;
+  void gather_static(const TrackingInput& input, const Expectation& expected, TrackRecord& entry) const;
   bool detect(const TrackingInput& input, std::span<const std::uint32_t> rows, Detection& detection) const;
-  void correct(const TrackingInput& input, const Expectation& expected, Entry& entry) const;
+  void correct(const TrackingInput& input, const Expectation& expected, TrackRecord& entry) const;
   void initiate_tracks(const TrackingInput& input, const Workers& workers);
-  void begin(const TrackingInput& input, std::span<const std::uint32_t> rows, Entry& entry) const;
-  [[nodiscard]] bool is_credible(const Entry& entry) const;
-  void note_motion(Entry& entry, double stamp_s) const;
-  [[nodiscard]] bool is_over(const Entry& entry, double stamp_s) const;
+  void begin(const TrackingInput& input, std::span<const std::uint32_t> rows, TrackRecord& entry) const;
   void delete_tracks(const TrackingInput& input);
-  void report(const SensorMotion& sensor, const Eigen::Matrix3d& ego_covariance, Entry& entry,
-              TrackedObject& object) const;
 
   TrackerConfig config_;
-  std::vector<Entry> entries_;  ///< the tracks, and behind them memory for more
-  std::size_t living_ = 0;      ///< number of tracks
+  std::vector<TrackRecord> entries_;  ///< the tracks, and behind them memory for more
+  std::size_t living_ = 0;            ///< number of tracks
   GroundFilter ground_;
   std::int64_t next_id_ = 1;
   std::optional<Stamp> first_stamp_;
   std::optional<Stamp> last_stamp_;
   Eigen::Isometry3d T_world_last_ = Eigen::Isometry3d::Identity();
-  Eigen::Matrix3d ego_covariance_world_ = Eigen::Matrix3d::Zero();
+  EgoError ego_error_;
 
   // Of the last scan, for their memory
   RangeImage view_;

@@ -1,0 +1,120 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/track_record.hpp"
+
+#include <cmath>
+#include <cstddef>
+#include <span>
+
+#include "dynamic_icp/method/base/state_archive.hpp"
+#include "dynamic_icp/method/tracking/memory.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
+constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
+constexpr int kMostScans = 1 << 30;       // no drive has so many
+
+}  // namespace
+
+// Records change their places: without room from the beginning each would grow on its own.
+TrackRecord::TrackRecord() {
+  for (std::vector<std::uint32_t>* rows : {&members, &static_rows, &merged}) {
+    rows->reserve(kUsualRows);
+  }
+}
+
+void TrackRecord::predict(double stamp_s, const TrackConfig& config) {
+  if (predicted_s == stamp_s) {
+    return;
+  }
+  predicted = track;
+  predicted.predict(stamp_s, config);
+  now = predicted.estimate();
+  predicted_s = stamp_s;
+}
+
+bool TrackRecord::is_credible(const EgoError& ego, const TrackerConfig& config) const {
+  // What stands seems to move with the error of the velocity of the sensor.
+  const Vector3d sight = (now.box.centre - ego.sensor_world).normalized();
+  const double ego_sigma = std::sqrt(sight.dot(ego.covariance * sight));
+  if (track.best().signal_mps() < kBeyondEgo * ego_sigma) {
+    return false;
+  }
+  const double variance = now.velocity_covariance.topLeftCorner<2, 2>().trace();
+  return variance < config.confirm_sigma_mps * config.confirm_sigma_mps || seen >= config.confirm_anyway_scans;
+}
+
+void TrackRecord::note_motion(double stamp_s, const TrackerConfig& config) {
+  const double speed = now.velocity.norm();
+  has_moved = has_moved || (confirmed && speed > config.slow_mps);
+  if (speed >= config.min_speed_mps) {
+    moved_s = stamp_s;
+  }
+}
+
+bool TrackRecord::is_over(double stamp_s, const TrackerConfig& config) const {
+  if (!confirmed) {
+    return missed > 0 || now.velocity.norm() < config.min_speed_mps;
+  }
+  if (!has_moved && now.velocity.norm() < config.min_speed_mps) {
+    return true;
+  }
+  const double variance = now.centre_covariance.topLeftCorner<2, 2>().trace();
+  const bool is_vague = variance > config.coast_sigma_m * config.coast_sigma_m;
+  return (missed > 0 && (is_vague || stamp_s - track.time_s() > config.coast_s)) || stamp_s - moved_s > config.stand_s;
+}
+
+void TrackRecord::take_name_of(const TrackRecord& older) {
+  id = older.id;
+  age = older.age;
+  seen = older.seen;
+  confirmed = older.confirmed || confirmed;
+  has_moved = older.has_moved || has_moved;
+}
+
+void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::Matrix3d& ego_covariance,
+                         const Vector3d& up, const TrackerConfig& config, TrackedObject& object) {
+  const Eigen::Isometry3d T_sensor_world = T_world_sensor.inverse();
+  const Eigen::Matrix3d R = T_sensor_world.linear();
+  const BodyFilter& body = predicted.body();
+  object.id = id;
+  object.status = !confirmed ? TrackStatus::kTentative : missed > 0 ? TrackStatus::kCoasting : TrackStatus::kConfirmed;
+  object.velocity_sensor = R * now.velocity;
+  object.covariance = R * now.velocity_covariance * R.transpose() + ego_covariance;
+  object.yaw_rate_rps = body.yaw_rate();
+  object.yaw_rate_variance = body.covariance()(BodyFilter::kYawRate, BodyFilter::kYawRate);
+  object.box = now.box;
+  object.box.centre = T_sensor_world * object.box.centre;
+  object.box.axes = R * object.box.axes;
+  object.centre_covariance = R * now.centre_covariance * R.transpose();
+  object.faces = now.faces;
+  object.centroid = object.box.centre;
+  object.extent = aligned_extent(object.box);
+  // Not of unit length: straight above the sensor it is zero, and nothing counts as observed.
+  const Vector3d across = (R * up).cross(object.centroid);
+  const double sigma_mps = config.tangential_sigma_mps;
+  object.tangential_observed = across.dot(object.covariance * across) < sigma_mps * sigma_mps * across.squaredNorm();
+  Track& later = other;
+  later = predicted;
+  later.predict(later.time_s() + object.prediction.after_s, config.track);
+  const BoxEstimate then = later.estimate();
+  object.prediction.centre = T_sensor_world * then.box.centre;
+  const double after_s = object.prediction.after_s;
+  object.prediction.centre_covariance = R * then.centre_covariance * R.transpose() + after_s * after_s * ego_covariance;
+  object.prediction.velocity_sensor = R * then.velocity;
+  object.age_scans = age;
+  object.scans_seen = seen;
+  refill(object.members, std::span<const std::uint32_t>(members));
+}
+
+void TrackRecord::state(StateArchive& archive) {
+  archive(id, track, confirmed, has_moved, moved_s, age, seen, missed);
+  const auto is_count = [](int count) { return count >= 0 && count < kMostScans; };
+  archive.require(id > 0 && is_count(age) && is_count(seen) && is_count(missed), "an object");
+}
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,79 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include <Eigen/Core>
+#include <Eigen/Geometry>
+
+#include "dynamic_icp/method/tracking/detection.hpp"
+#include "dynamic_icp/method/tracking/track.hpp"
+#include "dynamic_icp/method/tracking/track_merging.hpp"
+#include "dynamic_icp/method/tracking/tracked_object.hpp"
+#include "dynamic_icp/method/tracking/tracker_config.hpp"
+
+namespace dynamic_icp {
+class StateArchive;
+}  // namespace dynamic_icp
+
+namespace dynamic_icp::tracking {
+
+/// What all velocities over ground share.
+struct EgoError {
+  Eigen::Vector3d sensor_world = Eigen::Vector3d::Zero();  ///< m
+  Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();    ///< of the velocity of the sensor, (m/s)^2, world
+};
+
+/// A track with what is known of it besides its motion: who it is, when it was seen, and how long it lives. Its memory
+/// is used again by another one.
+struct TrackRecord {
+  std::int64_t id = 0;
+  Track track;                             ///< at the mean time of its last detection
+  Track predicted;                         ///< at the stamp of the present scan, with what that scan shows
+  BoxEstimate now = {};                    ///< of the latter
+  std::optional<double> predicted_s = {};  ///< that stamp
+  bool confirmed = false;
+  bool has_moved = false;  ///< beyond doubt
+  double moved_s = 0.0;    ///< when it moved last
+  int age = 0;
+  int seen = 0;
+  int missed = 0;
+  std::vector<std::uint32_t> members = {};  ///< rows of the present scan
+
+  // For their memory
+  Track other;
+  Detection detection = {};
+  std::vector<std::uint32_t> static_rows = {};
+  std::vector<std::uint32_t> merged = {};
+
+  TrackRecord();
+
+  /// The track at the stamp of a scan. It is asked for several times a scan.
+  void predict(double stamp_s, const TrackConfig& config);
+
+  /// Whether the velocity is worth reporting: known well enough, or as well as it will be.
+  [[nodiscard]] bool is_credible(const EgoError& ego, const TrackerConfig& config) const;
+
+  /// Remembers that it moves in the present scan, if it does.
+  void note_motion(double stamp_s, const TrackerConfig& config);
+
+  /// Whether nothing is to be expected of it any more.
+  [[nodiscard]] bool is_over(double stamp_s, const TrackerConfig& config) const;
+
+  /// Goes on as the older one of two that turned out to be one object.
+  void take_name_of(const TrackRecord& older);
+
+  /// What is said of it; `ego_covariance`: of the velocity of the sensor, (m/s)^2, sensor frame; `up`: world.
+  void report(const Eigen::Isometry3d& T_world_sensor, const Eigen::Matrix3d& ego_covariance, const Eigen::Vector3d& up,
+              const TrackerConfig& config, TrackedObject& object);
+
+  [[nodiscard]] SeenTrack seen_track() const { return {predicted, now, members.size()}; }
+
+  /// What is known between two scans.
+  void state(StateArchive& archive);
+};
+
+}  // namespace dynamic_icp::tracking
