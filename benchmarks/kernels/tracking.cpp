@@ -1,5 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <algorithm>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -37,6 +39,26 @@ void object_tracker(benchmark::State& state) {
   count_each(state, points, {.bytes = 2 * kPointBytes + 9, .lines = 1, .operations = 30});
 }
 BENCHMARK(object_tracker)->Apply(one_and_two_threads);
+
+/// The rows that the tracks of all scans but the last expect in that one.
+void expected_rows(benchmark::State& state) {
+  const Workers workers(static_cast<int>(state.range(0)));
+  tracking::ObjectTracker tracker(odometry::WindowOdometryConfig{}.tracking);
+  for (std::size_t i = 0; i + 1 < kScans; ++i) {
+    const KnownScan& scan = known_scan(Sensor::kUsual, i);
+    tracker.update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, {}, workers);
+  }
+  const KnownScan& last = known_scan(Sensor::kUsual, kScans - 1);
+  std::vector<std::uint8_t> flags;
+  for ([[maybe_unused]] auto _ : state) {
+    flags.assign(last.whole.size(), 0);
+    tracker.flag_expected(last.whole, last.radial, {last.T_world_sensor}, workers, flags);
+  }
+  state.counters["flagged"] = static_cast<double>(std::count(flags.begin(), flags.end(), 1));
+  // Every point is looked at once, to see whether it is near a body.
+  count_each(state, last.whole.size(), {.bytes = kPointBytes + 1, .lines = 0, .operations = 10});
+}
+BENCHMARK(expected_rows)->Apply(one_and_two_threads);
 
 }  // namespace
 }  // namespace dynamic_icp::kernels
