@@ -20,8 +20,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostSought = 64;  // bodies on the stack; more cost an allocation
-constexpr std::size_t kTogether = 16;    // bodies for which points are put into the world at once
+constexpr std::size_t kMostSought = 128;  // bodies on the stack; more cost an allocation
+constexpr std::size_t kTogether = 16;     // bodies for which points are put into the world at once
 
 /// A box in which rows are looked for.
 struct SoughtBox {
