@@ -66,11 +66,13 @@ void PatchBlock::bound_times(std::size_t patch, std::span<const double> times, d
   const Interval seconds = interval_around(times);
   time_[patch] = seconds.middle();
   half_time_[patch] = 0.5 * seconds.length();
-  const double turned_rad = turn_rps * std::max(std::abs(seconds.low), std::abs(seconds.high));
-  const Eigen::Vector3d farthest(std::max(std::abs(along_low_[patch]), std::abs(along_high_[patch])),
-                                 std::max(std::abs(across_low_[patch]), std::abs(across_high_[patch])),
-                                 std::max(std::abs(low_[patch]), std::abs(high_[patch])));
-  turned_m_[patch] = turned_rad * (1.0 + 0.5 * turned_rad) * farthest.norm();
+  if (turn_rps > 0.0) {
+    const double turned_rad = turn_rps * std::max(std::abs(seconds.low), std::abs(seconds.high));
+    const Eigen::Vector3d farthest(std::max(std::abs(along_low_[patch]), std::abs(along_high_[patch])),
+                                   std::max(std::abs(across_low_[patch]), std::abs(across_high_[patch])),
+                                   std::max(std::abs(low_[patch]), std::abs(high_[patch])));
+    turned_m_[patch] = turned_rad * (1.0 + 0.5 * turned_rad) * farthest.norm();
+  }
 }
 
 void PatchBlock::find(const SoughtPlace& place, Flags& may_hold) const {
