@@ -51,23 +51,27 @@ std::size_t place(int column, int row) { return static_cast<std::size_t>(column 
 
 // The kernels keep what they sum up to themselves until the end: a store through a pointer could change anything else.
 
-/// The places of `count` points in the image. Returns the rows between which they are.
-RangeImage::Rows find_places(const Coordinates& at, std::size_t count, std::uint32_t* places) {
-  RangeImage::Rows rows;
+/// The places of `count` points in the image. Returns the part of it where they are.
+RangeImage::Part find_places(const Coordinates& at, std::size_t count, std::uint32_t* places) {
+  RangeImage::Part part;
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     const std::size_t n = count;
     std::uint32_t* const place = places;
     int top = 0;
     int bottom = kRows;
+    int first = kColumns;
+    int last = 0;
     for (std::size_t i = 0; i < n; ++i) {
       const Cell cell = cell_of(at.x[i], at.y[i], at.z[i]);
       place[i] = static_cast<std::uint32_t>(cell.column * kRows + cell.row);
       top = std::max(top, cell.row);
       bottom = std::min(bottom, cell.row);
+      first = std::min(first, cell.column);
+      last = std::max(last, cell.column);
     }
-    rows = {bottom, top};
+    part = {bottom, top, first, last};
   });
-  return rows;
+  return part;
 }
 
 /// The squared ranges of `count` points, m^2.
@@ -111,7 +115,7 @@ void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, 
   patches_.resize(Workers::block_count(rows, kRowsOfPatches));
   places_.resize(rows);
   squared_.resize(rows);
-  rows_of_block_.resize(Workers::block_count(rows, kBlock));
+  part_of_block_.resize(Workers::block_count(rows, kBlock));
   const auto draw_block = [&](std::size_t begin, std::size_t end) {
     const std::size_t count = end - begin;
     Coordinates at;
@@ -121,7 +125,7 @@ void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, 
       at.take(&scan.directions()[begin], count);
       take_back_motion(at, &scan.times()[begin], velocity_sensor, count, &squared_[begin]);
     }
-    rows_of_block_[begin / kBlock] = find_places(at, count, &places_[begin]);
+    part_of_block_[begin / kBlock] = find_places(at, count, &places_[begin]);
   };
   workers.for_blocks(rows, kRowsOfPatches,
                      [&](std::size_t patches, std::size_t patches_begin, std::size_t patches_end) {
@@ -135,10 +139,11 @@ void RangeImage::draw(const Scan& scan, const Eigen::Vector3d& velocity_sensor, 
     nearest = std::min(nearest, squared_[row]);
   }
   find_seen_columns();
-  seen_rows_ = {kRows, 0};
-  for (const Rows& of_block : rows_of_block_) {
-    seen_rows_.lowest = std::min(seen_rows_.lowest, of_block.lowest);
-    seen_rows_.highest = std::max(seen_rows_.highest, of_block.highest);
+  lowest_seen_ = kRows;
+  highest_seen_ = 0;
+  for (const Part& of_block : part_of_block_) {
+    lowest_seen_ = std::min(lowest_seen_, of_block.lowest);
+    highest_seen_ = std::max(highest_seen_, of_block.highest);
   }
 }
 
@@ -175,14 +180,27 @@ bool RangeImage::are_mirrored(std::span<const std::uint32_t> rows) const {
     return false;
   }
   std::bitset<kColumns * kRows> is_touched;
+  int first = kColumns;
+  int last = 0;
   for (const std::uint32_t row : rows) {
     is_touched[places_[row]] = true;
+    first = std::min(first, static_cast<int>(places_[row] / kRows));
+    last = std::max(last, static_cast<int>(places_[row] / kRows));
   }
-  const auto all = std::count_if(places_.begin(), places_.end(), [&](std::uint32_t at) { return is_touched[at]; });
+  std::size_t all = 0;
+  for (std::size_t block = 0; block < part_of_block_.size(); ++block) {
+    if (part_of_block_[block].last_column < first || part_of_block_[block].first_column > last) {
+      continue;
+    }
+    const std::size_t begin = block * kBlock;
+    const auto places = std::span(places_).subspan(begin, std::min(kBlock, places_.size() - begin));
+    all += static_cast<std::size_t>(
+        std::count_if(places.begin(), places.end(), [&](std::uint32_t at) { return is_touched[at]; }));
+  }
   return static_cast<double>(rows.size()) < kFewBeside * static_cast<double>(all);
 }
 
-bool RangeImage::is_above_all(const Eigen::Vector3d& point) const { return cell_of(point).row > seen_rows_.highest; }
+bool RangeImage::is_above_all(const Eigen::Vector3d& point) const { return cell_of(point).row > highest_seen_; }
 
 /// Whether something is seen in a column, or on both sides of it: lines of sight may be farther apart than columns.
 bool RangeImage::is_in_view(int column) const {
@@ -194,7 +212,7 @@ bool RangeImage::is_in_view(int column) const {
 
 bool RangeImage::hides(const Eigen::Vector3d& point, double clearance_m) const {
   const Cell cell = cell_of(point);
-  if (column_seen_.empty() || !is_in_view(cell.column) || cell.row < seen_rows_.lowest) {
+  if (column_seen_.empty() || !is_in_view(cell.column) || cell.row < lowest_seen_) {
     return true;
   }
   // Of two cells above each other the one that holds more of what is seen above the point: below may be the ground.

@@ -66,10 +66,12 @@ class RangeImage {
     }
   }
 
-  /// Rows of the image.
-  struct Rows {
+  /// A part of the image, with its outermost rows and columns.
+  struct Part {
     int lowest = 0;
     int highest = 0;
+    int first_column = 0;
+    int last_column = 0;
   };
 
   /// Width of a cell at a distance of one metre, m: what is closer together may share one.
@@ -78,7 +80,8 @@ class RangeImage {
  private:
   std::vector<float> nearest_squared_;  ///< m^2, column by column; infinite where nothing is seen
   std::vector<char> column_seen_;
-  Rows seen_rows_;
+  int lowest_seen_ = 0;  ///< row
+  int highest_seen_ = 0;
   std::vector<PatchBlock> patches_;
 
   void find_seen_columns();
@@ -88,7 +91,7 @@ class RangeImage {
   // Of each row of the scan, as it was measured
   std::vector<std::uint32_t> places_;  ///< in the image
   std::vector<float> squared_;         ///< of the range, m^2
-  std::vector<Rows> rows_of_block_;
+  std::vector<Part> part_of_block_;
 };
 
 }  // namespace dynamic_icp::tracking
