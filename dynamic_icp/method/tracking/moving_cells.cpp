@@ -42,9 +42,9 @@ void find_moving_rows(std::span<const std::uint8_t> is_moving, const Workers& wo
   std::vector<std::uint32_t>& end_of_block = result.end_of_block;
   end_of_block.resize(Workers::block_count(is_moving.size(), kPointBlock));
   workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    const std::span<const std::uint8_t> flags = is_moving.subspan(begin, end - begin);
-    end_of_block[block] = static_cast<std::uint32_t>(end - begin) -
-                          static_cast<std::uint32_t>(std::count(flags.begin(), flags.end(), std::uint8_t{0}));
+    std::uint32_t count = 0;
+    visit_flagged(is_moving, begin, end, [&](std::size_t) { ++count; });
+    end_of_block[block] = count;
   });
   std::partial_sum(end_of_block.begin(), end_of_block.end(), end_of_block.begin());
   const std::size_t rows = end_of_block.empty() ? 0 : end_of_block.back();
