@@ -160,13 +160,17 @@ std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d
 }
 
 std::optional<SupportPlane> find_support_plane(const Scan& scan, const spatial::CellOrder& order) {
-  std::vector<Eigen::Vector3d> representatives;
+  std::vector<Eigen::Vector3d> all;
+  std::vector<Eigen::Vector3d> of_several;  // points; reflections below the road have cells of their own
   for (std::size_t i = 0; i < scan.size(); ++i) {
     if (order.rank[i] == 0 && scan.points()[i].squaredNorm() < kReach_m * kReach_m) {
-      representatives.push_back(scan.points()[i]);
+      all.push_back(scan.points()[i]);
+      if (order.first[order.cell[i] + 1] - order.first[order.cell[i]] > 1) {
+        of_several.push_back(scan.points()[i]);
+      }
     }
   }
-  return find_support_plane(representatives);
+  return find_support_plane(2 * of_several.size() > all.size() ? of_several : all);  // all of a sparse scan
 }
 
 std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::CellOrder& order,

@@ -136,6 +136,27 @@ TEST(SupportPlane, OfNothingIsNone) {
   EXPECT_FALSE(find_support_plane(line));
 }
 
+TEST(SupportPlane, SinglePointsBelowTheRoadDoNotHideIt) {
+  Street street;
+  street.add_road(6000);
+  street.add_clutter(2000);
+  std::uniform_real_distribution<double> any(-1.0, 1.0);
+  for (int k = 0; k < 60; ++k) {  // what it mirrors, all over
+    street.add(22.0 + 18.0 * any(street.random), 10.0 * any(street.random), -6.0 + 3.0 * any(street.random), false);
+  }
+  RawScan raw;
+  raw.points = street.points;
+  raw.doppler.assign(raw.points.size(), 0.0);
+  const Scan scan = Scan::from_raw(std::move(raw));
+  spatial::CellOrder order;
+  DopplerRows rows;
+  sort_into_cells(scan, 2.0, Workers(1), order, rows);
+  const std::optional<SupportPlane> plane = find_support_plane(scan, order);
+  ASSERT_TRUE(plane);
+  EXPECT_GT(plane->normal.dot(street.R_sensor_level * Vector3d::UnitZ()), std::cos(0.02));
+  EXPECT_NEAR(plane->offset_m, -kHeight_m, 0.15);
+}
+
 TEST(SupportPlane, CellsOnItHoldTheRoad) {
   Street street;
   street.add_road(3000);
