@@ -125,6 +125,27 @@ TEST(ConsensusRegression, TwoHalvesOfTheSceneAreAmbiguousUntilThePriorDecides) {
   }
 }
 
+TEST(ConsensusRegression, WhereVotesDoNotDecideTheExpectedVelocityIsTaken) {
+  // As above, but the part that agrees with the prior has fewer votes by any amount.
+  const Scene scene;
+  const Scan whole = cast(scene, 4);
+  int ambiguous = 0;
+  for (int k = 0; k <= 20; ++k) {
+    RawScan raw;
+    for (std::size_t i = 0; i < whole.size(); ++i) {
+      const Vector3d& u = whole.directions()[i];
+      raw.points.push_back(whole.points()[i]);
+      raw.doppler.push_back(whole.doppler()[i] + (u.y() > -0.04 * k ? 2.0 * u.x() : 0.0));
+    }
+    const EgoVelocity ego = estimate(Scan::from_raw(raw), prior_at(scene.v, 0.1));
+    if (ego.status == EgoVelocityStatus::kAmbiguous) {
+      ++ambiguous;
+      EXPECT_LT((ego.velocity_sensor - scene.v).norm(), 0.3) << k;
+    }
+  }
+  EXPECT_GE(ambiguous, 1);
+}
+
 TEST(ConsensusRegression, ANarrowViewDoesNotBendTowardsTraffic) {
   // Ahead between boxes a little of the scene is seen: a velocity upwards, which that hardly shows, explains part of
   // what creeps, too.

@@ -34,6 +34,12 @@ struct Street {
     points.push_back(R_sensor_level * Vector3d(x + noise(random), y + noise(random), z + noise(random)));
     is_road.push_back(road ? 1 : 0);
   }
+  [[nodiscard]] Scan scan() const {
+    RawScan raw;
+    raw.points = points;
+    raw.doppler.assign(points.size(), 0.0);
+    return Scan::from_raw(std::move(raw));
+  }
   void add_road(std::size_t n) {
     std::uniform_real_distribution<double> ahead(4.0, 40.0);
     std::uniform_real_distribution<double> across(-10.0, 10.0);
@@ -67,16 +73,19 @@ struct Street {
   }
 };
 
+void expect_road(const Street& street, const std::optional<SupportPlane>& plane) {
+  ASSERT_TRUE(plane);
+  const Vector3d up = street.R_sensor_level * Vector3d::UnitZ();
+  EXPECT_GT(plane->normal.dot(up), std::cos(0.02)) << "up, where everything else is";
+  EXPECT_NEAR(plane->offset_m, -kHeight_m, 0.15) << "the foot of the lorry is near it, too";
+}
+
 TEST(SupportPlane, IsTheRoadHoweverTheSensorIsMounted) {
   Street street;
   street.add_road(200);
   street.add_lorry(300);
   street.add_clutter(200);
-  const std::optional<SupportPlane> plane = find_support_plane(street.points);
-  ASSERT_TRUE(plane);
-  const Vector3d up = street.R_sensor_level * Vector3d::UnitZ();
-  EXPECT_GT(plane->normal.dot(up), std::cos(0.02)) << "up, where everything else is";
-  EXPECT_NEAR(plane->offset_m, -kHeight_m, 0.15) << "the foot of the lorry is near it, too";
+  expect_road(street, find_support_plane(street.points));
 }
 
 TEST(SupportPlane, IsTheRoadWhereAnEmbankmentShowsMorePoints) {
@@ -144,17 +153,11 @@ TEST(SupportPlane, SinglePointsBelowTheRoadDoNotHideIt) {
   for (int k = 0; k < 60; ++k) {  // what it mirrors, all over
     street.add(22.0 + 18.0 * any(street.random), 10.0 * any(street.random), -6.0 + 3.0 * any(street.random), false);
   }
-  RawScan raw;
-  raw.points = street.points;
-  raw.doppler.assign(raw.points.size(), 0.0);
-  const Scan scan = Scan::from_raw(std::move(raw));
+  const Scan scan = street.scan();
   spatial::CellOrder order;
   DopplerRows rows;
   sort_into_cells(scan, 2.0, Workers(1), order, rows);
-  const std::optional<SupportPlane> plane = find_support_plane(scan, order);
-  ASSERT_TRUE(plane);
-  EXPECT_GT(plane->normal.dot(street.R_sensor_level * Vector3d::UnitZ()), std::cos(0.02));
-  EXPECT_NEAR(plane->offset_m, -kHeight_m, 0.15);
+  expect_road(street, find_support_plane(scan, order));
 }
 
 TEST(SupportPlane, CellsOnItHoldTheRoad) {
@@ -162,18 +165,12 @@ TEST(SupportPlane, CellsOnItHoldTheRoad) {
   street.add_road(3000);
   street.add_lorry(3000);
   street.add_clutter(1000);
-  RawScan raw;
-  raw.points = street.points;
-  raw.doppler.assign(raw.points.size(), 0.0);
-  const Scan scan = Scan::from_raw(std::move(raw));
+  const Scan scan = street.scan();
   spatial::CellOrder order;
   DopplerRows rows;
   sort_into_cells(scan, 1.0, Workers(1), order, rows);
-  const std::optional<SupportPlane> plane = find_support_plane(scan, order);
-  ASSERT_TRUE(plane);
-  EXPECT_GT(plane->normal.dot(street.R_sensor_level * Vector3d::UnitZ()), std::cos(0.02));
-  EXPECT_NEAR(plane->offset_m, -kHeight_m, 0.15);
-  const std::vector<std::uint8_t> on = cells_on_support(scan, order, *plane);
+  expect_road(street, find_support_plane(scan, order));
+  const std::vector<std::uint8_t> on = cells_on_support(scan, order, find_support_plane(scan, order).value());
   ASSERT_EQ(on.size(), rows.cells());
   std::size_t road = 0;
   std::size_t road_found = 0;

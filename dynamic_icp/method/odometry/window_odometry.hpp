@@ -62,7 +62,7 @@ class WindowOdometry final : public Odometry {
 
   [[nodiscard]] ScanView with_mountings(ScanView raw) const;
   void thin_and_sort(const ScanView& raw, Frame& frame);
-  [[nodiscard]] tracking::SensorMotion predicted_motion() const;
+  [[nodiscard]] tracking::SensorMotion predicted_motion(const Eigen::Vector3d& velocity_sensor) const;
   [[nodiscard]] const ego_motion::DopplerRows& rows_to_vote();
   void separate_static_points();
   [[nodiscard]] ego_motion::VelocityFilterConfig filter_for(const ego_motion::EgoVelocity& ego) const;

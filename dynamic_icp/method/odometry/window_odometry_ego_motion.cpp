@@ -58,14 +58,14 @@ ego_motion::EgoVelocity WindowOdometry::velocity_before() const {
   return ego;
 }
 
-/// The sensor during the scan at hand, if it goes on as it did.
-tracking::SensorMotion WindowOdometry::predicted_motion() const {
+/// The sensor during the scan at hand, with this velocity (m/s) and turning as it did.
+tracking::SensorMotion WindowOdometry::predicted_motion(const Eigen::Vector3d& velocity_sensor) const {
   tracking::SensorMotion sensor{T_world_sensor_};
   if (estimator_.scans() > 0) {
     const window::TrajectoryPoint last = estimator_.trajectory().at_end();
     const double dt_s = stream_.elapsed_s() - stamp_s_;
-    sensor.T_world_sensor = T_world_sensor_ * motion::motion_of(last.omega, ego_.velocity_sensor, dt_s);
-    sensor.velocity_world = sensor.T_world_sensor.linear() * ego_.velocity_sensor;
+    sensor.T_world_sensor = T_world_sensor_ * motion::motion_of(last.omega, velocity_sensor, dt_s);
+    sensor.velocity_world = sensor.T_world_sensor.linear() * velocity_sensor;
     sensor.angular_velocity_sensor = last.omega;
   }
   return sensor;
@@ -78,10 +78,11 @@ const ego_motion::DopplerRows& WindowOdometry::rows_to_vote() {
     return memory_.rows;
   }
   const Scan& whole = memory_.whole;
-  ego_ = velocity_before();
-  ego_motion::compensated_doppler(whole, ego_, workers_, memory_.radial);
+  const ego_motion::EgoVelocity expected = velocity_before();
+  ego_motion::compensated_doppler(whole, expected, workers_, memory_.radial);
   memory_.is_moving.assign(whole.size(), 0);
-  tracker_.flag_expected(whole, memory_.radial, predicted_motion(), workers_, memory_.is_moving);
+  tracker_.flag_expected(whole, memory_.radial, predicted_motion(expected.velocity_sensor), workers_,
+                         memory_.is_moving);
   if (std::ranges::count(memory_.is_moving, 1) == 0) {
     return memory_.rows;
   }
@@ -110,7 +111,7 @@ void WindowOdometry::separate_static_points() {
     workers_.for_each(whole.size(), kPointBlock,
                       [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
   }
-  tracker_.flag_expected(whole, memory_.radial, predicted_motion(), workers_, memory_.is_moving);
+  tracker_.flag_expected(whole, memory_.radial, predicted_motion(ego_.velocity_sensor), workers_, memory_.is_moving);
   if (lever_arm_omega_) {
     ego_motion::take_out_lever_arms(memory_.whole, *lever_arm_omega_, workers_, -1.0);
   }

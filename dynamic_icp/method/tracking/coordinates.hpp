@@ -14,12 +14,12 @@ namespace dynamic_icp::tracking {
 
 /// The coordinates of the points of a small block, each in an array of its own: loops over them become vectors.
 struct Coordinates {
-  static constexpr std::size_t kMost = 512;
-  std::array<double, kMost> x;
-  std::array<double, kMost> y;
-  std::array<double, kMost> z;
+  static constexpr std::size_t kMaxPoints = 512;
+  std::array<double, kMaxPoints> x;
+  std::array<double, kMaxPoints> y;
+  std::array<double, kMaxPoints> z;
 
-  /// Those of `count` points, at most kMost.
+  /// Those of `count` points, at most kMaxPoints.
   void take(const Eigen::Vector3d* points, std::size_t count);
 };
 

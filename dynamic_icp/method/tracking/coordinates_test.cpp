@@ -25,7 +25,7 @@ std::vector<Vector3d> random_points(std::size_t count) {
 }
 
 TEST(Coordinates, AreThoseOfThePoints) {
-  const std::vector<Vector3d> points = random_points(Coordinates::kMost);
+  const std::vector<Vector3d> points = random_points(Coordinates::kMaxPoints);
   Coordinates at;
   at.take(points.data(), points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {

@@ -20,8 +20,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kMostSought = 128;  // bodies on the stack; more cost an allocation
-constexpr std::size_t kTogether = 16;     // bodies for which points are put into the world at once
+constexpr std::size_t kUsualBodies = 128;  // bodies on the stack; more cost an allocation
+constexpr std::size_t kTogether = 16;      // bodies for which points are put into the world at once
 
 /// A box in which rows are looked for.
 struct SoughtBox {
@@ -133,7 +133,7 @@ void find_inside(const TimedPatch& patch, const OrientedBox& box, const Vector3d
 void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
                std::span<const Expectation> expectations, const Workers& workers,
                std::vector<std::uint8_t>& is_moving) {
-  StackMemory<kMostSought * sizeof(SoughtBox)> memory;
+  StackMemory<kUsualBodies * sizeof(SoughtBox)> memory;
   std::pmr::vector<SoughtBox> sought(memory.resource());
   sought.reserve(expectations.size());
   for (const Expectation& expected : expectations) {

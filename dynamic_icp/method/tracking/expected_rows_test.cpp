@@ -12,6 +12,8 @@
 
 #include "dynamic_icp/method/base/random_source.hpp"
 
+#include "testing/tracked_car.hpp"
+
 namespace dynamic_icp::tracking {
 namespace {
 
@@ -19,18 +21,7 @@ using Eigen::Vector3d;
 
 /// What is expected of a body that drives with `velocity` and was seen from its rear.
 Expectation expected_body(const Vector3d& centre, const Vector3d& velocity, const SensorMotion& sensor) {
-  const Eigen::Matrix3d axes = upright_axes(std::atan2(velocity.y(), velocity.x()));
-  Detection detection;
-  for (std::uint64_t i = 0; i < 200; ++i) {
-    const RandomSource one = RandomSource(4).fork(i);
-    Vector3d q(one.uniform(0, -0.5, 0.5), one.uniform(1, -0.5, 0.5), one.uniform(2, -0.5, 0.5));
-    (i % 3 == 0 ? q.x() : q.y()) = -0.5;
-    detection.points.emplace_back(centre + axes * q.cwiseProduct(Vector3d(4.5, 1.8, 1.5)));
-    detection.directions.push_back(detection.points.back().normalized());
-    detection.radial.push_back(detection.directions.back().dot(velocity));
-    detection.times.push_back(0.0);
-  }
-  const Track track(detection, 0.0, {});
+  const Track track = track_of_car(centre, velocity);
   return {track, track.estimate(), sensor, {}};
 }
 

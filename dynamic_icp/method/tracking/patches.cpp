@@ -14,7 +14,7 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr double kLeastRange_m = 1e-6;
+constexpr double kMinRange_m = 1e-6;
 constexpr double kRoundingOfBounds_m = 0.01;  // more than rounding moves a point
 
 }  // namespace
@@ -34,7 +34,7 @@ void PatchBlock::bound(const Scan& scan, std::size_t begin, std::size_t end, dou
 
 void PatchBlock::bound_points(std::size_t patch, std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d& middle = points[points.size() / 2];
-  const double range = std::max(kLeastRange_m, middle.head<2>().norm());
+  const double range = std::max(kMinRange_m, middle.head<2>().norm());
   const double ux = x_[patch] = middle.x() / range;
   const double uy = y_[patch] = middle.y() / range;
   simd::run([&]() DYNAMIC_ICP_KERNEL {

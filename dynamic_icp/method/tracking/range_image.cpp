@@ -15,7 +15,7 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr std::size_t kBlock = Coordinates::kMost;  // of points
+constexpr std::size_t kBlock = Coordinates::kMaxPoints;  // of points
 constexpr int kColumns = 720;
 constexpr int kRows = 120;
 constexpr double kSlopePerRow = 0.0175;  // a degree

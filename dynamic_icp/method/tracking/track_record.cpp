@@ -16,7 +16,7 @@ using Eigen::Vector3d;
 
 constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
 constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
-constexpr int kMostScans = 1 << 30;       // no drive has so many
+constexpr int kMaxScans = 1 << 30;        // no drive has so many
 
 }  // namespace
 
@@ -113,7 +113,7 @@ void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::M
 
 void TrackRecord::state(StateArchive& archive) {
   archive(id, track, confirmed, has_moved, moved_s, age, seen, missed);
-  const auto is_count = [](int count) { return count >= 0 && count < kMostScans; };
+  const auto is_count = [](int count) { return count >= 0 && count < kMaxScans; };
   archive.require(id > 0 && is_count(age) && is_count(seen) && is_count(missed), "an object");
 }
 
