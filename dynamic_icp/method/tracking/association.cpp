@@ -42,6 +42,7 @@ void link_owners(std::span<const std::uint32_t> groups, CellOwners& result) {
   refill(result.first_link, count, kNobody);
   refill(result.last_link, count, kNobody);
   result.links.clear();
+  make_room(result.links, groups.size());
   for (std::size_t i = 0; i < groups.size(); ++i) {
     const std::int32_t owner = result.owner[i];
     std::int32_t link = result.first_link[groups[i]];

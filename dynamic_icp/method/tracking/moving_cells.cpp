@@ -22,15 +22,15 @@ namespace {
 
 constexpr double kWiderThanReach = 1.001;  // rounding must not put cells within reach two cubes apart
 
-void add_point(const Scan& scan, std::uint32_t row, double radial, MovingCell& cell) {
+void add_point(const Scan& scan, std::uint32_t row, MovingCell& cell) {
   cell.centroid += scan.points()[row];
   cell.direction += scan.directions()[row];
-  cell.radial_mps += radial;
   cell.time_s += scan.has_times() ? scan.times()[row] : 0.0;
   ++cell.count;
 }
 
-constexpr std::size_t kAhead = 16;  // moving points lie far apart in memory: what comes is asked for in time
+constexpr std::size_t kCellBlock = 64;  // cells a worker takes at once
+constexpr std::size_t kAhead = 16;      // moving points lie far apart in memory: what comes is asked for in time
 
 void prefetch_point(const Scan& scan, std::uint32_t row) {
   __builtin_prefetch(&scan.points()[row]);
@@ -62,8 +62,14 @@ void take_means(MovingCell& cell) {
   const auto count = static_cast<double>(cell.count);
   cell.centroid /= count;
   cell.direction /= count;
-  cell.radial_mps /= count;
   cell.time_s /= count;
+}
+
+/// The median of some values, at least one; of an even number the mean of the two in the middle. Changes their order.
+double median_among(std::span<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return values.size() % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
 }
 
 /// Whether a cell may lie beside the gap where the radial velocity of its body passes zero.
@@ -267,13 +273,20 @@ void gather_cells(const Scan& scan, std::span<const double> radial, std::span<co
   order.sort();
   // In the order of the rows, which is that of the memory.
   refill(result.cells, order.cells(), MovingCell{});
+  make_room(result.radial, n);
+  result.radial.resize(n);
   for (std::size_t i = 0; i < n; ++i) {
     if (i + kAhead < n) {
       prefetch_point(scan, result.rows[i + kAhead]);
     }
-    add_point(scan, result.rows[i], radial[result.rows[i]], result.cells[order.cell[i]]);
+    add_point(scan, result.rows[i], result.cells[order.cell[i]]);
+    result.radial[order.place(i)] = radial[result.rows[i]];
   }
-  std::for_each(result.cells.begin(), result.cells.end(), take_means);
+  workers.for_each(order.cells(), kCellBlock, [&](std::size_t c) {
+    take_means(result.cells[c]);
+    result.cells[c].radial_mps =
+        median_among(std::span(result.radial).subspan(order.first[c], order.first[c + 1] - order.first[c]));
+  });
 }
 
 void group_cells(std::span<const MovingCell> cells, const GroupingConfig& config, GroupingMemory& memory,

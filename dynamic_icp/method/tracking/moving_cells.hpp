@@ -21,7 +21,7 @@ namespace dynamic_icp::tracking {
 struct MovingCell {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();   ///< m, sensor frame: mean of its points
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< mean line of sight, about unit
-  double radial_mps = 0.0;                              ///< mean of the radial velocities over ground
+  double radial_mps = 0.0;                              ///< median of the radial velocities over ground
   double time_s = 0.0;                                  ///< mean time after the stamp; 0 without times
   std::uint32_t count = 0;                              ///< number of its points
 };
@@ -32,11 +32,14 @@ struct MovingCells {
   std::vector<std::uint32_t> rows;  ///< of the scan: the moving ones, ascending
   spatial::CellOrder order;         ///< of these rows
 
-  std::vector<std::uint32_t> end_of_block;  ///< memory of gather_cells
+  // Memory of gather_cells
+  std::vector<std::uint32_t> end_of_block;
+  std::vector<double> radial;  ///< m/s, cell by cell
 };
 
 /// Sorts the rows with `is_moving` != 0 into cubes. A cube holds few points of anything else than one surface, so its
-/// mean stands for it. `radial` has one value per row. `cells` may hold those of another scan.
+/// mean stands for it; a single Doppler that is wrong by many m/s would move a mean, but not the median. `radial` has
+/// one value per row. `cells` may hold those of another scan.
 void gather_cells(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
                   const GroupingConfig& config, const Workers& workers, MovingCells& cells);
 

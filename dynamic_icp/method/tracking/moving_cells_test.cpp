@@ -66,6 +66,15 @@ TEST(MovingCells, HoldMeansAndRowsOfTheMovingPoints) {
   EXPECT_EQ(moving.order.cell, (std::vector<std::uint32_t>{0, 1, 0}));
 }
 
+TEST(MovingCells, OneWrongDopplerMovesNoCell) {
+  const Scan scan = scan_of({{5.1, 0.1, 0.1}, {5.3, 0.3, 0.3}, {5.2, 0.2, 0.2}, {5.2, 0.1, 0.2}});
+  const std::vector<double> radial = {2.1, -28.0, 2.2, 2.3};
+  const MovingCells moving =
+      gathered(scan, radial, std::vector<std::uint8_t>{1, 1, 1, 1}, {.cell_size_m = 1.0}, kWorkers);
+  ASSERT_EQ(moving.cells.size(), 1u);
+  EXPECT_DOUBLE_EQ(moving.cells[0].radial_mps, 2.15);
+}
+
 TEST(MovingCells, CellsFloorBelowZero) {
   const Scan scan = scan_of({{-0.1, 5, 0.1}, {0.1, 5, 0.1}});
   EXPECT_EQ(gathered(scan, std::vector<double>{1, 1}, std::vector<std::uint8_t>{1, 1}, {}, kWorkers).cells.size(), 2u);
