@@ -27,6 +27,7 @@ constexpr double kLookBeyond_m = 0.4;
 constexpr double kClearance_m = 1.0;
 constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
 constexpr double kMaxGap_m = 0.5;
+constexpr int kMoreBeyond = 2;          // so many points farther beyond an end are no errors of measurement
 constexpr double kFaceWidth_m = 0.5;    // what is seen so wide at an end that looks at the sensor is a face
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
 constexpr double kCarHeight_m = 1.8;    // what is higher has no hood, or a short one
@@ -104,6 +105,7 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
     double count = 0.0;
     double sum = 0.0;
     double squares = 0.0;
+    int beyond = 0;
     end.gap = kMaxGap_m;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double depth = inwards(along[i]);
@@ -116,7 +118,9 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
       if (depth > kSamePlace_m) {
         end.gap = std::min(end.gap, depth);
       }
+      beyond += depth < -kMaxGap_m ? 1 : 0;
     }
+    end.goes_on = beyond >= kMoreBeyond;
     end.middle /= count;
     end.width = std::sqrt(12.0 * std::max(0.0, squares / count - sum * sum / (count * count)));  // if evenly spread
   };
@@ -143,6 +147,9 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   const double height = views[2].seen.high - ground;
   const double full = height < kCarHeight_m ? ground + kFullHeight * height : views[2].seen.high;
   const auto is_end = [&](const EndView& end, const Vector3d& outward) {
+    if (end.goes_on) {
+      return false;
+    }
     const double facing = outward.dot((detection.sensor - end.middle).normalized());
     if (end.width > kFaceWidth_m && facing > kLooksAtSensor) {
       return true;

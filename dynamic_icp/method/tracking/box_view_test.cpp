@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/tracking/box_view.hpp"
 
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -50,6 +51,21 @@ TEST(BoxView, OneSideDoesNotShowHowWideABodyIs) {
   EXPECT_FALSE(left.low.is_true) << "the far one";
   EXPECT_TRUE(along.low.is_true);
   EXPECT_TRUE(along.high.is_true);
+}
+
+TEST(BoxView, ABodyDoesNotEndWhereAFewOfItsPointsLieFarBeyond) {
+  // The side of a lorry that goes on behind a van, over which three of five hundred points are seen.
+  std::vector<Vector3d> side = face_points({-2.0, -5.0, -0.5}, {2.0, -5.0, 0.7});
+  ASSERT_GT(side.size(), 400u);
+  const auto ends = [&] {
+    const AxisView along = views_along(Matrix3d::Identity(), {0, -5, 0}, side, {0.0, -5.0, 0.0}, {})[0];
+    return std::pair(along.low.is_true, along.high.is_true);
+  };
+  side.emplace_back(2.9, -5.0, 0.7);
+  EXPECT_EQ(ends(), std::pair(true, true)) << "one may be an error";
+  side.emplace_back(3.6, -5.0, 0.7);
+  side.emplace_back(4.2, -5.0, 0.7);
+  EXPECT_EQ(ends(), std::pair(true, false));
 }
 
 TEST(BoxView, EndsThatHardlyMoveAlongTheLineOfSightMayGoOn) {

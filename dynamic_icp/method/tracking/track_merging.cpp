@@ -64,8 +64,9 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
   }
   // Sides of one body, seen apart; what is seen through a gap parts two.
   const Gap gap = gap_between(of_large, of_small);
-  const double link_m = config.grouping.link_distance_m +
-                        config.grouping.link_growth * (gap.middle - T_world_sensor.translation()).norm();
+  const double usual_m = config.grouping.link_distance_m +
+                         config.grouping.link_growth * (gap.middle - T_world_sensor.translation()).norm();
+  const double link_m = is_splinter ? std::max(usual_m, config.growth_m) : usual_m;
   return (distance_outside(large.now.box, of_small.centre) <= 0.0 || gap.width <= link_m) &&
          view.hides(T_world_sensor.inverse() * gap.middle, -kSeeThrough_m);
 }

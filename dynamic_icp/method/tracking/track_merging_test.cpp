@@ -60,6 +60,14 @@ TEST(TrackMerging, ASplinterBesideABodyIsAPartIfItMovesAsItDoes) {
   EXPECT_FALSE(are_same(body, 300, side_of_body(20, 21, 6), 20)) << "far off";
 }
 
+TEST(TrackMerging, ASplinterThatReachesFarInALaneIsAPart) {
+  // The upper part of the side of a lorry, seen over a van that hides where it joins the rest.
+  const Track body = side_of_body(0, 6, 6, 2.0);
+  EXPECT_TRUE(are_same(body, 300, side_of_body(6.9, 9.5, 6, 2.0), 20, 4.0));
+  EXPECT_FALSE(are_same(body, 300, side_of_body(6.9, 9.5, 6, 2.0), 200, 4.0)) << "no splinter";
+  EXPECT_FALSE(are_same(body, 300, side_of_body(6.9, 9.5, 6, 2.0), 20, 60.0)) << "the gap is seen through";
+}
+
 TEST(TrackMerging, WhatIsSeenThroughAGapPartsTwoBodies) {
   const Track rear = side_of_body(0, 4, 6, 2.0);
   const Track front = side_of_body(4.5, 8.0, 6, 2.0);
