@@ -146,7 +146,7 @@ void WindowOdometry::thin_and_sort(const ScanView& raw, Frame& frame) {
         estimator_.sort(whole, workers_);
         estimator_.field_errors(whole, workers_, memory_.errors);
         workers_.for_each(whole.size(), kPointBlock,
-                          [&](std::size_t i) { whole.shift_doppler(i, -memory_.errors[i]); });
+                          [&](std::size_t i) { whole.shift_doppler(i, -memory_.errors.credible[i]); });
         take_out_lever_arms();
         ego_motion::sort_into_cells(whole, config_.ego_motion.consensus.cell_size_m, workers_, memory_.sort,
                                     memory_.rows);

@@ -45,11 +45,11 @@ class WindowOdometry final : public Odometry {
 
   /// Of the scan at hand. The memory is used again for the next one.
   struct ScanMemory {
-    Scan whole;  ///< what is in range; Doppler without the error that is known
+    Scan whole;  ///< what is in range; Doppler without the error that is known, as far as a sensor may err
     std::vector<double> times;
     std::vector<std::uint32_t> thinned;
     std::vector<double> measured;  ///< m/s, Doppler of each point as measured
-    std::vector<double> errors;    ///< m/s, as known before the scan
+    window::FieldErrors errors;    ///< as known before the scan
     std::vector<double> predicted;
     std::vector<double> radial;
     std::vector<std::uint8_t> is_moving;

@@ -124,8 +124,9 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   ego_.velocity_sensor = sweep.velocity_at(ego_.reference_time_s);
   ego_.acceleration_sensor = sweep.acceleration;
   ego_.covariance = estimator_.twist().covariance.bottomRightCorner<3, 3>();
-  ego_.bias_mps = std::accumulate(memory_.errors.begin(), memory_.errors.end(), 0.0) /
-                  static_cast<double>(std::max<std::size_t>(1, memory_.errors.size()));
+  const std::vector<double>& errors = memory_.errors.learned;
+  ego_.bias_mps =
+      std::accumulate(errors.begin(), errors.end(), 0.0) / static_cast<double>(std::max<std::size_t>(1, errors.size()));
   if (now.measured == nullptr) {
     ego_.status = ego_motion::EgoVelocityStatus::kFromMotion;
     ego_.unobservable.setZero();
@@ -135,7 +136,7 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   const Scan& whole = memory_.whole;
   estimator_.static_doppler(whole, workers_, memory_.predicted);
   workers_.for_each(whole.size(), kPointBlock,
-                    [&](std::size_t i) { memory_.radial[i] = whole.doppler()[i] - memory_.predicted[i]; });
+                    [&](std::size_t i) { memory_.radial[i] = memory_.measured[i] - errors[i] - memory_.predicted[i]; });
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(ego_), workers_, memory_.is_moving);
   memory_.may_be_object = memory_.is_moving;
   // The map takes in nothing of what objects are about to cross.

@@ -26,6 +26,8 @@ constexpr double kMargin_rad = 0.02;
 constexpr double kRangeScale_m = 100.0;
 constexpr double kRangeMean = 0.3;
 constexpr double kNear_m = 10.0;
+constexpr Eigen::Index kNear = 1;         // of the columns of range and intensity
+constexpr double kLargestNear_mps = 0.1;  // five of the largest scale of these: more is no error, but creeps near by
 
 // The velocity-like part of an error is about so much larger than the scale of the part that can be seen.
 constexpr double kVelocityScale = 1.5;
@@ -209,12 +211,25 @@ FieldColumns DopplerErrorField::shared_columns(const DopplerCell& cell) const {
     result.add(at + 1, (1.0 - a) * e);
     result.add(at + kCrossElevations, a * (1.0 - e));
     result.add(at + kCrossElevations + 1, a * e);
-    if (shape_.lines() > 0) {
-      result.add(c.line + std::min<std::size_t>(cell.line, shape_.lines() - 1), 1.0);
-    }
-    result.add(c.face + std::min<std::size_t>(cell.face, shape_.faces - 1), 1.0);
+    add_channel_columns(cell, result);
   }
   return result;
+}
+
+void DopplerErrorField::add_channel_columns(const DopplerCell& cell, FieldColumns& columns) const {
+  const SensorColumns& c = sensors_.front();
+  if (shape_.lines() > 0) {
+    columns.add(c.line + std::min<std::size_t>(cell.line, shape_.lines() - 1), 1.0);
+  }
+  columns.add(c.face + std::min<std::size_t>(cell.face, shape_.faces - 1), 1.0);
+}
+
+double DopplerErrorField::channel_error(const DopplerCell& cell, const Eigen::VectorXd& theta) const {
+  FieldColumns columns;
+  if (sensors_.size() == 1) {
+    add_channel_columns(cell, columns);
+  }
+  return columns.dot(theta);
 }
 
 void DopplerErrorField::add_own_columns(const DopplerCell& cell, FieldColumns& columns) const {
@@ -236,7 +251,9 @@ Eigen::Vector3d DopplerErrorField::by_range_and_intensity(double range_m, double
 double DopplerErrorField::own_error(std::size_t sensor, const Eigen::Vector3d& u, double range_m, double intensity,
                                     const Eigen::VectorXd& theta) const {
   const SensorColumns& c = sensors_[std::min(sensor, sensors_.size() - 1)];
-  return by_range_and_intensity(range_m, intensity).dot(theta.segment<3>(static_cast<Eigen::Index>(c.range))) -
+  Eigen::Vector3d by_own = theta.segment<3>(static_cast<Eigen::Index>(c.range));
+  by_own[kNear] = std::clamp(by_own[kNear], -kLargestNear_mps, kLargestNear_mps);
+  return by_range_and_intensity(range_m, intensity).dot(by_own) -
          u.dot(theta.segment<3>(static_cast<Eigen::Index>(c.velocity)));
 }
 

@@ -72,9 +72,13 @@ class DopplerErrorField {
   [[nodiscard]] FieldColumns shared_columns(const DopplerCell& cell) const;
   void add_own_columns(const DopplerCell& cell, FieldColumns& columns) const;
 
-  /// The error by the columns that a point has for itself, m/s.
+  /// The error by the columns that a point has for itself, m/s; that of short ranges no larger than any sensor has.
   [[nodiscard]] double own_error(std::size_t sensor, const Eigen::Vector3d& u, double range_m, double intensity,
                                  const Eigen::VectorXd& theta) const;
+
+  /// The error by line and face, or the constant one, m/s; of the sensors of a rig it is part of that by azimuth, and
+  /// 0.
+  [[nodiscard]] double channel_error(const DopplerCell& cell, const Eigen::VectorXd& theta) const;
 
   [[nodiscard]] double at(const DopplerCell& cell, const Eigen::VectorXd& theta) const {
     return columns(cell).dot(theta);
@@ -112,6 +116,7 @@ class DopplerErrorField {
     std::size_t azimuth = 0, cross = 0, line = 0, face = 0, range = 0, velocity = 0;
   };
 
+  void add_channel_columns(const DopplerCell& cell, FieldColumns& columns) const;
   [[nodiscard]] Eigen::Vector3d by_range_and_intensity(double range_m, double intensity) const;
   std::size_t add_group(std::string_view name, Eigen::MatrixXd K, double tau, bool is_learned);
 

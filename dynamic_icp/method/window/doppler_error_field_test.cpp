@@ -210,6 +210,17 @@ TEST(DopplerErrorField, IsLinearInRangeAndIntensity) {
   EXPECT_GT(error(30.0, 12.0, 2), error(30.0, 10.0, 2));
 }
 
+TEST(DopplerErrorField, ShortRangesErrByALittle) {
+  const DopplerErrorField field(some_cells(), 1);
+  for (const double near_mps : {-2.0, -0.05, 0.05, 2.0}) {
+    const Eigen::VectorXd theta =
+        theta_of(field, "range and intensity", [&](double k) { return k == 1.0 ? near_mps : 0.0; });
+    EXPECT_NEAR(field.own_error(0, Vector3d::UnitX(), 10.0, 0.0, theta),
+                std::clamp(near_mps, -0.1, 0.1) * std::exp(-1.0), 1e-12)
+        << "more is what creeps near by";
+  }
+}
+
 TEST(DopplerErrorField, PriorIsTheInverseOfTheScaledCorrelation) {
   DopplerErrorField field(some_cells(), 4);
   const auto n = static_cast<Index>(field.size());

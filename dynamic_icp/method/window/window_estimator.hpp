@@ -65,6 +65,12 @@ struct StartOmega {
   double sigma_rad_s = 0.0;                         ///< of each axis
 };
 
+/// Errors of the Doppler of each point of a scan, m/s.
+struct FieldErrors {
+  std::vector<double> learned;
+  std::vector<double> credible;  ///< the same, by direction and range no larger than those of sensors in use
+};
+
 /// One estimator: the trajectory of the sensor in continuous time over the last two scans, the error field of its
 /// Doppler and the error of the map, from Doppler and planes together. See docs/derivations/window.md.
 ///
@@ -111,9 +117,8 @@ class WindowEstimator {
   /// Standard deviation of the Doppler of single points, the median over ranges, m/s; nothing before the first scan.
   [[nodiscard]] std::optional<double> point_noise() const;
 
-  /// The error of the Doppler of each point of the scan that was sorted, as learned so far, m/s; points of a cell count
-  /// as seen in one direction.
-  void field_errors(const Scan& scan, const Workers& workers, std::vector<double>& errors) const;
+  /// Errors of the Doppler of the scan that was sorted; points of a cell count as seen in one direction.
+  void field_errors(const Scan& scan, const Workers& workers, FieldErrors& errors) const;
 
   /// The Doppler of each point of the scan at hand, had it no error, m/s.
   void static_doppler(const Scan& scan, const Workers& workers, std::vector<double>& predicted) const;

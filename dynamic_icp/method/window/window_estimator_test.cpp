@@ -206,8 +206,9 @@ TEST(WindowEstimator, LearnsAnErrorOfTheDoppler) {
   expect_finite(run);
   EXPECT_LT(run.worst_move(4), 0.0015);
   EXPECT_LT(run.worst_turn(4), 3e-4);
-  std::vector<double> errors;
-  run.estimator.field_errors(run.last_scan, Workers(1), errors);
+  FieldErrors field;
+  run.estimator.field_errors(run.last_scan, Workers(1), field);
+  const std::vector<double>& errors = field.learned;
   double left = 0.0, right = 0.0, lefts = 0.0, rights = 0.0;
   for (std::size_t i = 0; i < errors.size(); ++i) {
     const Vector3d& u = run.last_scan.directions()[i];
@@ -221,6 +222,26 @@ TEST(WindowEstimator, LearnsAnErrorOfTheDoppler) {
   WindowConfig without;
   without.learn_field = false;
   EXPECT_GT(drive(stepped, 6, without).steps.back().twist_error.tail<3>().norm(), 0.05);
+}
+
+TEST(WindowEstimator, TellsWhatNoSensorErrsBy) {
+  // Half of the view sets off. The motion of the sensor is known by the planes, so an error of the left explains much.
+  Drive departing;
+  departing.error_mps = [](double azimuth) { return azimuth > 0.0 ? 0.9 : 0.0; };
+  const DriveRun run = drive(departing, 8);
+  FieldErrors errors;
+  run.estimator.field_errors(run.last_scan, Workers(1), errors);
+  double learned = 0.0, credible = 0.0, lefts = 0.0;
+  for (std::size_t i = 0; i < run.last_scan.size(); ++i) {
+    if (run.last_scan.directions()[i].y() > 0.0) {
+      learned += errors.learned[i];
+      credible += errors.credible[i];
+      lefts += 1.0;
+    }
+  }
+  EXPECT_GT(learned / lefts, 0.5);
+  EXPECT_GT(credible / lefts, 0.2);
+  EXPECT_LT(credible / lefts, 0.4);
 }
 
 TEST(WindowEstimator, FindsAStampThatIsOff) {
@@ -288,8 +309,9 @@ TEST(WindowEstimator, DrivesByPlanesWithoutDoppler) {
   EXPECT_LT(run.worst_move(2), 0.003);
   EXPECT_LT(run.worst_turn(2), 4e-4);
   EXPECT_FALSE(run.estimator.point_noise());
-  std::vector<double> errors;
-  run.estimator.field_errors(run.last_scan, Workers(1), errors);
+  FieldErrors field;
+  run.estimator.field_errors(run.last_scan, Workers(1), field);
+  const std::vector<double>& errors = field.learned;
   EXPECT_EQ(errors, std::vector<double>(run.last_scan.size(), 0.0)) << "nothing was learned";
 }
 

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/motion/deskew.hpp"
@@ -12,6 +13,10 @@ namespace dynamic_icp::window {
 namespace {
 
 constexpr std::size_t kPlacingBlock = 512;
+
+// Sensors in use err by no more than this with direction and range. What seems to sets off slowly, and drags the error
+// that is learned along.
+constexpr double kLargestError_mps = 0.3;
 
 /// One point as a cell of its own, for what it shares with others.
 DopplerCell point_of(const Scan& scan, std::size_t i) {
@@ -108,18 +113,25 @@ std::optional<double> WindowEstimator::point_noise() const {
   return variance.empty() ? std::nullopt : std::optional(std::sqrt(median(variance)));
 }
 
-void WindowEstimator::field_errors(const Scan& scan, const Workers& workers, std::vector<double>& errors) const {
-  errors.assign(scan.size(), 0.0);
+void WindowEstimator::field_errors(const Scan& scan, const Workers& workers, FieldErrors& errors) const {
+  errors.learned.assign(scan.size(), 0.0);
+  errors.credible.assign(scan.size(), 0.0);
   if (!field_ || !config_.learn_field) {
     return;
   }
   const Channels& channels = scan.channels();
+  // Of the sensors of a rig the error by azimuth holds the constant one, which may be large.
+  const double largest = scan.is_of_rig() ? std::numeric_limits<double>::infinity() : kLargestError_mps;
   workers.for_each(cells_.count(), kCellBlock, [&](std::size_t cell) {
-    const double shared = field_->shared_columns(point_of(scan, cells_.points(cell).front())).dot(theta_);
+    const DopplerCell first = point_of(scan, cells_.points(cell).front());
+    const double by_channel = field_->channel_error(first, theta_);
+    const double shared = field_->shared_columns(first).dot(theta_);
     for (const std::uint32_t i : cells_.points(cell)) {
       const std::size_t sensor = channels.sensor.empty() ? 0 : channels.sensor[i];
       const double intensity = channels.intensity.empty() ? 0.0 : static_cast<double>(channels.intensity[i]);
-      errors[i] = shared + field_->own_error(sensor, scan.directions()[i], cells_.range_m(i), intensity, theta_);
+      errors.learned[i] =
+          shared + field_->own_error(sensor, scan.directions()[i], cells_.range_m(i), intensity, theta_);
+      errors.credible[i] = by_channel + std::clamp(errors.learned[i] - by_channel, -largest, largest);
     }
   });
 }
