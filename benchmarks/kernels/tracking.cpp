@@ -15,13 +15,17 @@
 namespace dynamic_icp::kernels {
 namespace {
 
-/// All scans of the drive one after the other, from a tracker that knows nothing.
+/// All scans of the drive one after the other, from a tracker that knows nothing. Their patches are known, which it
+/// asks for other things before.
 void object_tracker(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(0)));
   const auto config = odometry::WindowOdometryConfig{}.tracking;
   std::size_t points = 0;
-  std::vector<std::optional<ego_motion::SupportPlane>> support;  // the odometry knows it before the tracker begins
+  // The odometry knows these before the tracker begins.
+  std::vector<std::optional<ego_motion::SupportPlane>> support;
+  std::vector<tracking::ScanPatches> patches(kScans);
   for (std::size_t i = 0; i < kScans; ++i) {
+    patches[i].bound(known_scan(Sensor::kUsual, i).whole, workers);
     points += known_scan(Sensor::kUsual, i).whole.size();
     support.push_back(ego_motion::find_support_plane(known_scan(Sensor::kUsual, i).whole.points()));
   }
@@ -30,17 +34,20 @@ void object_tracker(benchmark::State& state) {
     tracking::ObjectTracker tracker(config);
     for (std::size_t i = 0; i < kScans; ++i) {
       const KnownScan& scan = known_scan(Sensor::kUsual, i);
-      tracks = tracker.update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, support[i], workers).size();
+      tracks = tracker
+                   .update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, support[i], workers,
+                           Eigen::Matrix3d::Zero(), &patches[i])
+                   .size();
     }
   }
   state.counters["tracks"] = static_cast<double>(tracks);
   state.counters["scans"] = static_cast<double>(kScans);
-  // Every point is drawn into the range image and looked at once by the tracks near it.
-  count_each(state, points, {.bytes = 2 * kPointBytes + 9, .lines = 1, .operations = 30});
+  // The radial velocity and the flag of every point are looked at, and the points near tracks.
+  count_each(state, points, {.bytes = 9, .lines = 0, .operations = 2});
 }
 BENCHMARK(object_tracker)->Apply(one_and_two_threads);
 
-/// The rows that the tracks of all scans but the last expect in that one.
+/// The rows that the tracks of all scans but the last expect in that one, whose patches are known.
 void expected_rows(benchmark::State& state) {
   const Workers workers(static_cast<int>(state.range(0)));
   tracking::ObjectTracker tracker(odometry::WindowOdometryConfig{}.tracking);
@@ -49,16 +56,32 @@ void expected_rows(benchmark::State& state) {
     tracker.update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, {}, workers);
   }
   const KnownScan& last = known_scan(Sensor::kUsual, kScans - 1);
+  tracking::ScanPatches patches;
+  patches.bound(last.whole, workers);
   std::vector<std::uint8_t> flags;
   for ([[maybe_unused]] auto _ : state) {
     flags.assign(last.whole.size(), 0);
-    tracker.flag_expected(last.whole, last.radial, {last.T_world_sensor}, workers, flags);
+    tracker.flag_expected(last.whole, patches, last.radial, {last.T_world_sensor}, workers, flags);
   }
   state.counters["flagged"] = static_cast<double>(std::count(flags.begin(), flags.end(), 1));
-  // Every point is looked at once, to see whether it is near a body.
-  count_each(state, last.whole.size(), {.bytes = kPointBytes + 1, .lines = 0, .operations = 10});
+  // Only the points near bodies are looked at, but the flags of all are cleared.
+  count_each(state, last.whole.size(), {.bytes = 1, .lines = 0, .operations = 1});
 }
 BENCHMARK(expected_rows)->Apply(one_and_two_threads);
+
+/// What the tracker asks several times a scan.
+void scan_patches(benchmark::State& state) {
+  const Workers workers(static_cast<int>(state.range(0)));
+  const Scan& scan = known_scan(Sensor::kUsual, 0).whole;
+  tracking::ScanPatches patches;
+  for ([[maybe_unused]] auto _ : state) {
+    patches.bound(scan, workers);
+    benchmark::DoNotOptimize(patches.blocks().data());
+  }
+  // Every point is looked at once.
+  count_each(state, scan.size(), {.bytes = kPointBytes, .lines = 0, .operations = 10});
+}
+BENCHMARK(scan_patches)->Apply(one_and_two_threads);
 
 }  // namespace
 }  // namespace dynamic_icp::kernels

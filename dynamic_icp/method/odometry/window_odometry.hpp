@@ -54,6 +54,7 @@ class WindowOdometry final : public Odometry {
     std::vector<double> radial;
     std::vector<std::uint8_t> is_moving;
     std::vector<std::uint8_t> may_be_object;  ///< of these, those that the tracker is to look at
+    tracking::ScanPatches patches;            ///< of `whole` before it is deskewed
     ego_motion::DopplerRows rows;
     ego_motion::DopplerRows voting_rows;  ///< of these
     preprocess::VoxelMemory voxels;

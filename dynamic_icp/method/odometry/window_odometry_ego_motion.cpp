@@ -81,7 +81,7 @@ const ego_motion::DopplerRows& WindowOdometry::rows_to_vote() {
   const ego_motion::EgoVelocity expected = velocity_before();
   ego_motion::compensated_doppler(whole, expected, workers_, memory_.radial);
   memory_.is_moving.assign(whole.size(), 0);
-  tracker_.flag_expected(whole, memory_.radial, predicted_motion(expected.velocity_sensor), workers_,
+  tracker_.flag_expected(whole, memory_.patches, memory_.radial, predicted_motion(expected.velocity_sensor), workers_,
                          memory_.is_moving);
   if (std::ranges::count(memory_.is_moving, 1) == 0) {
     return memory_.rows;
@@ -94,6 +94,7 @@ const ego_motion::DopplerRows& WindowOdometry::rows_to_vote() {
 void WindowOdometry::separate_static_points() {
   const Scan& whole = memory_.whole;
   const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
+  memory_.patches.bound(whole, workers_);
   ego_ = is_relative
              ? ego_motion::estimate_velocity(rows_to_vote(), ego_prior(), config_.ego_motion.consensus, workers_)
              : velocity_before();
@@ -111,7 +112,8 @@ void WindowOdometry::separate_static_points() {
     workers_.for_each(whole.size(), kPointBlock,
                       [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
   }
-  tracker_.flag_expected(whole, memory_.radial, predicted_motion(ego_.velocity_sensor), workers_, memory_.is_moving);
+  tracker_.flag_expected(whole, memory_.patches, memory_.radial, predicted_motion(ego_.velocity_sensor), workers_,
+                         memory_.is_moving);
   if (lever_arm_omega_) {
     ego_motion::take_out_lever_arms(memory_.whole, *lever_arm_omega_, workers_, -1.0);
   }
@@ -143,7 +145,7 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   tracking::SensorMotion sensor{T_world_sensor_};
   sensor.velocity_world = T_world_sensor_.linear() * sweep.velocity;
   sensor.angular_velocity_sensor = sweep.omega;
-  tracker_.flag_expected(whole, memory_.radial, sensor, workers_, memory_.is_moving);
+  tracker_.flag_expected(whole, memory_.patches, memory_.radial, sensor, workers_, memory_.is_moving);
 }
 
 /// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.

@@ -13,6 +13,7 @@
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/tracking/moving_cells.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
+#include "dynamic_icp/method/tracking/patches.hpp"
 #include "dynamic_icp/method/tracking/range_image.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
 #include "dynamic_icp/method/tracking/track.hpp"
@@ -70,6 +71,7 @@ struct TrackingInput {
   std::span<const Eigen::Vector3d> cell_directions;  ///< their lines of sight, world
   const RangeImage& view;
   const GroundHeights& heights;
+  const ScanPatches& patches;
 
   [[nodiscard]] double time_s(std::size_t row) const { return scan.has_times() ? scan.times()[row] : 0.0; }
   [[nodiscard]] Eigen::Vector3d direction_world(std::size_t row) const {

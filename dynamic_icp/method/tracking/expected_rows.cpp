@@ -29,10 +29,10 @@ struct SoughtBox {
   SoughtPlace place;  ///< of the box, seen from the sensor
 };
 
-/// The cylinder around a box in the frame of the sensor that moves with `drift` (m/s).
-SoughtPlace place_of(const OrientedBox& box, const Vector3d& drift) {
+/// The cylinder around a box in the frame of the sensor that moves with `drift` (m/s), while it turns with `turn_rps`.
+SoughtPlace place_of(const OrientedBox& box, const Vector3d& drift, double turn_rps) {
   const double lean_m = box.size.z() * box.axes.col(2).head<2>().norm();
-  return {box.centre, drift, 0.5 * (box.size.head<2>().norm() + lean_m), 0.5 * aligned_extent(box).z()};
+  return {box.centre, drift, 0.5 * (box.size.head<2>().norm() + lean_m), 0.5 * aligned_extent(box).z(), turn_rps};
 }
 
 OrientedBox moved_by(const Eigen::Isometry3d& T, const OrientedBox& box) {
@@ -46,7 +46,7 @@ SoughtBox sought_box(const Expectation& expected, const SensorMotion& sensor) {
   box.centre += 0.5 * expected.gate_m * box.axes.col(2);
   const Eigen::Isometry3d T_sensor_world = sensor.T_world_sensor.inverse();
   const Vector3d drift = T_sensor_world.linear() * (expected.velocity - sensor.velocity_world);
-  return {box, place_of(moved_by(T_sensor_world, box), drift)};
+  return {box, place_of(moved_by(T_sensor_world, box), drift, sensor.angular_velocity_sensor.norm())};
 }
 
 /// Points of a patch with the times of their measurement.
@@ -130,7 +130,7 @@ void find_inside(const TimedPatch& patch, const OrientedBox& box, const Vector3d
 
 }  // namespace
 
-void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
+void flag_rows(const Scan& scan, const ScanPatches& patches, std::span<const double> radial, const SensorMotion& sensor,
                std::span<const Expectation> expectations, const Workers& workers,
                std::vector<std::uint8_t>& is_moving) {
   StackMemory<kUsualBodies * sizeof(SoughtBox)> memory;
@@ -154,24 +154,26 @@ void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMot
     });
   };
   // Few patches are near any body. Their points are put into the world for some bodies together.
-  const double turn_rps = sensor.angular_velocity_sensor.norm();
-  const auto flag_block = [&](std::size_t, std::size_t begin, std::size_t end) {
-    PatchBlock patches;
-    patches.bound(scan, begin, end, turn_rps);
+  const auto flag_block = [&](std::size_t block, std::size_t begin, std::size_t end) {
+    const PatchBlock& bounds = patches.blocks()[block];
     for (std::size_t first = 0; first < sought.size(); first += kTogether) {
       const std::size_t together = std::min(kTogether, sought.size() - first);
       std::array<PatchBlock::Flags, kTogether> may_hold;
       PatchBlock::Flags is_needed{};
       for (std::size_t k = 0; k < together; ++k) {
-        patches.find(sought[first + k].place, may_hold[k]);
-        for (std::size_t patch = 0; patch < patches.count(); ++patch) {
+        bounds.find(sought[first + k].place, may_hold[k]);
+        for (std::size_t patch = 0; patch < bounds.count(); ++patch) {
           is_needed[patch] |= may_hold[k][patch];
         }
       }
-      visit_flagged(is_needed, 0, patches.count(), [&](std::size_t patch) {
+      visit_flagged(is_needed, 0, bounds.count(), [&](std::size_t patch) {
         const std::size_t row = begin + patch * PatchBlock::kRows;
+        const std::size_t count = std::min(PatchBlock::kRows, end - row);
+        if (count_flagged(is_moving, row, row + count) == count) {
+          return;  // all of them move anyway
+        }
         TimedPatch points;
-        take_patch(scan, row, std::min(PatchBlock::kRows, end - row), points);
+        take_patch(scan, row, count, points);
         put_into_world(sensor, points);
         for (std::size_t k = 0; k < together; ++k) {
           if (may_hold[k][patch] != 0) {
@@ -181,7 +183,7 @@ void flag_rows(const Scan& scan, std::span<const double> radial, const SensorMot
       });
     }
   };
-  workers.for_blocks(sought.empty() ? 0 : scan.size(), PatchBlock::kRows * PatchBlock::kPatches, flag_block);
+  workers.for_blocks(sought.empty() ? 0 : scan.size(), PatchBlock::kBlock, flag_block);
 }
 
 void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows) {
@@ -189,7 +191,7 @@ void find_static_rows(const TrackingInput& input, const Expectation& expected, s
   const Eigen::Isometry3d T_sensor_world = input.sensor.T_world_sensor.inverse();
   const OrientedBox box = moved_by(T_sensor_world, expected.box_above_ground());
   const Vector3d velocity = T_sensor_world.linear() * expected.velocity;
-  input.view.visit_patches(place_of(box, velocity), [&](std::size_t begin, std::size_t end) {
+  input.patches.visit(place_of(box, velocity, 0.0), [&](std::size_t begin, std::size_t end) {
     TimedPatch patch;
     take_patch(input.scan, begin, end - begin, patch);
     std::array<std::uint8_t, PatchBlock::kRows> is_inside;

@@ -100,7 +100,9 @@ TEST(ExpectedRows, AreThoseInTheBoxesWithTheExpectedVelocityWhileTheSensorMovesA
     ASSERT_GT(count(expected), count(before) + 100);
     for (const int threads : {1, 2}) {
       std::vector<std::uint8_t> flags = before;
-      flag_rows(input.scan, input.radial, sensor, bodies, Workers(threads), flags);
+      ScanPatches patches;
+      patches.bound(input.scan, Workers(threads));
+      flag_rows(input.scan, patches, input.radial, sensor, bodies, Workers(threads), flags);
       EXPECT_EQ(flags, expected) << has_times << ", threads: " << threads;
     }
   }
@@ -109,7 +111,7 @@ TEST(ExpectedRows, AreThoseInTheBoxesWithTheExpectedVelocityWhileTheSensorMovesA
 TEST(ExpectedRows, WithoutExpectationsNothingIsFlagged) {
   const Sweep input = sweep(true, {expected_body({18.0, 0.0, 0.0}, {9.0, 0.0, 0.0}, {})}, {});
   std::vector<std::uint8_t> flags(input.scan.size(), 0);
-  flag_rows(input.scan, input.radial, {}, {}, Workers(1), flags);
+  flag_rows(input.scan, {}, input.radial, {}, {}, Workers(1), flags);
   EXPECT_EQ(std::count(flags.begin(), flags.end(), 1), 0);
 }
 
@@ -141,9 +143,11 @@ TEST(ExpectedRows, StaticOnesAreThoseInTheBoxAboveTheGround) {
   for (const int threads : {1, 2}) {
     const Workers workers(threads);
     const RangeImage view(scan, Vector3d::Zero(), workers);
+    ScanPatches patches;
+    patches.bound(scan, workers);
     const MovingCells moving;
     const GroundHeights heights;
-    const TrackingInput input{scan, radial, is_moving, {}, 0.0, moving, {}, {}, {}, view, heights};
+    const TrackingInput input{scan, radial, is_moving, {}, 0.0, moving, {}, {}, {}, view, heights, patches};
     std::vector<std::uint32_t> visited{77};
     find_static_rows(input, expected, visited);
     EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end()));

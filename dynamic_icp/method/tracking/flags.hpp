@@ -30,4 +30,22 @@ void visit_flagged(std::span<const std::uint8_t> flags, std::size_t begin, std::
   }
 }
 
+/// The number of flags of [begin, end) that are not 0, eight at a time.
+inline std::size_t count_flagged(std::span<const std::uint8_t> flags, std::size_t begin, std::size_t end) {
+  constexpr std::uint64_t kOnes = 0x0101010101010101u;
+  constexpr std::uint64_t kLow = 0x7fu * kOnes;  // all bits of each flag but the highest
+  std::size_t count = 0;
+  std::size_t i = begin;
+  for (; i + sizeof(std::uint64_t) <= end; i += sizeof(std::uint64_t)) {
+    std::uint64_t together = 0;
+    std::memcpy(&together, &flags[i], sizeof(together));
+    const std::uint64_t is_set = ((((together & kLow) + kLow) | together) >> 7) & kOnes;
+    count += (is_set * kOnes) >> 56;
+  }
+  for (; i < end; ++i) {
+    count += flags[i] != 0 ? 1 : 0;
+  }
+  return count;
+}
+
 }  // namespace dynamic_icp::tracking

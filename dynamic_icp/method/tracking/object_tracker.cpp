@@ -71,7 +71,8 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
                                                      std::span<const std::uint8_t> is_moving,
                                                      const Eigen::Isometry3d& T_world_sensor,
                                                      const std::optional<ego_motion::SupportPlane>& support,
-                                                     const Workers& workers, const Eigen::Matrix3d& ego_covariance) {
+                                                     const Workers& workers, const Eigen::Matrix3d& ego_covariance,
+                                                     const ScanPatches* measured) {
   if (radial.size() != scan.size() || is_moving.size() != scan.size()) {
     throw std::invalid_argument("radial velocities and moving flags must have one value per point of the scan");
   }
@@ -95,7 +96,7 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
     ground_.update(normal, support->offset_m + normal.dot(T_world_sensor.translation()), T_world_sensor.translation());
   }
 
-  const TrackingInput input = prepare(scan, radial, is_moving, sensor, workers);
+  const TrackingInput input = prepare(scan, measured, radial, is_moving, sensor, workers);
   expect(input.stamp_s, sensor, [](const TrackRecord&) { return true; });
   gather_traffic(sensor);
   associate(input, expected_, config_.growth_m, owners_);
@@ -109,15 +110,38 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
   return std::span(objects_).first(living_);
 }
 
-TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> radial,
+/// Of the points of a deskewed scan.
+const ScanPatches& ObjectTracker::patches_of(const Scan& scan, const ScanPatches* measured, const Workers& workers) {
+  if (measured != nullptr && !scan.has_times()) {
+    return *measured;
+  }
+  patches_.bound(scan, workers);
+  return patches_;
+}
+
+/// Of what lies in the directions in which the points were measured; after patches_of. The sensors of a rig are not
+/// where all lines of sight would begin.
+const ScanPatches& ObjectTracker::sights_of(const Scan& scan, const ScanPatches* measured, const Workers& workers) {
+  if (!scan.has_times()) {
+    return measured != nullptr ? *measured : patches_;
+  }
+  if (measured != nullptr && !scan.is_of_rig()) {
+    return *measured;
+  }
+  sights_.bound_sights(scan, workers);
+  return sights_;
+}
+
+TrackingInput ObjectTracker::prepare(const Scan& scan, const ScanPatches* measured, std::span<const double> radial,
                                      std::span<const std::uint8_t> is_moving, const SensorMotion& sensor,
                                      const Workers& workers) {
-  const Vector3d velocity_sensor = sensor.T_world_sensor.linear().transpose() * sensor.velocity_world;
-  workers.both([&] { view_.draw(scan, velocity_sensor, workers); },
+  const ScanPatches& patches = patches_of(scan, measured, workers);
+  view_.show(scan, sights_of(scan, measured, workers),
+             sensor.T_world_sensor.linear().transpose() * sensor.velocity_world);
+  workers.both([&] { heights_.emplace(ground_.ground(), scan.points(), is_moving, sensor.T_world_sensor); },
                [&] {
                  gather_cells(scan, radial, is_moving, config_.grouping, workers, moving_);
                  group_cells(moving_.cells, config_.grouping, grouping_, groups_);
-                 heights_.emplace(ground_.ground(), scan.points(), is_moving, sensor.T_world_sensor);
                });
   cell_points_.clear();
   cell_directions_.clear();
@@ -125,9 +149,9 @@ TrackingInput ObjectTracker::prepare(const Scan& scan, std::span<const double> r
     cell_points_.push_back(sensor.T_world_sensor * cell.centroid);
     cell_directions_.push_back(sensor.direction_world(cell.direction, cell.time_s));
   }
-  return {scan,     radial,  is_moving,    sensor,           seconds_between(*first_stamp_, scan.stamp()),
-          moving_,  groups_, cell_points_, cell_directions_, view_,
-          *heights_};
+  return {scan,      radial,  is_moving,    sensor,           seconds_between(*first_stamp_, scan.stamp()),
+          moving_,   groups_, cell_points_, cell_directions_, view_,
+          *heights_, patches};
 }
 
 /// What the chosen tracks expect at the stamp of a scan.
@@ -158,12 +182,13 @@ void ObjectTracker::gather_traffic(const SensorMotion& sensor) {
   }
 }
 
-void ObjectTracker::flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
-                                  const Workers& workers, std::vector<std::uint8_t>& is_moving) {
+void ObjectTracker::flag_expected(const Scan& scan, const ScanPatches& patches, std::span<const double> radial,
+                                  const SensorMotion& sensor, const Workers& workers,
+                                  std::vector<std::uint8_t>& is_moving) {
   if (living_ > 0) {
     expect(seconds_between(*first_stamp_, scan.stamp()), sensor,
            [](const TrackRecord& entry) { return entry.confirmed; });
-    flag_rows(scan, radial, sensor, expected_, workers, is_moving);
+    flag_rows(scan, patches, radial, sensor, expected_, workers, is_moving);
   }
 }
 

@@ -44,9 +44,10 @@ class ObjectTracker {
   explicit ObjectTracker(const TrackerConfig& config);
 
   /// Sets `is_moving` of the rows that confirmed tracks expect to be theirs in a scan that is not deskewed: what
-  /// crosses the line of sight has no radial velocity, and tells itself from what stands by its past alone.
-  void flag_expected(const Scan& scan, std::span<const double> radial, const SensorMotion& sensor,
-                     const Workers& workers, std::vector<std::uint8_t>& is_moving);
+  /// crosses the line of sight has no radial velocity, and tells itself from what stands by its past alone. `patches`:
+  /// of this scan.
+  void flag_expected(const Scan& scan, const ScanPatches& patches, std::span<const double> radial,
+                     const SensorMotion& sensor, const Workers& workers, std::vector<std::uint8_t>& is_moving);
 
   /// Clears `is_moving` of the rows that are too near to their sensor to be objects, in a scan that is not deskewed.
   void clear_carrier(const Scan& scan, const Workers& workers, std::vector<std::uint8_t>& is_moving) const;
@@ -58,13 +59,15 @@ class ObjectTracker {
   /// are as measured. `radial`: for each row the velocity of the point itself along its line of sight over ground
   /// (m/s). `is_moving`: for each row nonzero where that is too much for noise. `support`: the plane that carries the
   /// scene, where it shows one. `ego_covariance`: of the velocity of the sensor, (m/s)^2, sensor frame; all velocities
-  /// over ground share its error. The objects are valid until the next call. Throws std::invalid_argument when these
-  /// differ in length or are not finite, and when the stamp is not later than that of the previous scan.
+  /// over ground share its error. `measured`: the patches of the scan before it was deskewed, if they are known, which
+  /// saves looking at all points once more. The objects are valid until the next call. Throws std::invalid_argument
+  /// when these differ in length or are not finite, and when the stamp is not later than that of the previous scan.
   std::span<const TrackedObject> update(const Scan& scan, std::span<const double> radial,
                                         std::span<const std::uint8_t> is_moving,
                                         const Eigen::Isometry3d& T_world_sensor,
                                         const std::optional<ego_motion::SupportPlane>& support, const Workers& workers,
-                                        const Eigen::Matrix3d& ego_covariance = Eigen::Matrix3d::Zero());
+                                        const Eigen::Matrix3d& ego_covariance = Eigen::Matrix3d::Zero(),
+                                        const ScanPatches* measured = nullptr);
 
   /// That of the last scan; nothing before the first.
   [[nodiscard]] const std::optional<Stamp>& last_stamp() const { return last_stamp_; }
@@ -75,8 +78,10 @@ class ObjectTracker {
  private:
   [[nodiscard]] std::span<TrackRecord> living();
   void keep(TrackRecord& entry);
-  TrackingInput prepare(const Scan& scan, std::span<const double> radial, std::span<const std::uint8_t> is_moving,
-                        const SensorMotion& sensor, const Workers& workers);
+  const ScanPatches& patches_of(const Scan& scan, const ScanPatches* measured, const Workers& workers);
+  const ScanPatches& sights_of(const Scan& scan, const ScanPatches* measured, const Workers& workers);
+  TrackingInput prepare(const Scan& scan, const ScanPatches* measured, std::span<const double> radial,
+                        std::span<const std::uint8_t> is_moving, const SensorMotion& sensor, const Workers& workers);
   void gather_traffic(const SensorMotion& sensor);
   template <typename Choice>
   void expect(double stamp_s, const SensorMotion& sensor, const Choice& choice);
@@ -99,6 +104,8 @@ class ObjectTracker {
   EgoError ego_error_;
 
   // Of the last scan, for their memory
+  ScanPatches patches_;
+  ScanPatches sights_;
   RangeImage view_;
   MovingCells moving_;
   GroupingMemory grouping_;

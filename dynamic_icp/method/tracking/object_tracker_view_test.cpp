@@ -71,7 +71,9 @@ TEST(ObjectTrackerView, TellsBeforehandWhichPointsAreOfACarThatCrosses) {
     const View view = view_of(traffic, k * kScanPeriod_s, {.sweep_s = kScanPeriod_s});
     if (k >= 5) {
       std::vector<std::uint8_t> expected(view.scan.size(), 0);
-      tracker.flag_expected(view.scan, view.radial, SensorMotion{}, Workers(2), expected);
+      ScanPatches patches;
+      patches.bound(view.scan, Workers(2));
+      tracker.flag_expected(view.scan, patches, view.radial, SensorMotion{}, Workers(2), expected);
       std::size_t high = 0;  // where no ground is
       std::size_t of_car = 0;
       std::size_t others = 0;

@@ -19,15 +19,15 @@ constexpr double kRoundingOfBounds_m = 0.01;  // more than rounding moves a poin
 
 }  // namespace
 
-void PatchBlock::bound(const Scan& scan, std::size_t begin, std::size_t end, double turn_rps) {
-  count_ = (end - begin + kRows - 1) / kRows;
+void PatchBlock::bound(std::span<const Eigen::Vector3d> points, std::span<const double> times) {
+  count_ = (points.size() + kRows - 1) / kRows;
   for (std::size_t patch = 0; patch < count_; ++patch) {
-    const std::size_t row = begin + patch * kRows;
-    const std::size_t rows = std::min(kRows, end - row);
-    bound_points(patch, std::span(scan.points()).subspan(row, rows));
-    time_[patch] = half_time_[patch] = turned_m_[patch] = 0.0;
-    if (scan.has_times()) {
-      bound_times(patch, std::span(scan.times()).subspan(row, rows), turn_rps);
+    const std::size_t row = patch * kRows;
+    const std::size_t rows = std::min(kRows, points.size() - row);
+    bound_points(patch, points.subspan(row, rows));
+    time_[patch] = half_time_[patch] = latest_[patch] = farthest_[patch] = 0.0;
+    if (!times.empty()) {
+      bound_times(patch, times.subspan(row, rows));
     }
   }
 }
@@ -35,8 +35,8 @@ void PatchBlock::bound(const Scan& scan, std::size_t begin, std::size_t end, dou
 void PatchBlock::bound_points(std::size_t patch, std::span<const Eigen::Vector3d> points) {
   const Eigen::Vector3d& middle = points[points.size() / 2];
   const double range = std::max(kMinRange_m, middle.head<2>().norm());
-  const double ux = x_[patch] = middle.x() / range;
-  const double uy = y_[patch] = middle.y() / range;
+  const double ux = bounds_.x[patch] = middle.x() / range;
+  const double uy = bounds_.y[patch] = middle.y() / range;
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     const double* const p = points.data()->data();
     const std::size_t n = points.size();
@@ -56,23 +56,21 @@ void PatchBlock::bound_points(std::size_t patch, std::span<const Eigen::Vector3d
       across.add(ux * p[3 * i + 1] - uy * p[3 * i]);
       upward.add(p[3 * i + 2]);
     }
-    along.take(along_low_[patch], along_high_[patch]);
-    across.take(across_low_[patch], across_high_[patch]);
-    upward.take(low_[patch], high_[patch]);
+    along.take(bounds_.along_low[patch], bounds_.along_high[patch]);
+    across.take(bounds_.across_low[patch], bounds_.across_high[patch]);
+    upward.take(bounds_.low[patch], bounds_.high[patch]);
   });
 }
 
-void PatchBlock::bound_times(std::size_t patch, std::span<const double> times, double turn_rps) {
+void PatchBlock::bound_times(std::size_t patch, std::span<const double> times) {
   const Interval seconds = interval_around(times);
   time_[patch] = seconds.middle();
   half_time_[patch] = 0.5 * seconds.length();
-  if (turn_rps > 0.0) {
-    const double turned_rad = turn_rps * std::max(std::abs(seconds.low), std::abs(seconds.high));
-    const Eigen::Vector3d farthest(std::max(std::abs(along_low_[patch]), std::abs(along_high_[patch])),
-                                   std::max(std::abs(across_low_[patch]), std::abs(across_high_[patch])),
-                                   std::max(std::abs(low_[patch]), std::abs(high_[patch])));
-    turned_m_[patch] = turned_rad * (1.0 + 0.5 * turned_rad) * farthest.norm();
-  }
+  latest_[patch] = std::max(std::abs(seconds.low), std::abs(seconds.high));
+  const Eigen::Vector3d farthest(std::max(std::abs(bounds_.along_low[patch]), std::abs(bounds_.along_high[patch])),
+                                 std::max(std::abs(bounds_.across_low[patch]), std::abs(bounds_.across_high[patch])),
+                                 std::max(std::abs(bounds_.low[patch]), std::abs(bounds_.high[patch])));
+  farthest_[patch] = farthest.norm();
 }
 
 void PatchBlock::find(const SoughtPlace& place, Flags& may_hold) const {
@@ -83,25 +81,43 @@ void PatchBlock::find(const SoughtPlace& place, Flags& may_hold) const {
     const double drift_mps = drift.norm();
     const double reach = place.reach_m;
     const double half_height = place.half_height_m;
+    const double turn_rps = place.turn_rps;
     Values apart;  // by which the farthest of the bounds is too far, m
     for (std::size_t i = 0; i < n; ++i) {
       const double x = centre.x() + time_[i] * drift.x();
       const double y = centre.y() + time_[i] * drift.y();
       const double z = centre.z() + time_[i] * drift.z();
-      const double slack = half_time_[i] * drift_mps + turned_m_[i] + kRoundingOfBounds_m;
-      const double along = x_[i] * x + y_[i] * y;
-      const double across = x_[i] * y - y_[i] * x;
-      const double before =
-          along_low_[i] - along > along - along_high_[i] ? along_low_[i] - along : along - along_high_[i];
-      const double beside =
-          across_low_[i] - across > across - across_high_[i] ? across_low_[i] - across : across - across_high_[i];
-      const double above = low_[i] - z > z - high_[i] ? low_[i] - z : z - high_[i];
+      const double turned_rad = turn_rps * latest_[i];
+      const double turned_m = turned_rad * (1.0 + 0.5 * turned_rad) * farthest_[i];
+      const double slack = half_time_[i] * drift_mps + turned_m + kRoundingOfBounds_m;
+      const double along = bounds_.x[i] * x + bounds_.y[i] * y;
+      const double across = bounds_.x[i] * y - bounds_.y[i] * x;
+      const double before = bounds_.along_low[i] - along > along - bounds_.along_high[i]
+                                ? bounds_.along_low[i] - along
+                                : along - bounds_.along_high[i];
+      const double beside = bounds_.across_low[i] - across > across - bounds_.across_high[i]
+                                ? bounds_.across_low[i] - across
+                                : across - bounds_.across_high[i];
+      const double above = bounds_.low[i] - z > z - bounds_.high[i] ? bounds_.low[i] - z : z - bounds_.high[i];
       const double level = (before > beside ? before : beside) - reach;
       apart[i] = (level > above - half_height ? level : above - half_height) - slack;
     }
     for (std::size_t i = 0; i < n; ++i) {
       may_hold[i] = apart[i] <= 0.0 ? 1 : 0;
     }
+  });
+}
+
+void ScanPatches::bound(const Scan& scan, const Workers& workers) { bound(scan.points(), scan.times(), workers); }
+
+void ScanPatches::bound_sights(const Scan& scan, const Workers& workers) { bound(scan.directions(), {}, workers); }
+
+void ScanPatches::bound(std::span<const Eigen::Vector3d> points, std::span<const double> times,
+                        const Workers& workers) {
+  rows_ = points.size();
+  blocks_.resize(Workers::block_count(rows_, PatchBlock::kBlock));
+  workers.for_blocks(rows_, PatchBlock::kBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
+    blocks_[block].bound(points.subspan(begin, end - begin), times.empty() ? times : times.subspan(begin, end - begin));
   });
 }
 

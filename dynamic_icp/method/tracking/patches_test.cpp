@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/tracking/patches.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
@@ -39,14 +40,15 @@ TEST(PatchBlock, APatchWithPointsInAPlaceIsFoundWhileTheSensorTurns) {
       SensorMotion sensor;  // it does not move: what is sought does
       sensor.angular_velocity_sensor = turning;
       PatchBlock patches;
-      patches.bound(scan, 0, rows, turning.norm());
+      patches.bound(scan.points(), scan.times());
       ASSERT_EQ(patches.count(), (rows + 63) / 64);
       std::size_t found = 0;
       std::size_t needed = 0;
       for (std::uint64_t k = 0; k < 200; ++k) {
         const RandomSource one = RandomSource(7).fork(k);
         const Vector3d at = scan.points()[static_cast<std::size_t>(one.uniform(0, 0.0, 1.0) * double(rows - 1))];
-        const SoughtPlace place{at, 20.0 * Vector3d(one.uniform(1, -1, 1), one.uniform(2, -1, 1), 0.0), 2.0, 0.8};
+        const SoughtPlace place{at, 20.0 * Vector3d(one.uniform(1, -1, 1), one.uniform(2, -1, 1), 0.0), 2.0, 0.8,
+                                turning.norm()};
         PatchBlock::Flags may_hold{};
         patches.find(place, may_hold);
         std::vector<std::uint8_t> holds(patches.count(), 0);
@@ -65,6 +67,40 @@ TEST(PatchBlock, APatchWithPointsInAPlaceIsFoundWhileTheSensorTurns) {
       EXPECT_GE(needed, 150u);
       EXPECT_LE(found, (has_times ? 8 : 3) * needed) << "of " << rows << " rows";
     }
+  }
+}
+
+TEST(ScanPatches, ThoseInAPlaceHoldAllItsRows) {
+  // Rows in a coil: those that follow each other are near each other.
+  RawScan raw;
+  for (std::uint64_t i = 0; i < 1700; ++i) {
+    const RandomSource one = RandomSource(3).fork(i);
+    const double turn = 0.01 * static_cast<double>(i);
+    raw.points.emplace_back(20.0 * std::cos(turn) + one.uniform(0), 20.0 * std::sin(turn) + one.uniform(1),
+                            0.002 * static_cast<double>(i) + one.uniform(2));
+  }
+  raw.doppler.assign(raw.points.size(), 0.0);
+  const Scan scan = Scan::from_raw(raw);
+  ASSERT_EQ(scan.size(), raw.points.size());
+  ScanPatches patches;
+  patches.bound(scan, Workers(3));
+  for (const double reach : {0.5, 3.0, 12.0, 60.0}) {
+    const Vector3d place(-20.0, 3.0, 2.0);
+    std::vector<std::uint32_t> visited;
+    patches.visit({place, Vector3d::Zero(), reach, reach}, [&](std::size_t begin, std::size_t end) {
+      ASSERT_EQ(begin % 64, 0u);
+      ASSERT_EQ(end, std::min<std::size_t>(begin + 64, 1700));
+      for (std::size_t row = begin; row < end; ++row) {
+        visited.push_back(static_cast<std::uint32_t>(row));
+      }
+    });
+    EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end()));
+    for (std::uint32_t row = 0; row < raw.points.size(); ++row) {
+      if ((raw.points[row] - place).norm() <= reach) {
+        EXPECT_TRUE(std::binary_search(visited.begin(), visited.end(), row)) << row << " within " << reach;
+      }
+    }
+    EXPECT_EQ(visited.size() == 1700, reach == 60.0);
   }
 }
 

@@ -9,8 +9,6 @@
 
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/method/base/random_source.hpp"
-
 namespace dynamic_icp::tracking {
 namespace {
 
@@ -145,39 +143,6 @@ TEST(RangeImage, FewPointsThatSeemToBeBehindASurfaceAreMirrored) {
   EXPECT_FALSE(mirrored_behind_wall(21.5, 30.0, 0)) << "beside the wall";
   EXPECT_FALSE(mirrored_behind_wall(15.0, 30.0, 0)) << "a body that it hides in part";
   EXPECT_FALSE(mirrored_behind_wall(-10.0, 10.0, 2)) << "a fence";
-}
-
-TEST(RangeImage, PatchesInAPlaceHoldAllItsRows) {
-  // Rows in a coil: those that follow each other are near each other.
-  RawScan raw;
-  for (std::uint64_t i = 0; i < 1700; ++i) {
-    const RandomSource one = RandomSource(3).fork(i);
-    const double turn = 0.01 * static_cast<double>(i);
-    raw.points.emplace_back(20.0 * std::cos(turn) + one.uniform(0), 20.0 * std::sin(turn) + one.uniform(1),
-                            0.002 * static_cast<double>(i) + one.uniform(2));
-  }
-  raw.doppler.assign(raw.points.size(), 0.0);
-  const Scan scan = Scan::from_raw(raw);
-  ASSERT_EQ(scan.size(), raw.points.size());
-  const RangeImage image(scan, Vector3d::Zero(), Workers(3));
-  for (const double reach : {0.5, 3.0, 12.0, 60.0}) {
-    const Vector3d place(-20.0, 3.0, 2.0);
-    std::vector<std::uint32_t> visited;
-    image.visit_patches({place, Vector3d::Zero(), reach, reach}, [&](std::size_t begin, std::size_t end) {
-      ASSERT_EQ(begin % 64, 0u);
-      ASSERT_EQ(end, std::min<std::size_t>(begin + 64, 1700));
-      for (std::size_t row = begin; row < end; ++row) {
-        visited.push_back(static_cast<std::uint32_t>(row));
-      }
-    });
-    EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end()));
-    for (std::uint32_t row = 0; row < raw.points.size(); ++row) {
-      if ((raw.points[row] - place).norm() <= reach) {
-        EXPECT_TRUE(std::binary_search(visited.begin(), visited.end(), row)) << row << " within " << reach;
-      }
-    }
-    EXPECT_EQ(visited.size() == 1700, reach == 60.0);
-  }
 }
 
 }  // namespace

@@ -34,6 +34,7 @@ TEST(TrackerMemory, NothingIsAllocatedInTheLongRun) {
   constexpr int kWarmUp = 4 * kRound;
   for (const int threads : {1, 2}) {
     ObjectTracker tracker{TrackerConfig{}};
+    ScanPatches patches;
     const Workers workers(threads);
     std::size_t objects = 0;
     std::int64_t newest = 0;
@@ -43,9 +44,11 @@ TEST(TrackerMemory, NothingIsAllocatedInTheLongRun) {
       View view = view_of(rounds_of_traffic(t), t);
       const auto pose = Eigen::Isometry3d::Identity();
       const std::size_t before = allocation_count;
-      tracker.flag_expected(view.scan, view.radial, SensorMotion{pose}, workers, view.is_moving);
+      patches.bound(view.scan, workers);
+      tracker.flag_expected(view.scan, patches, view.radial, SensorMotion{pose}, workers, view.is_moving);
       tracker.clear_carrier(view.scan, workers, view.is_moving);
-      const auto all = tracker.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), workers);
+      const auto all = tracker.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), workers,
+                                      Eigen::Matrix3d::Zero(), &patches);
       const std::size_t asked = allocation_count - before;
       for (const TrackedObject& object : all) {
         newest = std::max(newest, object.id);
