@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <span>
 #include <utility>
 
 #include "dynamic_icp/method/spatial/cell_key.hpp"
@@ -42,9 +43,7 @@ void find_moving_rows(std::span<const std::uint8_t> is_moving, const Workers& wo
   std::vector<std::uint32_t>& end_of_block = result.end_of_block;
   end_of_block.resize(Workers::block_count(is_moving.size(), kPointBlock));
   workers.for_blocks(is_moving.size(), kPointBlock, [&](std::size_t block, std::size_t begin, std::size_t end) {
-    std::uint32_t count = 0;
-    visit_flagged(is_moving, begin, end, [&](std::size_t) { ++count; });
-    end_of_block[block] = count;
+    end_of_block[block] = static_cast<std::uint32_t>(count_flagged(is_moving, begin, end));
   });
   std::partial_sum(end_of_block.begin(), end_of_block.end(), end_of_block.begin());
   const std::size_t rows = end_of_block.empty() ? 0 : end_of_block.back();
@@ -104,38 +103,70 @@ constexpr std::array<std::uint64_t, 14> kHalfNeighbourhood = [] {
   return offsets;
 }();
 
-/// Unites the sets of each two of `memory.near` that are neighbours on one body and at most `reach_m` apart.
-void unite_neighbours(double reach_m, const GroupingConfig& config, GroupingMemory& memory) {
-  const double cube_m = kWiderThanReach * reach_m;
-  const double squared_reach = cube_m * cube_m;
+/// Sorts `memory.near` into cubes of this edge.
+void sort_into_cubes(double cube_m, GroupingMemory& memory) {
   spatial::CellOrder& cubes = memory.cubes;
-  std::vector<std::uint64_t>& keys = memory.keys;
-  std::vector<NearCell>& sorted = memory.sorted;  // side by side in memory if they are in space
   cubes.keys.clear();
   for (const NearCell& cell : memory.near) {
     cubes.keys.push_back(spatial::clamped_cell_key(cell.centroid / cube_m));
   }
   cubes.sort();
-  make_room(keys, cubes.cells());
-  make_room(sorted, memory.near.size());
-  keys.resize(cubes.cells());
-  sorted.resize(memory.near.size());
-  for (std::size_t k = 0; k < sorted.size(); ++k) {
-    keys[cubes.cell[k]] = cubes.keys[k];
-    sorted[cubes.place(k)] = memory.near[k];
+  make_room(memory.keys, cubes.cells());
+  make_room(memory.sorted, memory.near.size());
+  memory.keys.resize(cubes.cells());
+  memory.sorted.resize(memory.near.size());
+  for (std::size_t k = 0; k < memory.sorted.size(); ++k) {
+    memory.keys[cubes.cell[k]] = cubes.keys[k];
+    memory.sorted[cubes.place(k)] = memory.near[k];
+  }
+}
+
+/// Unites the sets of each two of `memory.near` that are neighbours on one body and at most `reach_m` apart. Most of
+/// what is in a cube is one set soon, and two such cubes need no more than one pair of neighbours.
+void unite_neighbours(double reach_m, const GroupingConfig& config, GroupingMemory& memory) {
+  const double cube_m = kWiderThanReach * reach_m;
+  const double squared_reach = cube_m * cube_m;
+  sort_into_cubes(cube_m, memory);
+  const spatial::CellOrder& cubes = memory.cubes;
+  const std::vector<NearCell>& sorted = memory.sorted;  // side by side in memory if they are in space
+  spatial::DisjointSets& sets = memory.sets;
+  const auto unite = [&](const NearCell& a, const NearCell& b) {
+    const double squared = (a.centroid - b.centroid).squaredNorm();
+    return squared <= squared_reach && linked(a, b, squared, config) && sets.unite(a.number, b.number);
+  };
+  const auto set_of = [&](std::size_t cube) { return sets.find(sorted[cubes.first[cube]].number); };
+  refill(memory.is_one_set, cubes.cells(), std::uint8_t{0});
+  for (std::size_t cube = 0; cube < cubes.cells(); ++cube) {
+    const std::uint32_t begin = cubes.first[cube];
+    const std::uint32_t end = cubes.first[cube + 1];
+    const auto is_one_set = [&] {
+      const std::uint32_t set = set_of(cube);
+      return std::all_of(sorted.begin() + begin, sorted.begin() + end,
+                         [&](const NearCell& cell) { return sets.find(cell.number) == set; });
+    };
+    std::uint32_t united = 1;
+    for (std::uint32_t a = begin; a < end && united < end - begin; ++a) {
+      for (std::uint32_t b = a + 1; b < end; ++b) {
+        united += unite(sorted[a], sorted[b]) ? 1 : 0;
+      }
+    }
+    memory.is_one_set[cube] = is_one_set() ? 1 : 0;
   }
   for (std::size_t cube = 0; cube < cubes.cells(); ++cube) {
-    for (const std::uint64_t offset : kHalfNeighbourhood) {
-      const std::uint32_t other = cubes.numbers.find(keys[cube] + offset);
+    for (const std::uint64_t offset : std::span(kHalfNeighbourhood).subspan(1)) {
+      const std::uint32_t other = cubes.numbers.find(memory.keys[cube] + offset);
       if (other == spatial::KeyNumbers::kNone) {
         continue;
       }
-      for (std::uint32_t a = cubes.first[cube]; a < cubes.first[cube + 1]; ++a) {
-        for (std::uint32_t b = other == cube ? a + 1 : cubes.first[other]; b < cubes.first[other + 1]; ++b) {
-          const double squared = (sorted[a].centroid - sorted[b].centroid).squaredNorm();
-          if (squared <= squared_reach && linked(sorted[a], sorted[b], squared, config)) {
-            memory.sets.unite(sorted[a].number, sorted[b].number);
-          }
+      // Cells of the set that all of the other cube is need nothing, and others no more than one pair of neighbours.
+      const bool are_swapped = memory.is_one_set[other] == 0 && memory.is_one_set[cube] != 0;
+      const std::size_t from = are_swapped ? other : cube;
+      const std::size_t to = are_swapped ? cube : other;
+      const bool is_one_set = memory.is_one_set[to] != 0;
+      for (std::uint32_t a = cubes.first[from]; a < cubes.first[from + 1]; ++a) {
+        bool is_done = is_one_set && sets.find(sorted[a].number) == set_of(to);
+        for (std::uint32_t b = cubes.first[to]; b < cubes.first[to + 1] && !is_done; ++b) {
+          is_done = unite(sorted[a], sorted[b]) && is_one_set;
         }
       }
     }

@@ -90,6 +90,7 @@ struct GroupingMemory {
   std::vector<NearCell> sorted;
   spatial::CellOrder cubes;
   std::vector<std::uint64_t> keys;
+  std::vector<std::uint8_t> is_one_set;  ///< for each cube
   spatial::DisjointSets sets;
   std::vector<std::uint32_t> number_of_root;
 

@@ -101,15 +101,8 @@ TEST(MovingCells, TheGapWhereTheVelocityPassesZeroIsBridged) {
       << "two that pass each other";
 }
 
-TEST(MovingCells, GroupsAreTheConnectedOnesOfAllPairs) {
-  const RandomSource random(23);
-  std::vector<MovingCell> cells;
-  for (std::uint64_t i = 0; i < 400; ++i) {
-    const RandomSource one = random.fork(i);
-    cells.push_back(
-        cell({one.uniform(0, 5, 40), one.uniform(1, -10, 10), one.uniform(2, 0, 2)}, one.uniform(3, -1.5, 1.5)));
-  }
-  const GroupingConfig config;
+/// The smallest number of a cell that each one is joined to, by all pairs.
+std::vector<std::uint32_t> connected(const std::vector<MovingCell>& cells, const GroupingConfig& config) {
   std::vector<std::uint32_t> expected(cells.size());
   for (std::uint32_t i = 0; i < expected.size(); ++i) {
     expected[i] = i;
@@ -135,11 +128,28 @@ TEST(MovingCells, GroupsAreTheConnectedOnesOfAllPairs) {
       }
     }
   }
-  const std::vector<std::uint32_t> groups = grouped(cells, config);
-  for (std::size_t i = 0; i < cells.size(); ++i) {
-    for (std::size_t k = 0; k < i; ++k) {
-      ASSERT_EQ(groups[i] == groups[k], expected[i] == expected[k]) << i << " and " << k;
+  return expected;
+}
+
+TEST(MovingCells, GroupsAreTheConnectedOnesOfAllPairs) {
+  // Few in a cube; many, with all velocities; and bodies whose cubes are full of one velocity, side by side.
+  for (const double width_m : {10.0, 2.0, 4.0}) {
+    std::vector<MovingCell> cells;
+    for (std::uint64_t i = 0; i < 400; ++i) {
+      const RandomSource one = RandomSource(23).fork(i);
+      const Vector3d at(one.uniform(0, 5, 5 + 3.5 * width_m), one.uniform(1, -width_m, width_m), one.uniform(2, 0, 2));
+      const double of_body = std::floor(0.4 * at.x()) + (at.y() > 0.1 ? 4.0 : 0.0);
+      cells.push_back(cell(at, width_m == 4.0 ? of_body + one.uniform(3, -0.2, 0.2) : one.uniform(3, -1.5, 1.5)));
     }
+    const GroupingConfig config;
+    const std::vector<std::uint32_t> expected = connected(cells, config);
+    const std::vector<std::uint32_t> groups = grouped(cells, config);
+    for (std::size_t i = 0; i < cells.size(); ++i) {
+      for (std::size_t k = 0; k < i; ++k) {
+        ASSERT_EQ(groups[i] == groups[k], expected[i] == expected[k]) << i << " and " << k << ", " << width_m;
+      }
+    }
+    EXPECT_GT(std::ranges::max(groups), 2u);
   }
 }
 
