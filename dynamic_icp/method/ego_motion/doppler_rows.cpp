@@ -103,7 +103,9 @@ void without_rows(const DopplerRows& rows, const spatial::CellOrder& order, std:
                   DopplerRows& kept) {
   std::vector<std::uint32_t> flagged(rows.cells(), 0);
   for (std::size_t i = 0; i < flags.size(); ++i) {
-    flagged[order.cell[i]] += flags[i] != 0 ? 1 : 0;
+    if (flags[i] != 0) {  // few are
+      ++flagged[order.cell[i]];
+    }
   }
   kept.reference_time_s = rows.reference_time_s;
   kept.duration_s = rows.duration_s;

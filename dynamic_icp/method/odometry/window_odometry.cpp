@@ -322,7 +322,7 @@ void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) 
   const motion::SweepMotion sweep = sweep_of(now);
   frame.twist = estimator_.twist();
   if (config_.track_objects) {
-    tracker_.clear_carrier(memory_.whole, workers_, memory_.may_be_object);
+    tracker_.clear_carrier(memory_.whole, memory_.patches, memory_.may_be_object);
     memory_.whole = motion::deskew(std::move(memory_.whole), sweep, workers_);
     objects = tracker_.update(memory_.whole, memory_.radial, memory_.may_be_object, frame.T_world_sensor, support_,
                               workers_, ego_.covariance, &memory_.patches);

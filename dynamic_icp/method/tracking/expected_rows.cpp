@@ -29,10 +29,17 @@ struct SoughtBox {
   SoughtPlace place;  ///< of the box, seen from the sensor
 };
 
-/// The cylinder around a box in the frame of the sensor that moves with `drift` (m/s), while it turns with `turn_rps`.
+/// The place of a box in the frame of the sensor that moves with `drift` (m/s), while the sensor turns with `turn_rps`.
 SoughtPlace place_of(const OrientedBox& box, const Vector3d& drift, double turn_rps) {
-  const double lean_m = box.size.z() * box.axes.col(2).head<2>().norm();
-  return {box.centre, drift, 0.5 * (box.size.head<2>().norm() + lean_m), 0.5 * aligned_extent(box).z(), turn_rps};
+  SoughtPlace place;
+  place.centre = box.centre;
+  place.drift = drift;
+  place.half_length = 0.5 * box.size.x() * box.axes.col(0).head<2>();
+  place.half_width = 0.5 * box.size.y() * box.axes.col(1).head<2>();
+  place.reach_m = 0.5 * box.size.z() * box.axes.col(2).head<2>().norm();  // where it leans
+  place.half_height_m = 0.5 * aligned_extent(box).z();
+  place.turn_rps = turn_rps;
+  return place;
 }
 
 OrientedBox moved_by(const Eigen::Isometry3d& T, const OrientedBox& box) {
@@ -184,6 +191,31 @@ void flag_rows(const Scan& scan, const ScanPatches& patches, std::span<const dou
     }
   };
   workers.for_blocks(sought.empty() ? 0 : scan.size(), PatchBlock::kBlock, flag_block);
+}
+
+void clear_near_rows(const Scan& scan, const ScanPatches& patches, double range_m,
+                     std::vector<std::uint8_t>& is_moving) {
+  const auto clear_around = [&](const Vector3d& origin, const auto& is_of_sensor) {
+    SoughtPlace place;
+    place.centre = origin;
+    place.reach_m = range_m;
+    place.half_height_m = range_m;
+    patches.visit(place, [&](std::size_t begin, std::size_t end) {
+      visit_flagged(is_moving, begin, end, [&](std::size_t row) {
+        if (is_of_sensor(row) && (scan.points()[row] - origin).squaredNorm() < range_m * range_m) {
+          is_moving[row] = 0;
+        }
+      });
+    });
+  };
+  if (!scan.is_of_rig()) {
+    clear_around(Vector3d::Zero(), [](std::size_t) { return true; });
+    return;
+  }
+  for (std::size_t sensor = 0; sensor < scan.mountings().size(); ++sensor) {
+    clear_around(scan.mountings()[sensor].translation(),
+                 [&](std::size_t row) { return scan.channels().sensor[row] == sensor; });
+  }
 }
 
 void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows) {

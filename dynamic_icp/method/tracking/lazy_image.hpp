@@ -66,7 +66,7 @@ class LazyImage {
   }
 
  private:
-  static constexpr int kTileColumns = 8;
+  static constexpr int kTileColumns = 2;
   static constexpr int kTileRows = 15;
   static constexpr int kTilesAbove = kImageRows / kTileRows;
   static constexpr std::size_t kTiles = std::size_t{kImageColumns / kTileColumns} * kTilesAbove;

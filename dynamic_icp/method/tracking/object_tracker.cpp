@@ -192,19 +192,9 @@ void ObjectTracker::flag_expected(const Scan& scan, const ScanPatches& patches, 
   }
 }
 
-void ObjectTracker::clear_carrier(const Scan& scan, const Workers& workers,
+void ObjectTracker::clear_carrier(const Scan& scan, const ScanPatches& patches,
                                   std::vector<std::uint8_t>& is_moving) const {
-  const double squared_m2 = config_.min_range_m * config_.min_range_m;
-  workers.for_each(scan.size(), kPointBlock, [&](std::size_t row) {
-    if (is_moving[row] == 0) {
-      return;
-    }
-    const Vector3d origin =
-        scan.is_of_rig() ? Vector3d(scan.mountings()[scan.channels().sensor[row]].translation()) : Vector3d::Zero();
-    if ((scan.points()[row] - origin).squaredNorm() < squared_m2) {
-      is_moving[row] = 0;
-    }
-  });
+  clear_near_rows(scan, patches, config_.min_range_m, is_moving);
 }
 
 /// Adds to a slow track the points in its box that are not among the moving ones but move as it does.

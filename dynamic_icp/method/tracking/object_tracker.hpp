@@ -50,7 +50,8 @@ class ObjectTracker {
                      const SensorMotion& sensor, const Workers& workers, std::vector<std::uint8_t>& is_moving);
 
   /// Clears `is_moving` of the rows that are too near to their sensor to be objects, in a scan that is not deskewed.
-  void clear_carrier(const Scan& scan, const Workers& workers, std::vector<std::uint8_t>& is_moving) const;
+  /// `patches`: of this scan.
+  void clear_carrier(const Scan& scan, const ScanPatches& patches, std::vector<std::uint8_t>& is_moving) const;
 
   /// All tracks at the stamp of the scan, in the order of their birth, tentative ones too: report those that are
   /// confirmed.

@@ -274,7 +274,10 @@ TEST(ObjectTracker, WhatIsNearItsSensorBelongsToItsCarrier) {
   raw.points = {{1.9, 0, 0}, {2.1, 0, 0}, {0, -1.2, 1.2}, {0, -1.5, 1.5}, {1.0, 0, 0}, {-30, 0, 0}};
   raw.doppler.assign(raw.points.size(), 0.0);
   std::vector<std::uint8_t> is_moving = {1, 1, 1, 1, 0, 1};
-  tracker.clear_carrier(Scan::from_raw(raw), Workers(2), is_moving);
+  const Scan scan = Scan::from_raw(raw);
+  ScanPatches patches;
+  patches.bound(scan, Workers(2));
+  tracker.clear_carrier(scan, patches, is_moving);
   EXPECT_EQ(is_moving, (std::vector<std::uint8_t>{0, 1, 0, 1, 0, 1}));
 }
 
@@ -287,7 +290,10 @@ TEST(ObjectTracker, InARigTheMountingOfThePointsOwnSensorCounts) {
   raw.channels.sensor = {0, 1, 0, 1, 0, 0};
   raw.doppler.assign(raw.points.size(), 0.0);
   std::vector<std::uint8_t> is_moving(raw.points.size(), 1);
-  ObjectTracker{TrackerConfig{}}.clear_carrier(Scan::from_raw(raw), Workers(1), is_moving);
+  const Scan scan = Scan::from_raw(raw);
+  ScanPatches patches;
+  patches.bound(scan, Workers(1));
+  ObjectTracker{TrackerConfig{}}.clear_carrier(scan, patches, is_moving);
   EXPECT_EQ(is_moving, (std::vector<std::uint8_t>{0, 1, 1, 0, 1, 1})) << "1 m";
 }
 

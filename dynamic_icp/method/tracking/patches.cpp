@@ -82,6 +82,8 @@ void PatchBlock::find(const SoughtPlace& place, Flags& may_hold) const {
     const double reach = place.reach_m;
     const double half_height = place.half_height_m;
     const double turn_rps = place.turn_rps;
+    const Eigen::Vector2d a = place.half_length;
+    const Eigen::Vector2d b = place.half_width;
     Values apart;  // by which the farthest of the bounds is too far, m
     for (std::size_t i = 0; i < n; ++i) {
       const double x = centre.x() + time_[i] * drift.x();
@@ -90,17 +92,24 @@ void PatchBlock::find(const SoughtPlace& place, Flags& may_hold) const {
       const double turned_rad = turn_rps * latest_[i];
       const double turned_m = turned_rad * (1.0 + 0.5 * turned_rad) * farthest_[i];
       const double slack = half_time_[i] * drift_mps + turned_m + kRoundingOfBounds_m;
-      const double along = bounds_.x[i] * x + bounds_.y[i] * y;
-      const double across = bounds_.x[i] * y - bounds_.y[i] * x;
-      const double before = bounds_.along_low[i] - along > along - bounds_.along_high[i]
-                                ? bounds_.along_low[i] - along
-                                : along - bounds_.along_high[i];
-      const double beside = bounds_.across_low[i] - across > across - bounds_.across_high[i]
-                                ? bounds_.across_low[i] - across
-                                : across - bounds_.across_high[i];
-      const double above = bounds_.low[i] - z > z - bounds_.high[i] ? bounds_.low[i] - z : z - bounds_.high[i];
-      const double level = (before > beside ? before : beside) - reach;
-      apart[i] = (level > above - half_height ? level : above - half_height) - slack;
+      const double ux = bounds_.x[i];
+      const double uy = bounds_.y[i];
+      const double along = ux * x + uy * y;
+      const double across = ux * y - uy * x;
+      // How far the place reaches to both sides of its centre.
+      const double long_half = std::abs(ux * a.x() + uy * a.y()) + std::abs(ux * b.x() + uy * b.y()) + reach;
+      const double broad_half = std::abs(ux * a.y() - uy * a.x()) + std::abs(ux * b.y() - uy * b.x()) + reach;
+      const double low_along = bounds_.along_low[i] - along;
+      const double high_along = along - bounds_.along_high[i];
+      const double low_across = bounds_.across_low[i] - across;
+      const double high_across = across - bounds_.across_high[i];
+      const double low = bounds_.low[i] - z;
+      const double high = z - bounds_.high[i];
+      const double before = (low_along > high_along ? low_along : high_along) - long_half;
+      const double beside = (low_across > high_across ? low_across : high_across) - broad_half;
+      const double above = (low > high ? low : high) - half_height;
+      const double level = before > beside ? before : beside;
+      apart[i] = (level > above ? level : above) - slack;
     }
     for (std::size_t i = 0; i < n; ++i) {
       may_hold[i] = apart[i] <= 0.0 ? 1 : 0;

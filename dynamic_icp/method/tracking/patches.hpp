@@ -17,11 +17,15 @@
 
 namespace dynamic_icp::tracking {
 
-/// An upright cylinder that moves during a scan, in the frame of its points.
+/// A place that moves during a scan, in the frame of its points: a rectangle in the plane of x and y, everything within
+/// a reach of it, and so much above and below. Without a rectangle it is an upright cylinder.
 struct SoughtPlace {
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();  ///< m, at the stamp
   Eigen::Vector3d drift = Eigen::Vector3d::Zero();   ///< m/s
-  double reach_m = 0.0;                              ///< in the plane of x and y
+  Eigen::Vector2d half_length =
+      Eigen::Vector2d::Zero();  ///< m, from the centre of the rectangle to the middle of a side
+  Eigen::Vector2d half_width = Eigen::Vector2d::Zero();  ///< m, the same of the next side
+  double reach_m = 0.0;
   double half_height_m = 0.0;
   /// How fast the sensor turns, rad/s: points may be moved by that much from where they are. Deskewed ones are not: 0.
   double turn_rps = 0.0;

@@ -47,15 +47,31 @@ TEST(PatchBlock, APatchWithPointsInAPlaceIsFoundWhileTheSensorTurns) {
       for (std::uint64_t k = 0; k < 200; ++k) {
         const RandomSource one = RandomSource(7).fork(k);
         const Vector3d at = scan.points()[static_cast<std::size_t>(one.uniform(0, 0.0, 1.0) * double(rows - 1))];
-        const SoughtPlace place{at, 20.0 * Vector3d(one.uniform(1, -1, 1), one.uniform(2, -1, 1), 0.0), 2.0, 0.8,
-                                turning.norm()};
+        SoughtPlace place;
+        place.centre = at;
+        place.drift = 20.0 * Vector3d(one.uniform(1, -1, 1), one.uniform(2, -1, 1), 0.0);
+        place.half_height_m = 0.8;
+        place.turn_rps = turning.norm();
+        const double yaw = one.uniform(3, -3.0, 3.0);
+        const Eigen::Vector2d ahead(std::cos(yaw), std::sin(yaw));
+        const bool is_box = k % 2 == 0;
+        if (is_box) {
+          place.half_length = 3.0 * ahead;
+          place.half_width = 1.0 * Eigen::Vector2d(-ahead.y(), ahead.x());
+        } else {
+          place.reach_m = 2.0;
+        }
         PatchBlock::Flags may_hold{};
         patches.find(place, may_hold);
         std::vector<std::uint8_t> holds(patches.count(), 0);
         for (std::size_t i = 0; i < rows; ++i) {
           const double time = has_times ? scan.times()[i] : 0.0;
           const Vector3d apart = sensor.point_world(scan.points()[i], time) - place.centre - time * place.drift;
-          const bool is_there = apart.head<2>().norm() <= place.reach_m && std::abs(apart.z()) <= place.half_height_m;
+          const Eigen::Vector2d level = apart.head<2>();
+          const bool is_inside = is_box ? std::abs(level.dot(ahead)) <= 3.0 &&
+                                              std::abs(level.x() * ahead.y() - level.y() * ahead.x()) <= 1.0
+                                        : level.norm() <= place.reach_m;
+          const bool is_there = is_inside && std::abs(apart.z()) <= place.half_height_m;
           holds[i / 64] |= is_there ? 1 : 0;
         }
         for (std::size_t patch = 0; patch < holds.size(); ++patch) {
@@ -85,9 +101,12 @@ TEST(ScanPatches, ThoseInAPlaceHoldAllItsRows) {
   ScanPatches patches;
   patches.bound(scan, Workers(3));
   for (const double reach : {0.5, 3.0, 12.0, 60.0}) {
-    const Vector3d place(-20.0, 3.0, 2.0);
+    SoughtPlace place;
+    place.centre = Vector3d(-20.0, 3.0, 2.0);
+    place.reach_m = reach;
+    place.half_height_m = reach;
     std::vector<std::uint32_t> visited;
-    patches.visit({place, Vector3d::Zero(), reach, reach}, [&](std::size_t begin, std::size_t end) {
+    patches.visit(place, [&](std::size_t begin, std::size_t end) {
       ASSERT_EQ(begin % 64, 0u);
       ASSERT_EQ(end, std::min<std::size_t>(begin + 64, 1700));
       for (std::size_t row = begin; row < end; ++row) {
@@ -96,7 +115,7 @@ TEST(ScanPatches, ThoseInAPlaceHoldAllItsRows) {
     });
     EXPECT_TRUE(std::is_sorted(visited.begin(), visited.end()));
     for (std::uint32_t row = 0; row < raw.points.size(); ++row) {
-      if ((raw.points[row] - place).norm() <= reach) {
+      if ((raw.points[row] - place.centre).norm() <= reach) {
         EXPECT_TRUE(std::binary_search(visited.begin(), visited.end(), row)) << row << " within " << reach;
       }
     }

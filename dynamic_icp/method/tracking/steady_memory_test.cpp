@@ -46,7 +46,7 @@ TEST(TrackerMemory, NothingIsAllocatedInTheLongRun) {
       const std::size_t before = allocation_count;
       patches.bound(view.scan, workers);
       tracker.flag_expected(view.scan, patches, view.radial, SensorMotion{pose}, workers, view.is_moving);
-      tracker.clear_carrier(view.scan, workers, view.is_moving);
+      tracker.clear_carrier(view.scan, patches, view.is_moving);
       const auto all = tracker.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), workers,
                                       Eigen::Matrix3d::Zero(), &patches);
       const std::size_t asked = allocation_count - before;
