@@ -2,7 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/base/nearest_key.hpp"
 
+#include <algorithm>
+#include <random>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -32,6 +35,44 @@ TEST(NearestKey, APartOfAKeyIsNearerThanAnotherWord) {
   EXPECT_EQ(close_key("kiss", keys), "kiss-icp");
   EXPECT_EQ(close_key("KISS-ICP", keys), "kiss-icp");
   EXPECT_EQ(nearest_key("levels", std::vector<std::string>{"levels_of_all", "levels"}), "levels") << "the same word";
+}
+
+/// The optimal string alignment distance by its definition.
+std::size_t edits(std::string_view a, std::string_view b) {
+  if (a.empty() || b.empty()) {
+    return a.size() + b.size();
+  }
+  const std::string_view shorter_a = a.substr(0, a.size() - 1);
+  const std::string_view shorter_b = b.substr(0, b.size() - 1);
+  std::size_t least = std::min(
+      {edits(shorter_a, b) + 1, edits(a, shorter_b) + 1, edits(shorter_a, shorter_b) + (a.back() == b.back() ? 0 : 1)});
+  if (a.size() > 1 && b.size() > 1 && a.back() == b[b.size() - 2] && a[a.size() - 2] == b.back()) {
+    least = std::min(least, edits(a.substr(0, a.size() - 2), b.substr(0, b.size() - 2)) + 1);
+  }
+  return least;
+}
+
+TEST(NearestKey, IsTheFirstOfThoseWithTheFewestChanges) {
+  std::mt19937 random(7);
+  const auto word = [&](std::size_t longest) {
+    std::string text(random() % (longest + 1), 'a');
+    std::generate(text.begin(), text.end(), [&] { return "ab."[random() % 3]; });
+    return text;
+  };
+  for (int trial = 0; trial < 200; ++trial) {
+    std::vector<std::string> keys(5);
+    std::generate(keys.begin(), keys.end(), [&] { return word(6); });
+    const std::string typed = word(6);
+    const auto distance = [&](const std::string& key) {
+      const std::size_t changes = 2 * std::min(edits(typed, key), edits(typed, key.substr(key.rfind('.') + 1)));
+      const bool is_part = typed.size() >= 3 && key.find(typed) != std::string::npos;
+      return is_part ? std::min<std::size_t>(changes, 1) : changes;
+    };
+    const auto expected = std::min_element(keys.begin(), keys.end(), [&](const std::string& a, const std::string& b) {
+      return distance(a) < distance(b);
+    });
+    EXPECT_EQ(nearest_key(typed, keys).data(), expected->data()) << typed;
+  }
 }
 
 TEST(ParseNumber, TakesWholeTextsOnly) {
