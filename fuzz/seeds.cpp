@@ -101,14 +101,20 @@ class Seeds {
           "\"X\";\"Y\";\"Z\";\"Velocity [m/s]\"\n1;2;3;4\n", "1\t2\t3\t4\n", "1 0 0 1 0 1 0 2 0 0 1 3\n",
           "#timestamp [ns],p_RS_R_x [m],p_RS_R_y [m],p_RS_R_z [m],q_RS_w [],q_RS_x [],q_RS_y [],q_RS_z []\n"
           "1403636580838555648,4,5,6,0.5,0.5,0.5,0.5\n1403636580843555328,4,5,6,1,0,0,0\n"}) {
-      write("csv", text);
+      for (const char* kind : {"0", "1", "2"}) {  // see csv.cpp
+        write("csv", std::string(kind) + text);
+      }
     }
     std::string records;
     for (const float value : {1.0F, 2.0F, 3.0F, -4.0F, 5.0F, 6.0F, 7.0F, 8.0F, 9.0F, 10.0F}) {
       formats::append_value(records, value);
     }
     write("xyzd", records);
-    write("records", records + records);
+    constexpr char kChoices = 11;  // see records.cpp
+    for (char choice = 0; choice < kChoices; ++choice) {
+      write("records", choice + records + records);
+      write("records", static_cast<char>(choice + kChoices) + records);
+    }
     write(
         "aevascenes",
         R"({"metadata":{"sensors":{"lidars":["a"]},"vehicle_to_lidar_extrinsics":{"a":{"translation":{"x":1,"y":2,"z":3},)"

@@ -1,6 +1,8 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/method/odometry/config.hpp"
@@ -14,15 +16,33 @@ namespace {
 
 using namespace dynamic_icp;
 
+/// Settings and their names, which take longer to make than to read: made once.
+struct Settings {
+  explicit Settings(const odometry::Pipeline& pipeline)
+      : first(pipeline.config), config(first), names(fields(config)) {}
+
+  odometry::Config first;
+  odometry::Config config;
+  ConfigFields names;  // point into `config`
+};
+
+std::vector<std::unique_ptr<Settings>> settings_of_pipelines() {
+  std::vector<std::unique_ptr<Settings>> all;
+  for (const odometry::Pipeline& pipeline : odometry::pipelines()) {
+    all.push_back(std::make_unique<Settings>(pipeline));
+  }
+  return all;
+}
+
 /// Settings that are read say, when they are written, what is read again as the same.
-void read_settings(const std::filesystem::path& path, const odometry::Pipeline& pipeline) {
-  odometry::Config config = pipeline.config;
-  formats::load_config_file(path, fields(config));
-  const std::string text = formats::config_yaml(fields(config));
+void read_settings(const std::filesystem::path& path, Settings& settings) {
+  settings.config = settings.first;
+  formats::load_config_file(path, settings.names);
+  const std::string text = formats::config_yaml(settings.names);
   const fuzz::MemoryFile written(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
-  odometry::Config again = pipeline.config;
-  formats::load_config_file(written.path(), fields(again));
-  fuzz::must(formats::config_yaml(fields(again)) == text);
+  settings.config = settings.first;
+  formats::load_config_file(written.path(), settings.names);
+  fuzz::must(formats::config_yaml(settings.names) == text);
 }
 
 }  // namespace
@@ -44,8 +64,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       const fuzz::MemoryFile written(reinterpret_cast<const std::uint8_t*>(text.data()), text.size());
       fuzz::must(runs::calibration_text(runs::read_calibration(written.path())) == text);
     } else {
-      const std::vector<odometry::Pipeline>& pipelines = odometry::pipelines();
-      read_settings(file.path(), pipelines[kind % pipelines.size()]);
+      static const std::vector<std::unique_ptr<Settings>> settings = settings_of_pipelines();
+      read_settings(file.path(), *settings[kind % settings.size()]);
     }
   } catch (const DataError&) {
   } catch (const UsageError&) {

@@ -7,6 +7,7 @@ usage: scripts/fuzz_table.py [TARGET...]
 
 import json
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -45,10 +46,25 @@ def run(*command, **options):
     return subprocess.run([str(word) for word in command], check=True, text=True, **options)
 
 
-def tried(target):
-    """Executions and findings over all runs of scripts/fuzz.sh."""
-    rows = [line.split("\t") for line in (RESULTS / "executions.tsv").read_text().splitlines()]
-    return sum(int(row[1]) for row in rows if row[0] == target), len(list((RESULTS / "findings").glob(f"{target}-*")))
+def told(log):
+    """The executions of a run that has not ended, or was killed: what it told last."""
+    return max((int(number) for number in re.findall(r"^#(\d+)\t", log.read_text(errors="replace"), re.MULTILINE)), default=0)
+
+
+def executions_of(target):
+    """Executions over all runs of scripts/fuzz.sh, with sanitizers and without."""
+    counts = {"sanitized": 0, "plain": 0}
+    for line in (RESULTS / "executions.tsv").read_text().splitlines():
+        name, executions, kind = (line.split("\t") + ["sanitized"])[:3]  # runs of earlier versions
+        counts[kind] += int(executions) if name == target else 0
+    for kind in counts:
+        log = RESULTS / "running" / f"{target}.{kind}.log"
+        counts[kind] += told(log) if log.exists() else 0
+    return counts["sanitized"], counts["plain"]
+
+
+def findings_of(target):
+    return len(list((RESULTS / "findings").glob(f"{target}-*")))
 
 
 def covered_lines(target):
@@ -78,12 +94,13 @@ def main():
         "-DCMAKE_UNITY_BUILD=ON", "-DDYNAMIC_ICP_BUILD_FUZZERS=ON", "-DDYNAMIC_ICP_PRECOMPILED_HEADERS=OFF",
         stdout=subprocess.DEVNULL)
     run("cmake", "--build", BUILD, "--target", *(f"fuzz_{target}" for target in targets), stdout=subprocess.DEVNULL)
-    print("| target | executions | findings | lines reached |")
-    print("|---|---|---|---|")
+    print("| target | executions with sanitizers | without | findings | lines reached |")
+    print("|---|---|---|---|---|")
     for target in targets:
-        executions, findings = tried(target)
+        sanitized, plain = executions_of(target)
         reached, lines = covered_lines(target)
-        print(f"| {target} | {executions:,} | {findings} | {reached} of {lines} ({100 * reached / lines:.0f} %) |")
+        print(f"| {target} | {sanitized:,} | {plain:,} | {findings_of(target)} | {reached} of {lines} "
+              f"({100 * reached / lines:.0f} %) |")
 
 
 if __name__ == "__main__":
