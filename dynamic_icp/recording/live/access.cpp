@@ -15,7 +15,7 @@ namespace {
 
 bool is_address(const std::string& text, int family) {
   unsigned char parsed[sizeof(in6_addr)];
-  return ::inet_pton(family, text.c_str(), parsed) == 1;
+  return text.find('\0') == std::string::npos && ::inet_pton(family, text.c_str(), parsed) == 1;
 }
 
 bool is_any_address(const std::string& text) { return is_address(text, AF_INET) || is_address(text, AF_INET6); }
@@ -50,7 +50,7 @@ bool is_own_host(std::string_view host, const Access& access) {
   }
   const bool listens_everywhere = access.address == "0.0.0.0" || access.address == "::";
   return parts.name == "localhost" || parts.name == "127.0.0.1" || parts.name == "::1" ||
-         parts.name == access.address || (listens_everywhere && is_any_address(parts.name));
+         parts.name == formats::lower_case(access.address) || (listens_everywhere && is_any_address(parts.name));
 }
 
 bool is_permitted_origin(std::string_view origin, std::string_view host, const Access& access) {

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/live/access.hpp"
 
+#include <string>
+
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/base/error.hpp"
@@ -31,6 +33,9 @@ TEST(Access, AnotherAddressIsOwnWhereItWasAskedFor) {
   EXPECT_TRUE(is_own_host("192.168.0.8:8765", access));
   EXPECT_TRUE(is_own_host("[fe80::1]:8765", access));
   EXPECT_FALSE(is_own_host("evil.example:8765", access)) << "a name can be pointed anywhere";
+  access.address = "FE80::A";
+  EXPECT_TRUE(is_own_host("[fe80::a]:8765", access)) << "browsers write small letters";
+  access.address = "0.0.0.0";
   access.port = 80;
   EXPECT_TRUE(is_own_host("192.168.0.8", access)) << "browsers leave out the usual port";
 }
@@ -51,7 +56,8 @@ TEST(Access, PagesFromElsewhereAreNotPermitted) {
 
 TEST(Access, WhatCannotBeMeantIsRefused) {
   EXPECT_NO_THROW(check(Access{}));
-  for (const char* address : {"", "localhost", "1.2.3", "example.com"}) {
+  using namespace std::string_literals;
+  for (const std::string& address : {""s, "localhost"s, "1.2.3"s, "example.com"s, "127.0.0.1\0.evil"s}) {
     Access access;
     access.address = address;
     EXPECT_THROW(check(access), UsageError) << address;
