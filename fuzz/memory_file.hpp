@@ -50,6 +50,16 @@ class MemoryFile {
 
   [[nodiscard]] const std::filesystem::path& path() const { return file_.path; }
 
+  /// The same file under this name, alone in a folder: for readers that go by names.
+  [[nodiscard]] std::filesystem::path named(const std::string& name) const {
+    const std::filesystem::path folder = file_.path.string() + "-" + name;
+    if (!std::filesystem::exists(folder)) {
+      std::filesystem::create_directory(folder);
+      std::filesystem::create_symlink(file_.path, folder / name);
+    }
+    return folder / name;
+  }
+
  private:
   struct File {
     std::filesystem::path path;

@@ -18,7 +18,7 @@ struct Kind {
   bags::Encoding encoding;
 };
 
-constexpr std::array<Kind, 20> kKinds = {{{"sensor_msgs/PointCloud2", bags::Encoding::kRos1},
+constexpr std::array<Kind, 22> kKinds = {{{"sensor_msgs/PointCloud2", bags::Encoding::kRos1},
                                           {"sensor_msgs/PointCloud2", bags::Encoding::kCdr},
                                           {"sensor_msgs/PointCloud", bags::Encoding::kRos1},
                                           {"sensor_msgs/PointCloud", bags::Encoding::kCdr},
@@ -37,7 +37,9 @@ constexpr std::array<Kind, 20> kKinds = {{{"sensor_msgs/PointCloud2", bags::Enco
                                           {"foxglove.FrameTransform", bags::Encoding::kProtobuf},
                                           {"foxglove.FrameTransform", bags::Encoding::kJson},
                                           {"sensor_msgs/Imu", bags::Encoding::kRos1},
-                                          {"sensor_msgs/Imu", bags::Encoding::kCdr}}};
+                                          {"sensor_msgs/Imu", bags::Encoding::kCdr},
+                                          {"radar_msgs/RadarScan", bags::Encoding::kRos1},
+                                          {"radar_msgs/RadarScan", bags::Encoding::kCdr}}};
 
 void read_message(const bags::Topic& topic, std::string_view bytes) {
   if (messages::is_cloud(topic)) {

@@ -28,6 +28,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const fuzz::MemoryFile input(data + 1, size);
     if (choice == std::size(layouts)) {
       static_cast<void>(datasets::guess_layout(input.path(), layouts));
+      static_cast<void>(datasets::without_doppler({reinterpret_cast<const char*>(data) + 1, size}));
       return 0;
     }
     const RecordLayout& layout = *layouts[choice];

@@ -71,6 +71,12 @@ class Seeds {
         std::vector<NamedArray>{points, array<float>("doppler", {2}, {1, 2}), array<double>("t", {2}, {0, 0.1}),
                                 array<float>("los", {2, 3}, {1, 0, 0, 0, 1, 0})});
     write("npz", npz);
+    std::string doubled =
+        formats::npz_bytes(std::vector<NamedArray>{array<double>("a", {1}, {1}), array<double>("b", {1}, {2})});
+    for (std::size_t at = 0; (at = doubled.find("b.npy", at)) != std::string::npos;) {
+      doubled[at] = 'a';
+    }
+    write("npz", doubled);
     write("columns", "2" + npz);
     const std::string binary_pcd = formats::pcd_bytes(table());
     const std::string ascii_pcd = pcd("ascii", "1 2 3 -4.5 1724479779384729506\n");
@@ -91,7 +97,11 @@ class Seeds {
         "end_header\n3 0 1 2\n1 2 3 -4 0.5 7 0\n";
     std::string big_ply = binary_ply;
     big_ply.replace(big_ply.find("little"), 6, "big");
-    for (const std::string& content : {binary_ply, ascii_ply, big_ply}) {
+    std::string list_ply =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 1\nproperty list uchar short c\nproperty float x\n"
+        "end_header\n";
+    list_ply += std::string("\2\1\0\2\0\0\0\x80\x3F", 9);
+    for (const std::string& content : {binary_ply, ascii_ply, big_ply, list_ply}) {
       write("ply", content);
       write("columns", "1" + content);
     }
@@ -105,6 +115,14 @@ class Seeds {
         write("csv", std::string(kind) + text);
       }
     }
+    for (const char* text : {"x,y,z,doppler,ring\n1,2,3,-4.5,0.5\n", "1 2 3 4\n5 6 7 8\n",
+                             "range,azimuth,elevation,doppler\n10,0.5,0.1,-4\n20,-0.5,0.2,3\n"}) {
+      write("columns", std::string("3") + text);
+    }
+    write("columns", "4" + formats::npy_bytes(array<float>("points", {2, 4}, {1, 2, 3, 4, 5, 6, 7, 8}).array));
+    write("columns", "2" + formats::npz_bytes(std::vector<NamedArray>{points, array<float>("doppler", {1}, {1})}));
+    write("csv", "2timestamp_ns,x,y,z,qx,qy,qz,qw\n1000000000,1,2,3,0,0,0,1\n2000000000,1,2,3,0,0,0,1\n");
+    write("csv", "21 0 0 1 0 1 0 2 0 0 1 3\n1 0 0 1 0 1 0 2 0 0 1 3\n");  // as many as csv.cpp has scans
     std::string records;
     for (const float value : {1.0F, 2.0F, 3.0F, -4.0F, 5.0F, 6.0F, 7.0F, 8.0F, 9.0F, 10.0F}) {
       formats::append_value(records, value);
@@ -115,13 +133,29 @@ class Seeds {
       write("records", choice + records + records);
       write("records", static_cast<char>(choice + kChoices) + records);
     }
-    write(
-        "aevascenes",
+    const std::string guess(1, char{10});  // records.cpp: neither of these records has Doppler
+    std::string radar;
+    for (const float value : {3.0F, 4.0F, 0.0F, 0.0F, 5.0F, 0.0F, 0.0F}) {
+      formats::append_value(radar, value);
+    }
+    write("records", guess + radar + '\0');
+    std::string reflectance;
+    for (const float value : {1.0F, 2.0F, 3.0F, 0.5F, 5.0F, 6.0F, 7.0F, 0.25F}) {
+      formats::append_value(reflectance, value);
+    }
+    write("records", guess + reflectance);
+    const std::string sequence =
         R"({"metadata":{"sensors":{"lidars":["a"]},"vehicle_to_lidar_extrinsics":{"a":{"translation":{"x":1,"y":2,"z":3},)"
         R"("rotation":{"w":1,"x":0,"y":0,"z":0}}}},"frames":[{"timestamp_ns":"17","ego_pose":{"translation":{"x":1,"y":2,)"
         R"("z":3},"rotation":{"w":1,"x":0,"y":0,"z":0}},"point_cloud":{"a":{"point_cloud_raw_path":"p"}},"boxes":[{"id":)"
         R"("b","reference_frame":"a","dimensions":{"x":1,"y":2,"z":3},"pose":{"translation":{"x":1,"y":2,"z":3},)"
-        R"("rotation":{"w":1,"x":0,"y":0,"z":0}},"linear_velocity":{"x":1,"y":2,"z":3},"class":"car"}]}]})");
+        R"("rotation":{"w":1,"x":0,"y":0,"z":0}},"linear_velocity":{"x":1,"y":2,"z":3},"class":"car"}]}]})";
+    write("aevascenes", sequence);
+    const std::size_t frames = sequence.find("[{\"timestamp_ns");
+    const std::string frame = sequence.substr(frames + 1, sequence.size() - frames - 3);
+    std::string twice = sequence.substr(0, frames + 1) + frame + "," + frame + "]}";
+    twice.replace(twice.find("[\"a\"]"), 5, "[\"b\"]");  // without extrinsics
+    write("aevascenes", twice);
     write_texts();
     write_settings();
     write_bags();
@@ -142,6 +176,29 @@ class Seeds {
     ros::Writer transform(ros::Wire::kCdrLittle);
     transform.put(std::uint32_t{1}).header(1, "a").text("b").pose(Eigen::Isometry3d::Identity());
     write("messages", '\x0D' + transform.bytes());
+    // Each kind that the others do not lead to: PointCloud with a channel, RadarScan, poses and transforms of Foxglove.
+    ros::Writer cloud1(ros::Wire::kRos1);
+    cloud1.header(1, "a").put(std::uint32_t{1}).put(1.0F).put(2.0F).put(3.0F);
+    cloud1.put(std::uint32_t{1}).text("v").put(std::uint32_t{1}).put(4.0F);
+    write("messages", '\2' + cloud1.bytes());
+    ros::Writer radar(ros::Wire::kCdrLittle);
+    radar.header(1, "a").put(std::uint32_t{1}).put(10.0F).put(0.5F).put(0.1F).put(-3.0F).put(20.0F);
+    write("messages", '\x15' + radar.bytes());
+    const std::string place = R"({"x":1,"y":2,"z":3})";
+    const std::string turn = R"({"x":0,"y":0,"z":0,"w":1})";
+    const std::string time = R"("timestamp":{"sec":1,"nsec":2},)";
+    const std::string pose = R"("pose":{"position":)" + place + R"(,"orientation":)" + turn + "}";
+    write("messages", '\x0B' + ("{" + time + R"("frame_id":"a",)" + pose + "}"));
+    const std::string one = "{" + time + R"("parent_frame_id":"a","child_frame_id":"b","translation":)" + place +
+                            R"(,"rotation":)" + turn + "}";
+    write("messages", '\x0F' + (R"({"transforms":[)" + one + "]}"));
+    write("messages", '\x11' + one);
+    write("messages",
+          '\5' + ("{" + time + R"("frame_id":"a",)" + pose +
+                  R"(,"point_stride":4,"fields":[{"name":"x","offset":0,"type":"FLOAT32"}],"data":"AACAPw=="})"));
+    const std::string half("\x19\0\0\0\0\0\0\xE0\x3F", 9);  // field 3: a double
+    write("messages", '\x0A' + ("\x0A\2\x08\5\x12\1l\x1A\x16\x0A\x09" + half + "\x12\x09\x21" +
+                                std::string("\0\0\0\0\0\0\xF0\x3F", 8)));
     write("messages", '\x12' + ros::Writer(ros::Wire::kRos1).header(1, "imu").doubles(37, 0.5).bytes());
   }
 
@@ -181,7 +238,8 @@ class Seeds {
     write("live", R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":1,"channelId":4294967295}]})");
     write("live", R"({"op":"unsubscribe","subscriptionIds":[0,1]})");
     for (const char* header : {"foxglove.sdk.v1, foxglove.websocket.v1", "localhost:8765", "[::1]:8765",
-                               "http://127.0.0.1:8765", "https://app.foxglove.dev"}) {
+                               "http://127.0.0.1:8765", "https://app.foxglove.dev", "127.0.0.1", "FE80::1",
+                               R"({"op":1})", R"({"op":"unsubscribe","subscriptionIds":[-1]})"}) {
       write("live", header);
     }
   }
@@ -196,6 +254,8 @@ class Seeds {
     const std::string matrix = "0 -1 0 0.5\n1 0 0 0\n0 0 1 -2e-1";
     write("texts", "2" + matrix + "\n0 0 0 1\n");
     write("texts", "3# calibration\nTr_lidar_to_imu: 1 0 0 0.5 0 1 0 0 0 0 1 1\n");
+    write("texts", R"(5{"T_V_to_S":{"translation":{"x":1,"y":2,"z":3},"quaternion":{"w":0.6,"x":0,"y":0,"z":0.8}}})");
+    write("texts", "5{}");
     write("texts", R"(4{"T_V_to_S":{"translation":{"x":1,"y":2,"z":3},"quaternion":{"w":0.6,"x":0,"y":0,"z":0.8}}})");
     write("texts", R"(4{"sensors":[{"T_scan_sensor":{"translation":{"x":1,"y":2,"z":3},)"
                    R"("quaternion":{"w":0.6,"x":0,"y":0,"z":0.8}}}]})");

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/calibration.hpp"
@@ -22,6 +24,15 @@ void read_mountings(const std::filesystem::path& path) {
   fuzz::must(calibration.T_vehicle_sensor || !calibration.mountings.empty());
   fuzz::must(!calibration.T_vehicle_sensor || is_rigid(*calibration.T_vehicle_sensor));
   fuzz::must(std::all_of(calibration.mountings.begin(), calibration.mountings.end(), is_rigid));
+  const datasets::Calibration again = datasets::parse_calibration(datasets::calibration_text(calibration), "again");
+  fuzz::must(again.mountings.size() == calibration.mountings.size());
+  fuzz::must(again.T_vehicle_sensor.has_value() == calibration.T_vehicle_sensor.has_value());
+}
+
+void find_mountings(const fuzz::MemoryFile& input) {
+  std::vector<std::string> assumptions;
+  const std::filesystem::path folder = input.named(datasets::kCalibrationFile).parent_path();
+  fuzz::must(datasets::find_calibration(folder, assumptions).has_value() || !assumptions.empty());
 }
 
 void read_poses(const std::filesystem::path& path) {
@@ -50,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   try {
     const fuzz::MemoryFile input(data + 1, size - 1);
-    switch (static_cast<unsigned char>(data[0] - '0') % 5) {
+    switch (static_cast<unsigned char>(data[0] - '0') % 6) {
       case 0:
         read_poses(input.path());
         break;
@@ -63,8 +74,11 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       case 3:
         fuzz::must(is_rigid(datasets::read_imu_lidar(input.path())));
         break;
-      default:
+      case 4:
         read_mountings(input.path());
+        break;
+      default:
+        find_mountings(input);
     }
   } catch (const DataError&) {
   }
