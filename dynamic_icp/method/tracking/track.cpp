@@ -21,6 +21,10 @@ constexpr double kLogAlongSides = 8.0;       // of what has sides: it moves alon
 constexpr double kVehicle_m = 2.0;           // what is longer moves along its sides for sure
 constexpr double kKnownDirection_rad = 0.2;  // standard deviation of the direction of a motion that shows a heading
 constexpr double kSameDirection_rad = 0.2;   // headings that differ less are one
+constexpr double kSideways = 0.5;            // of the velocity ahead: no body slides so much ...
+constexpr double kSidewaysSigmas = 3.0;      // ... where it is known so well ...
+constexpr double kSidewaysMargin_mps = 0.3;  // ... and some more ...
+constexpr double kSpin_rps = 1.0;            // ... unless it spins
 constexpr double kLogHopeless = -8.0;        // relative to the best hypothesis
 constexpr int kManyDetections = 1 << 30;     // no drive has so many
 constexpr int kDecisionDetections = 10;      // after so many the best hypothesis stays alone
@@ -136,12 +140,28 @@ void Track::correct(const Detection& detection, double stamp_s, const TrackConfi
     hypothesis.correct(detection, config);
   }
   ++detections_;
+  if (moves_sideways()) {
+    return begin(detection, stamp_s, config);
+  }
   if (!has_sides_ || !has_heading()) {  // sides tell more of a heading than the motion of what little was seen at first
     // A new hypothesis pays for knowing nothing before; one like the old, begun now, shows how much.
     const BoxFilter anew(detection, std::nullopt, BoxHistory{}, config);
     add_headings(detection, {best().log_likelihood() - anew.log_likelihood(), best().was_vehicle()}, config);
   }
   evaluate(detection, config);
+}
+
+/// Whether the body moves where it does not point, beyond doubt: then its heading, which has been decided on, is wrong.
+bool Track::moves_sideways() const {
+  if (detections_ <= kDecisionDetections || !best().has_heading() || std::abs(body().yaw_rate()) > kSpin_rps) {
+    return false;
+  }
+  const BoxEstimate now = best().estimate();
+  const Eigen::Vector3d along = now.box.axes.col(0);
+  const Eigen::Vector3d across = now.box.axes.col(1);
+  const double slip = std::abs(across.dot(now.velocity));
+  const double sigma = std::sqrt(across.dot(now.velocity_covariance * across));
+  return slip > kSideways * std::abs(along.dot(now.velocity)) && slip > kSidewaysSigmas * sigma + kSidewaysMargin_mps;
 }
 
 bool Track::has_heading() const {

@@ -26,7 +26,7 @@ struct BodySides {
 ///
 /// At first sight the Doppler leaves open how much of what is seen across the line of sight is turning, and the sides
 /// leave open which of them is the front. So a track begins with several hypotheses, each with its own direction, and
-/// drops those that explain the next detections worse.
+/// drops those that explain the next detections worse. It begins anew when the one that remains moves sideways.
 class Track {
  public:
   /// Of nothing yet: to be begun, or to be read.
@@ -68,6 +68,7 @@ class Track {
                           const TrackConfig& config);
   [[nodiscard]] std::optional<double> heading_of_motion() const;
   [[nodiscard]] bool has_heading() const;
+  [[nodiscard]] bool moves_sideways() const;
   void ask_traffic(const Detection& detection, const TrackConfig& config);
   void evaluate(const Detection& detection, const TrackConfig& config);
 

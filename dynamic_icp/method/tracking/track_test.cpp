@@ -60,6 +60,25 @@ TEST(Track, FindsTheMotionThatOneScanLeavesOpen) {
   EXPECT_LT(largest_sigma(track.estimate().velocity_covariance), 0.5 * at_first);
 }
 
+TEST(Track, AHeadingThatTheMotionContradictsIsFoundAnew) {
+  // First the rear of a car is taken for the side of one that drives to the right; what is seen next fits both.
+  const TrackConfig config;
+  const Vector3d to_the_right(0.0, -4.0, 0.0);
+  const Vector3d ahead(4.0, 0.0, 0.0);
+  Vector3d centre(20.0, 8.0, 0.0);
+  Track track(car_at(centre, to_the_right, 1), 0.0, config);
+  for (std::uint64_t scan = 2; scan < 40; ++scan) {
+    const Vector3d velocity = scan < 14 ? to_the_right : ahead;
+    centre += 0.1 * velocity;
+    track.correct(car_at(centre, velocity, scan), 0.1 * static_cast<double>(scan - 1), config);
+    if (scan == 13) {
+      ASSERT_LT(track.estimate().box.axes.col(0).y(), -0.98) << "one hypothesis, that it drives to the right";
+    }
+  }
+  EXPECT_GT(track.estimate().box.axes.col(0).x(), 0.98);
+  EXPECT_LT((track.body().velocity() - ahead).norm(), 0.5);
+}
+
 TEST(Track, IsAtTheMeanTimeOfItsLastMeasurement) {
   const TrackConfig config;
   const Vector3d velocity(10.0, 0.0, 0.0);
