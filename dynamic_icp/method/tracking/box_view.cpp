@@ -120,7 +120,7 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
       }
       beyond += depth < -kMaxGap_m ? 1 : 0;
     }
-    end.goes_on = beyond >= kMoreBeyond;
+    end.has_points_beyond = beyond >= kMoreBeyond;
     end.middle /= count;
     end.width = std::sqrt(12.0 * std::max(0.0, squares / count - sum * sum / (count * count)));  // if evenly spread
   };
@@ -147,7 +147,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   const double height = views[2].seen.high - ground;
   const double full = height < kCarHeight_m ? ground + kFullHeight * height : views[2].seen.high;
   const auto is_end = [&](const EndView& end, const Vector3d& outward) {
-    if (end.goes_on) {
+    if (end.has_points_beyond) {
       return false;
     }
     const double facing = outward.dot((detection.sensor - end.middle).normalized());

@@ -20,7 +20,7 @@ struct EndView {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m, world: of the points there
   double gap = 0.0;                                  ///< m, from the end to the next points
   double width = 0.0;                                ///< m, across the axis, of what is seen at the end
-  bool goes_on = false;                              ///< whether few points more lie far beyond: seen over something
+  bool has_points_beyond = false;                    ///< far from it, few: seen over something nearer
   bool is_true = false;                              ///< whether the body ends there, too
 };
 

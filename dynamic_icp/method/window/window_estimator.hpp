@@ -67,7 +67,7 @@ struct StartOmega {
 
 /// Errors of the Doppler of each point of a scan, m/s.
 struct FieldErrors {
-  std::vector<double> learned;
+  std::vector<double> learned;   ///< as `DopplerErrorField::own_error` has it, with what points of a cell share
   std::vector<double> credible;  ///< the same, by direction and range no larger than those of sensors in use
 };
 

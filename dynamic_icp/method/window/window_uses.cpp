@@ -14,8 +14,7 @@ namespace {
 
 constexpr std::size_t kPlacingBlock = 512;
 
-// Sensors in use err by no more than this with direction and range. What seems to sets off slowly, and drags the error
-// that is learned along.
+// Sensors in use err by no more than this with direction and range. More was learned of a vehicle that set off slowly.
 constexpr double kLargestError_mps = 0.3;
 
 /// One point as a cell of its own, for what it shares with others.
