@@ -28,7 +28,7 @@ constexpr double kClearance_m = 1.0;
 constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
 constexpr double kMaxGap_m = 0.5;
 constexpr int kMoreBeyond = 2;          // so many points farther beyond an end are no errors of measurement
-constexpr double kFaceWidth_m = 0.5;    // what is seen so wide at an end that looks at the sensor is a face
+constexpr double kFaceWidth_m = 0.8;    // what is seen so wide at an end that looks at the sensor is a face
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
 constexpr double kCarHeight_m = 1.8;    // what is higher has no hood, or a short one
 constexpr double kFullHeight = 0.4;  // below this share of their height bodies reach as far as anywhere: hoods, bumpers
@@ -123,6 +123,13 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
     end.has_points_beyond = beyond >= kMoreBeyond;
     end.middle /= count;
     end.width = std::sqrt(12.0 * std::max(0.0, squares / count - sum * sum / (count * count)));  // if evenly spread
+    if (end.width > kFaceWidth_m) {  // so does a side with a few points of wheels and axles behind it
+      double deviations = 0.0;
+      for (std::size_t i = 0; i < points.size(); ++i) {
+        deviations += inwards(along[i]) <= kEndDepth_m ? std::abs(across[i] - sum / count) : 0.0;
+      }
+      end.width = std::min(end.width, 4.0 * deviations / count);
+    }
   };
   look_at(view.low, [&](double q) { return q - view.seen.low; });
   look_at(view.high, [&](double q) { return view.seen.high - q; });

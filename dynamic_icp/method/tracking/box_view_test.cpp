@@ -127,6 +127,33 @@ TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
   }
 }
 
+TEST(BoxView, AFewPointsBehindASideMakeNoFaceOfItsEnd) {
+  // The rear part of a lorry, the end of which looks at the sensor; a wall that is nearer hides whether it goes on. At
+  // its end a tenth of what is seen is a wheel on its other side.
+  std::vector<Vector3d> side = face_points({4.0, -5.0, -0.5}, {8.0, -5.0, 0.5});
+  for (double z = -0.5; z < -0.2; z += kStep_m) {
+    side.emplace_back(4.1, -6.1, z);
+  }
+  const std::vector<Vector3d> rear = face_points({4.0, -6.5, -0.5}, {4.0, -5.0, 0.5});
+  for (const bool is_face : {false, true}) {
+    std::vector<Vector3d> body = side;
+    body.insert(body.end(), rear.begin(), is_face ? rear.end() : rear.begin());
+    RawScan raw;
+    raw.points = body;
+    for (double x = -2.0; x <= 2.0; x += 0.01) {
+      for (double z = -0.5; z <= 0.5; z += 0.02) {
+        raw.points.emplace_back(x - 0.05, -2.5, z);
+      }
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.view = &image;
+    const AxisView along = views_along(Matrix3d::Identity(), {6.0, -5.0, 0.0}, body, {5.0, -5.0, 0.0}, detection)[0];
+    EXPECT_EQ(along.low.is_true, is_face);
+  }
+}
+
 TEST(BoxView, OfALorryTheUpperPartEndsWhereTheLowerOneDoes) {
   // The same as above, of what is higher than any car.
   const std::vector<Vector3d> upper = face_points({-4.0, -8.0, -0.5}, {4.0, -8.0, 1.0});
