@@ -59,13 +59,14 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
   if (have_other_tops(small.now, large.now) || together.x() > longest_length(likely_width, together.z())) {
     return false;
   }
-  if (!large.predicted.best().has_heading() || together.y() > config.track.largest_width_m) {
+  const Gap gap = gap_between(of_large, of_small);
+  const double range_m = (gap.middle - T_world_sensor.translation()).norm();
+  const double width_sigma_m = config.track.face_sigma_m + config.track.face_sigma_growth * range_m;
+  if (!large.predicted.best().has_heading() || together.y() > config.track.largest_width_m + width_sigma_m) {
     return false;
   }
   // Sides of one body, seen apart; what is seen through a gap parts two.
-  const Gap gap = gap_between(of_large, of_small);
-  const double usual_m = config.grouping.link_distance_m +
-                         config.grouping.link_growth * (gap.middle - T_world_sensor.translation()).norm();
+  const double usual_m = config.grouping.link_distance_m + config.grouping.link_growth * range_m;
   const double link_m = is_splinter ? std::max(usual_m, config.growth_m) : usual_m;
   return (distance_outside(large.now.box, of_small.centre) <= 0.0 || gap.width <= link_m) &&
          view.hides(T_world_sensor.inverse() * gap.middle, -kSeeThrough_m);

@@ -83,5 +83,42 @@ TEST(TrackMerging, BodiesThatWouldBeLongerThanAnyOrHaveOtherTopsAreTwo) {
       << "a lorry and a car";
 }
 
+TEST(TrackMerging, FarPartsThatWouldBeAsWideAsABodyButForErrorsAreOne) {
+  // Rear and front of a lorry whose headings differ by 0.02 rad: at 110 m this is no other body.
+  const auto are_one = [](double distance_m, double turn_rad) {
+    const auto part = [&](double from, double to, double yaw) {
+      const Eigen::Vector3d middle(distance_m, 8.0, 0.0);
+      const Eigen::Matrix3d R = upright_axes(yaw);
+      Detection detection;
+      for (std::uint64_t i = 0; i < 300; ++i) {
+        const RandomSource one = RandomSource(6).fork(i);
+        const double across = i % 2 == 0 ? -1.3 : one.uniform(1, -1.3, 1.3);
+        const double along = i % 2 == 0 ? one.uniform(0, from, to) : from;
+        detection.points.emplace_back(middle + R * Vector3d(along, across, one.uniform(2, -1.0, 2.5)));
+        detection.directions.push_back(detection.points.back().normalized());
+        detection.radial.push_back(15.0 * detection.directions.back().x());
+        detection.times.push_back(0.0);
+      }
+      return Track(detection, 0.0, {});
+    };
+    const Track rear = part(0.0, 4.0, 0.0);
+    const Track front = part(4.3, 8.0, turn_rad);
+    const BoxEstimate of_rear = rear.estimate();
+    const BoxEstimate of_front = front.estimate();
+    RawScan raw;
+    for (double y = 4.0; y <= 12.0; y += 0.02) {
+      for (double z = -2.0; z <= 3.0; z += 0.1) {
+        raw.points.emplace_back(distance_m - 5.0, y, z);
+        raw.doppler.push_back(0.0);
+      }
+    }
+    const RangeImage view(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    return are_same_object({rear, of_rear, 300}, {front, of_front, 250}, view, Eigen::Isometry3d::Identity(), {});
+  };
+  EXPECT_TRUE(are_one(110.0, 0.0));
+  EXPECT_TRUE(are_one(110.0, 0.02));
+  EXPECT_FALSE(are_one(110.0, 0.12)) << "it would be wider than any";
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking
