@@ -20,6 +20,7 @@ constexpr double kReference_m = 0.01;  // the reference is a point of the body b
 constexpr double kLoose_m =
     1.5;  // standard deviation of the middle of what is seen of a body, if as much: others slide before it
 constexpr double kUnknownFace_m = 10.0;   // standard deviation
+constexpr double kCorner_m = 0.5;         // radius between the sides of vehicles and their fronts and rears
 constexpr double kKnownFace_m = 0.5;      // a face known better than this was seen
 constexpr double kInside_m = 1.0;         // an end so far within what was seen before is none
 constexpr double kFalseEnd_m = 0.1;       // what is seen so far beyond a face ...
@@ -164,7 +165,7 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
   const std::array<AxisView, 3> views =
       views_along(body_.axes(), body_.position(), points, body_.doppler_velocity(detection.sensor), detection);
   const Vector3d reference = body_.position();
-  for (const int axis : {0, 1, 2}) {
+  for (const int axis : {2, 1, 0}) {  // what is wide and high is a vehicle
     const AxisView& view = views[static_cast<std::size_t>(axis)];
     if (axis < 2) {
       correct_middle(axis, view);
@@ -202,6 +203,7 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   const double seen = span_end + 0.5 * gap;
   // The end of the span, beside the middle of the points there.
   const Vector3d at_end = end.middle + (seen - outward.dot(end.middle - body_.position())) * outward;
+  const Vector3d face_end = at_end + hidden_corner(face, at_end, detection) * outward;
   const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
   const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
   // Where it was seen to reach farther it does not end.
@@ -224,8 +226,19 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
       return;
     }
   }
-  const double log_likelihood = body_.correct_face(face, at_end, sigma * sigma);
+  const double log_likelihood = body_.correct_face(face, is_end ? face_end : at_end, sigma * sigma);
   log_likelihood_ += was_known ? log_likelihood : 0.0;
+}
+
+/// How far a face is beyond the last point of a side that can be seen, m: round corners hide behind themselves.
+double BoxFilter::hidden_corner(Face face, const Vector3d& at_end, const Detection& detection) const {
+  if (axis_of(face) != 0 || !has_heading_ || may_be_person() || likely_width() < kVehicleWidth_m) {
+    return 0.0;
+  }
+  const Vector3d outward = side_of(face) * body_.axes().col(0);
+  const Vector3d sight = (at_end - detection.sensor).normalized();
+  const double away = std::max(0.0, outward.dot(sight));
+  return kCorner_m * (1.0 - std::sqrt(std::max(0.0, 1.0 - away * away)));
 }
 
 /// No body is wider than the widest: sides that say so and are not seen now are forgotten, and bounds are drawn in.
@@ -326,6 +339,10 @@ OrientedBox BoxFilter::seen_box() const {
   return box;
 }
 
+bool BoxFilter::is_whole_vehicle() const {
+  return has_heading_ && was_vehicle_ && is_whole(0) && is_whole(1) && is_whole(2);
+}
+
 bool BoxFilter::is_whole(int axis) const { return extent(axis).is_whole(); }
 
 double BoxFilter::likely_width() const { return is_whole(1) ? span(1) : typical_width_by_height(span(2)).mean; }
@@ -338,9 +355,9 @@ SeenExtent BoxFilter::extent(int axis) const {
   return {reach(high), reach(low), is_known(high), is_known(low)};
 }
 
-BoxEstimate BoxFilter::estimate() const {
+BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {
   const std::array<LikelyExtent, 3> along =
-      likely_extents({extent(0), extent(1), extent(2)}, has_heading_, may_be_person());
+      likely_extents({extent(0), extent(1), extent(2)}, has_heading_, may_be_person(), sizes);
   const Matrix3d axes = body_.axes();
   const Vector3d middle(along[0].middle, along[1].middle, along[2].middle);
   BoxEstimate estimate;

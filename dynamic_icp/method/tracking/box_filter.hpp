@@ -66,7 +66,11 @@ class BoxFilter {
   [[nodiscard]] const BodyFilter& body() const { return body_; }
   [[nodiscard]] bool has_heading() const { return has_heading_; }
   [[nodiscard]] bool was_vehicle() const { return was_vehicle_; }
-  [[nodiscard]] BoxEstimate estimate() const;
+  /// `sizes`: those of other vehicles.
+  [[nodiscard]] BoxEstimate estimate(const VehicleSizes& sizes = {}) const;
+
+  /// Whether it was seen from end to end along all its axes, and is no person.
+  [[nodiscard]] bool is_whole_vehicle() const;
 
   /// The part of the box that was seen.
   [[nodiscard]] OrientedBox seen_box() const;
@@ -94,6 +98,7 @@ class BoxFilter {
   void correct_faces(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
   void correct_face(Face face, const EndView& end, double span_end, const Detection& detection,
                     const TrackConfig& config);
+  [[nodiscard]] double hidden_corner(Face face, const Eigen::Vector3d& at_end, const Detection& detection) const;
   void correct_middle(int axis, const AxisView& view);
   void limit_width(const TrackConfig& config);
   void limit_length();

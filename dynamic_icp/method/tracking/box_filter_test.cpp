@@ -8,6 +8,7 @@
 #include <numbers>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -63,6 +64,43 @@ TEST(BoxFilter, SidesShowTheDirectionOfTheMotion) {
   }
   const Vector3d v = filter.body().velocity();
   EXPECT_NEAR(std::atan2(v.y(), v.x()), 0.4, 0.05);
+}
+
+TEST(BoxFilter, FrontsAreBeyondTheRoundCornersThatHideThem) {
+  // A car of 4.4 m seen from behind and beside: rear and right side, and of the corner in front, a quarter of a
+  // circle, what does not hide itself.
+  constexpr double kRadius_m = 0.5;
+  constexpr double kFront_m = 4.4;
+  const Vector3d velocity(10, 0, 0);
+  for (const auto& [ahead_m, left_m] : {std::pair(2.0, 3.0), std::pair(4.0, 3.0), std::pair(12.0, 6.0)}) {
+    const Vector3d rear(ahead_m, left_m, -1.0);  // its right edge, on the ground
+    Detection detection;
+    detection.ground.offset_m = -1.0;
+    const auto add = [&](double x, double y, double z) {
+      detection.points.emplace_back(rear + Vector3d(x, y, z));
+      detection.directions.push_back(detection.points.back().normalized());
+      detection.radial.push_back(detection.directions.back().dot(velocity));
+      detection.times.push_back(0.0);
+    };
+    for (double z = 0.3; z <= 1.5; z += 0.1) {
+      for (double y = 0.0; y <= 1.8; y += 0.1) {
+        add(0.0, y, z);
+      }
+      for (double x = 0.0; x <= kFront_m - kRadius_m; x += 0.05) {
+        add(x, 0.0, z);
+      }
+      for (double angle = 0.0; angle <= 0.5 * std::numbers::pi; angle += 0.02) {
+        const Vector3d normal(std::sin(angle), -std::cos(angle), 0.0);
+        const Vector3d place(kFront_m - kRadius_m + kRadius_m * normal.x(), kRadius_m + kRadius_m * normal.y(), z);
+        if (normal.dot(rear + place) < 0.0) {
+          add(place.x(), place.y(), z);
+        }
+      }
+    }
+    const BoxFilter filter(detection, 0.0, {}, {});
+    EXPECT_NEAR(filter.estimate().box.size.x(), kFront_m, 0.15) << ahead_m;
+    EXPECT_NEAR(middle_of(filter.estimate().box, Face::kFront).x(), ahead_m + kFront_m, 0.15) << ahead_m;
+  }
 }
 
 TEST(BoxFilter, ABoxThatGrowsStaysWhereItsTrueEndIs) {

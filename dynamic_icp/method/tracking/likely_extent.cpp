@@ -5,13 +5,16 @@
 #include <cstddef>
 
 #include "dynamic_icp/method/tracking/size_prior.hpp"
+#include "dynamic_icp/method/tracking/vehicle_sizes.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
 constexpr double kLowestVehicle_m = 1.5;
-constexpr double kNoBox = 0.05;  // bodies end by this share of their size nearer or farther than boxes do
+constexpr double kCorner_m = 0.3;  // sides of vehicles end so far before front and rear, which are round
+constexpr double kNarrow_m = 1.4;  // those of what is less wide do not
+constexpr double kNoBox = 0.05;    // bodies end by this share of their size nearer or farther than boxes do
 
 LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
   LikelyExtent extent;
@@ -39,8 +42,8 @@ LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
 
 }  // namespace
 
-std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen, bool has_heading,
-                                           bool may_be_person) {
+std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen, bool has_heading, bool may_be_person,
+                                           const VehicleSizes& sizes) {
   const auto& [along, across, as_seen_up] = seen;
   const bool is_as_seen = !has_heading || may_be_person;
   SeenExtent up = as_seen_up;
@@ -61,7 +64,7 @@ std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen
   Belief length{along.length(), 0.0};
   if (!is_as_seen && !along.is_whole()) {
     length = at_least(typical_length(width.mean, height.mean), along.length());
-    const double slope = kLengthPower * length.mean / std::max(height.mean, kHiddenHeight_m);
+    const double slope = length_per_height(width.mean, height.mean);
     length.variance += slope * slope * height.variance;
   }
   if (!has_heading && !may_be_person) {
@@ -70,7 +73,13 @@ std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen
     width.variance = across.is_whole() ? 0.0 : more * more;
     length.variance = along.is_whole() ? 0.0 : more * more;
   }
-  return {placed(along, length), placed(across, width), placed(up, height)};
+  if (is_as_seen) {
+    return {placed(along, length), placed(across, width), placed(up, height)};
+  }
+  const auto seen_size = [](const SeenExtent& extent) { return SeenSize{extent.length(), extent.is_whole()}; };
+  const auto [long_as, wide_as, high_as] =
+      sizes.complete({seen_size(along), seen_size(across), seen_size(up)}, {length, width, height});
+  return {placed(along, long_as), placed(across, wide_as), placed(up, high_as)};
 }
 
 }  // namespace dynamic_icp::tracking

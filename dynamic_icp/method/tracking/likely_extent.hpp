@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <array>
 
+#include "dynamic_icp/method/tracking/vehicle_sizes.hpp"
+
 namespace dynamic_icp::tracking {
 
 /// How far a box was seen along one of its axes, from its reference: m, both ways outwards.
@@ -29,9 +31,11 @@ struct LikelyExtent {
   double variance = 0.0;  ///< of that, m^2
 };
 
-/// Of a body along, to the left and up, with what was not seen filled in by what is likely (size_prior). Where neither
-/// of its sides was seen from end to end, the highest point seen may be that of a hood. Nothing is guessed of a person,
-/// and of a body without heading only that there may be more.
-std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen, bool has_heading, bool may_be_person);
+/// Of a body along, to the left and up, with what was not seen filled in by what is likely: of vehicles that are like
+/// others that were seen whole (`sizes`), or else of any (size_prior). Where neither of its sides was seen from end to
+/// end, the highest point seen may be that of a hood. Nothing is guessed of a person, and of a body without heading
+/// only that there may be more.
+std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen, bool has_heading, bool may_be_person,
+                                           const VehicleSizes& sizes = {});
 
 }  // namespace dynamic_icp::tracking

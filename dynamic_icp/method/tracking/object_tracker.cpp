@@ -22,6 +22,7 @@ using Eigen::Vector3d;
 
 constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
+constexpr int kSureScans = 5;          // sizes are known after so many
 constexpr double kMinHeight_m = 0.25;  // of what is no ground
 constexpr int kMany = 1 << 30;         // no drive has so many objects
 constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
@@ -103,9 +104,10 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
   collect_members(input, workers);
   initiate_tracks(input, workers);
   delete_tracks(input);
+  note_sizes();
   objects_.resize(std::max(objects_.size(), living_));
   workers.for_each(living_, 1, [&](std::size_t k) {
-    entries_[k].report(T_world_sensor, ego_covariance, ground_.ground().up(), config_, objects_[k]);
+    entries_[k].report(T_world_sensor, ego_covariance, ground_.ground().up(), sizes_, config_, objects_[k]);
   });
   return std::span(objects_).first(living_);
 }
@@ -160,7 +162,7 @@ void ObjectTracker::expect(double stamp_s, const SensorMotion& sensor, const Cho
   expected_.clear();
   for (TrackRecord& entry : living()) {
     if (choice(entry)) {
-      entry.predict(stamp_s, config_.track);
+      entry.predict(stamp_s, sizes_, config_.track);
       expected_.emplace_back(entry.predicted, entry.now, sensor, config_);
     }
   }
@@ -269,7 +271,7 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   }
   std::swap(entry.track, corrected);
   entry.predicted_s.reset();
-  entry.predict(input.stamp_s, config_.track);
+  entry.predict(input.stamp_s, sizes_, config_.track);
   entry.missed = 0;
   ++entry.seen;
   const bool seen_often =
@@ -324,7 +326,7 @@ void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint3
     return;
   }
   entry.predicted_s.reset();
-  entry.predict(input.stamp_s, config_.track);
+  entry.predict(input.stamp_s, sizes_, config_.track);
   // Where many points are static, some that seem to move are errors of measurement.
   const Expectation expected(entry.predicted, entry.now, input.sensor, config_);
   find_static_rows(input, expected, entry.static_rows);
@@ -366,12 +368,22 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
   }
 }
 
+/// Others resemble what was seen whole.
+void ObjectTracker::note_sizes() {
+  for (const TrackRecord& entry : living()) {
+    const bool is_seen = entry.confirmed && entry.missed == 0 && entry.seen >= kSureScans;
+    if (is_seen && entry.predicted.is_sure_of_heading() && entry.predicted.best().is_whole_vehicle()) {
+      sizes_.note(entry.id, entry.now.box.size);
+    }
+  }
+}
+
 /// What tracks predict is computed from their states; what lies behind the living ones is memory.
 void ObjectTracker::state(StateArchive& archive) {
   entries_.resize(living_);
   archive.each(entries_, [&](TrackRecord& entry) { archive(entry); });
   living_ = entries_.size();
-  archive(ground_, next_id_, first_stamp_, last_stamp_, T_world_last_);
+  archive(ground_, sizes_, next_id_, first_stamp_, last_stamp_, T_world_last_);
   archive.require(next_id_ > 0 && next_id_ < kMany &&
                       std::ranges::all_of(entries_, [&](const TrackRecord& entry) { return entry.id < next_id_; }),
                   "the number of an object");

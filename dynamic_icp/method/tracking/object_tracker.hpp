@@ -93,11 +93,13 @@ class ObjectTracker {
   void initiate_tracks(const TrackingInput& input, const Workers& workers);
   void begin(const TrackingInput& input, std::span<const std::uint32_t> rows, TrackRecord& entry) const;
   void delete_tracks(const TrackingInput& input);
+  void note_sizes();
 
   TrackerConfig config_;
   std::vector<TrackRecord> entries_;  ///< the tracks, and behind them memory for more
   std::size_t living_ = 0;            ///< number of tracks
   GroundFilter ground_;
+  VehicleSizes sizes_;
   std::int64_t next_id_ = 1;
   std::optional<Stamp> first_stamp_;
   std::optional<Stamp> last_stamp_;

@@ -55,8 +55,9 @@ TEST(ObjectTrackerView, ASensorThatMovesTurnsTiltsAndSweepsSeesTheTruth) {
       const Vector3d velocity = T_world_sensor.linear().transpose() * truth.velocity;
       const Vector3d centre = T_world_sensor.inverse() * truth.box.centre;
       EXPECT_LT((objects[0].velocity_sensor - velocity).norm(), 0.1) << "scan " << k << " sweep " << sweep;
-      // Rays meet the far end of its side half a metre apart: so much of the length may be missing.
-      EXPECT_LT((objects[0].centroid - centre).norm(), 0.2) << "scan " << k << " sweep " << sweep;
+      // Rays meet the far end of its side half a metre apart, and its corner is sharper than those of cars: the length
+      // is off by as much.
+      EXPECT_LT((objects[0].centroid - centre).norm(), 0.25) << "scan " << k << " sweep " << sweep;
       EXPECT_LT((objects[0].box.axes.col(0) - velocity.normalized()).norm(), 0.03) << "scan " << k;
     }
   }

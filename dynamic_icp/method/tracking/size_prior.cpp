@@ -9,8 +9,10 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr double kScatter = 0.15;        // of sizes about the curves, as a share
-constexpr double kMinSection_m2 = 0.25;  // less was not seen whole
+constexpr double kScatter = 0.15;  // of sizes about the curves, as a share
+constexpr double kLength_m = 2.35;
+constexpr double kWidthPower = 0.8;
+constexpr double kHeightSquare = 0.43;  // times the square of the logarithm of the height
 constexpr double kMinSide_m = 0.3;
 constexpr double kLongest = 1.75;  // of the typical length: none was found longer
 constexpr double kPersonSide_m = 1.2;
@@ -36,7 +38,14 @@ Belief at_least(const Belief& belief, double least) {
 }
 
 Belief typical_length(double width_m, double height_m) {
-  return about(1.95 * std::pow(std::max(kMinSection_m2, width_m * height_m), kLengthPower));
+  const double log_height = std::log(std::max(1.0, height_m));
+  return about(kLength_m * std::pow(std::max(kMinSide_m, width_m), kWidthPower) *
+               std::exp(kHeightSquare * log_height * log_height));
+}
+
+double length_per_height(double width_m, double height_m) {
+  const double height = std::max(1.0, height_m);
+  return typical_length(width_m, height).mean * 2.0 * kHeightSquare * std::log(height) / height;
 }
 
 double longest_length(double width_m, double height_m) { return kLongest * typical_length(width_m, height_m).mean; }

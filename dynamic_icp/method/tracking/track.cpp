@@ -201,14 +201,14 @@ void Track::evaluate(const Detection& detection, const TrackConfig& config) {
       static_cast<std::size_t>(std::max_element(hypotheses_.begin(), hypotheses_.end(), better) - hypotheses_.begin());
 }
 
-BoxEstimate Track::estimate() const {
-  BoxEstimate result = best().estimate();
+BoxEstimate Track::estimate(const VehicleSizes& sizes) const {
+  BoxEstimate result = best().estimate(sizes);
   Eigen::Matrix3d velocity = Eigen::Matrix3d::Zero();
   Eigen::Matrix3d centre = Eigen::Matrix3d::Zero();
   double weights = 0.0;
   for (const BoxFilter& hypothesis : hypotheses_) {
     const double weight = std::exp(hypothesis.log_posterior() - best().log_posterior());
-    const BoxEstimate other = hypothesis.estimate();
+    const BoxEstimate other = hypothesis.estimate(sizes);
     const Eigen::Vector3d dv = other.velocity - result.velocity;
     const Eigen::Vector3d dc = other.box.centre - result.box.centre;
     velocity += weight * (other.velocity_covariance + dv * dv.transpose());

@@ -54,7 +54,8 @@ class Track {
   [[nodiscard]] const BodyFilter& body() const { return best().body(); }
 
   /// The best hypothesis; its covariances hold the disagreement of the others.
-  [[nodiscard]] BoxEstimate estimate() const;
+  /// `sizes`: those of other vehicles.
+  [[nodiscard]] BoxEstimate estimate(const VehicleSizes& sizes = {}) const;
 
   void state(StateArchive& archive);
 

@@ -27,13 +27,13 @@ TrackRecord::TrackRecord() {
   }
 }
 
-void TrackRecord::predict(double stamp_s, const TrackConfig& config) {
+void TrackRecord::predict(double stamp_s, const VehicleSizes& sizes, const TrackConfig& config) {
   if (predicted_s == stamp_s) {
     return;
   }
   predicted = track;
   predicted.predict(stamp_s, config);
-  now = predicted.estimate();
+  now = predicted.estimate(sizes);
   predicted_s = stamp_s;
 }
 
@@ -77,7 +77,8 @@ void TrackRecord::take_name_of(const TrackRecord& older) {
 }
 
 void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::Matrix3d& ego_covariance,
-                         const Vector3d& up, const TrackerConfig& config, TrackedObject& object) {
+                         const Vector3d& up, const VehicleSizes& sizes, const TrackerConfig& config,
+                         TrackedObject& object) {
   const Eigen::Isometry3d T_sensor_world = T_world_sensor.inverse();
   const Eigen::Matrix3d R = T_sensor_world.linear();
   const BodyFilter& body = predicted.body();
@@ -101,13 +102,14 @@ void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::M
   Track& later = other;
   later = predicted;
   later.predict(later.time_s() + object.prediction.after_s, config.track);
-  const BoxEstimate then = later.estimate();
+  const BoxEstimate then = later.estimate(sizes);
   object.prediction.centre = T_sensor_world * then.box.centre;
   const double after_s = object.prediction.after_s;
   object.prediction.centre_covariance = R * then.centre_covariance * R.transpose() + after_s * after_s * ego_covariance;
   object.prediction.velocity_sensor = R * then.velocity;
   object.age_scans = age;
   object.scans_seen = seen;
+  make_room(object.members, kUsualRows);  // objects change their places, too
   refill(object.members, std::span<const std::uint32_t>(members));
 }
 

@@ -52,7 +52,7 @@ struct TrackRecord {
   TrackRecord();
 
   /// The track at the stamp of a scan. It is asked for several times a scan.
-  void predict(double stamp_s, const TrackConfig& config);
+  void predict(double stamp_s, const VehicleSizes& sizes, const TrackConfig& config);
 
   /// Whether the velocity is worth reporting: known well enough, or as well as it will be.
   [[nodiscard]] bool is_credible(const EgoError& ego, const TrackerConfig& config) const;
@@ -68,7 +68,7 @@ struct TrackRecord {
 
   /// What is said of it; `ego_covariance`: of the velocity of the sensor, (m/s)^2, sensor frame; `up`: world.
   void report(const Eigen::Isometry3d& T_world_sensor, const Eigen::Matrix3d& ego_covariance, const Eigen::Vector3d& up,
-              const TrackerConfig& config, TrackedObject& object);
+              const VehicleSizes& sizes, const TrackerConfig& config, TrackedObject& object);
 
   [[nodiscard]] SeenTrack seen_track() const { return {predicted, now, members.size()}; }
 

@@ -22,7 +22,7 @@ TrackRecord record_of(double speed_mps) {
   }
   TrackRecord record;
   record.track.begin(detection, 10.0, {});
-  record.predict(10.0, {});
+  record.predict(10.0, {}, {});
   record.now.velocity = Vector3d(speed_mps, 0.0, 0.0);
   record.seen = record.age = 1;
   return record;
