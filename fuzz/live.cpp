@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <stdexcept>
 #include <string>
 #include <string_view>
@@ -19,16 +20,48 @@ using namespace dynamic_icp;
 
 /// What users name as address and as permitted origin.
 void check_named(std::string_view text) {
-  live::Access named;
+  live::Access page;
+  page.origins = {std::string(text)};
   try {
-    named.origins = {std::string(text)};
-    live::check(named);
-    named.address = text;
-    named.origins.clear();
-    live::check(named);
-    fuzz::must(live::is_own_host(live::authority(text, named.port), named));
+    live::check(page);
+    fuzz::must(live::is_permitted_origin(text, "127.0.0.1", page));
   } catch (const UsageError&) {
   }
+  live::Access machine;
+  machine.address = text;
+  try {
+    live::check(machine);
+    fuzz::must(live::is_own_host(live::authority(text, machine.port), machine));
+  } catch (const UsageError&) {
+  }
+}
+
+/// Little-endian.
+std::uint64_t number_at(std::string_view bytes, std::size_t at, std::size_t size) {
+  std::uint64_t number = 0;
+  for (std::size_t k = size; k-- > 0;) {
+    number = number << 8U | static_cast<unsigned char>(bytes[at + k]);
+  }
+  return number;
+}
+
+/// A client that subscribes is sent messages that bear its own number of the subscription.
+void answer(const live::Request& request) {
+  for (const live::Subscription& subscription : request.subscriptions) {
+    const Stamp stamp{static_cast<std::int64_t>(subscription.channel) << 31U};
+    const live::MessageHead head = live::message_head(subscription.id, stamp);
+    const std::string_view bytes(head.data(), head.size());
+    fuzz::must(bytes[0] == 1 && number_at(bytes, 1, 4) == subscription.id);
+    fuzz::must(number_at(bytes, 5, 8) == static_cast<std::uint64_t>(stamp.ns));
+    const std::string time = live::time_message(stamp);
+    fuzz::must(time.size() == 9 && time[0] == 2 && number_at(time, 1, 8) == static_cast<std::uint64_t>(stamp.ns));
+  }
+}
+
+/// Texts of ours, with names that others chose in them, are JSON of what they are to say.
+void must_say(const std::string& text, const char* operation) {
+  const live::Request understood = live::parse_request(text);
+  fuzz::must(understood.operation == operation);
 }
 
 }  // namespace
@@ -42,12 +75,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     const live::Request request = live::parse_request(text);
     fuzz::must(request.subscriptions.empty() || request.operation == "subscribe");
     fuzz::must(request.ended.empty() || request.operation == "unsubscribe");
+    answer(request);
   } catch (const std::invalid_argument&) {
   }
   const std::string_view chosen = live::chosen_subprotocol(text);
   fuzz::must(chosen.empty() || text.find(chosen) != std::string_view::npos);
-  fuzz::must(live::status(live::StatusLevel::kError, std::string(text), "id").starts_with('{'));  // shown to the client
-  fuzz::must(live::server_info(std::string(text), "session").starts_with('{'));
+  const std::string shown(text);
+  must_say(live::status(live::StatusLevel::kError, shown, "id"), "status");
+  must_say(live::server_info(shown, "session"), "serverInfo");
+  const live::Channel channel{shown, "foxglove.PointCloud", shown};
+  must_say(live::advertisement(std::span(&channel, 1)), "advertise");
   check_named(text);
   const live::Access access;
   const std::string lower = formats::lower_case(text);

@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 // Small valid files for the fuzzers to begin with: fuzz_seeds DIR writes DIR/<target>/<name>.
+#include <cstring>
 #include <filesystem>
 #include <span>
 #include <string>
@@ -8,16 +9,15 @@
 
 #include <fmt/format.h>
 
-#include "dynamic_icp/method/odometry/config.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
-#include "dynamic_icp/recording/formats/config_file.hpp"
 #include "dynamic_icp/recording/formats/npz.hpp"
 #include "dynamic_icp/recording/formats/point_table.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
-#include "dynamic_icp/recording/runs/calibration_file.hpp"
 
+#include "fuzz/yaml_seeds.hpp"
 #include "testing/bags_by_hand.hpp"
 #include "testing/db3_by_hand.hpp"
+#include "testing/npz_by_hand.hpp"
 #include "testing/ros_bytes.hpp"
 
 namespace dynamic_icp::fuzz {
@@ -45,6 +45,15 @@ std::vector<NamedArray> table() {
 std::string pcd(const std::string& encoding, const std::string& data) {
   return "FIELDS x y z v t\nSIZE 4 4 4 4 8\nTYPE F F F F U\nWIDTH 1\nHEIGHT 1\nPOINTS 1\nDATA " + encoding + "\n" +
          data;
+}
+
+/// An archive with another number at this place of each entry of its directory.
+template <class Number>
+std::string with_entries(std::string archive, std::size_t at, Number number) {
+  for (const std::size_t entry : formats::central_entries(archive)) {
+    std::memcpy(archive.data() + entry + at, &number, sizeof(number));
+  }
+  return archive;
 }
 
 class Seeds {
@@ -77,6 +86,8 @@ class Seeds {
       doubled[at] = 'a';
     }
     write("npz", doubled);
+    write("npz", with_entries(npz, 24, std::uint32_t{1} << 28U));  // sizes: a bomb
+    write("npz", with_entries(npz, 10, std::uint16_t{99}));        // a compression that nobody knows
     write("columns", "2" + npz);
     const std::string binary_pcd = formats::pcd_bytes(table());
     const std::string ascii_pcd = pcd("ascii", "1 2 3 -4.5 1724479779384729506\n");
@@ -223,23 +234,19 @@ class Seeds {
     by_hand::write_db3(folder_ / "db3" / "seed", channels, messages, "PRAGMA page_size = 512;");
   }
 
-  /// The first byte says which file it is, see settings.cpp.
+  /// Each says by its first byte which file it is, see settings.cpp; beside them stands a dictionary.
   void write_settings() {
-    write("settings",
-          "0description: two roads\nformat: hercules\nlidars: [front, 'rear']\nsequences:\n  - name: bridge-01\n"
-          "    folders: [Bridge/01_Day, \"other\"]\n  - {name: b, folders: [c]}\n");
-    write("settings", "1" + runs::calibration_text({}));
-    for (std::size_t k = 0; k < odometry::pipelines().size(); ++k) {
-      odometry::Config config = odometry::pipelines()[k].config;
-      const auto kind = static_cast<char>('0' + odometry::pipelines().size() * 2 + k);
-      write("settings", kind + formats::config_yaml(fields(config)));
+    const std::vector<std::string> files = yaml_seeds();
+    for (const std::string& file : files) {
+      write("settings", file);
     }
-    write("settings", "7preprocess:\n  voxel: {voxel_size_m: 0.5}\ntracking.coast_s: &a 1\n");
+    const std::string dictionary = yaml_dictionary(files);
+    formats::write_bytes(folder_ / "settings.dict", std::as_bytes(std::span(dictionary)));
     write("live", R"({"op":"subscribe","subscriptions":[{"id":0,"channelId":3},{"id":1,"channelId":4294967295}]})");
     write("live", R"({"op":"unsubscribe","subscriptionIds":[0,1]})");
     for (const char* header : {"foxglove.sdk.v1, foxglove.websocket.v1", "localhost:8765", "[::1]:8765",
                                "http://127.0.0.1:8765", "https://app.foxglove.dev", "127.0.0.1", "FE80::1",
-                               R"({"op":1})", R"({"op":"unsubscribe","subscriptionIds":[-1]})"}) {
+                               "https://a/b", R"({"op":1})", R"({"op":"unsubscribe","subscriptionIds":[-1]})"}) {
       write("live", header);
     }
   }

@@ -80,6 +80,7 @@ fuzz() {  # target kind [option of libFuzzer...]
   local target=$1 kind=$2 folder=build-method status=0
   shift 2
   [[ $kind == sanitized ]] || folder=build-deep
+  [[ ! -e $results/seeds/$target.dict ]] || set -- "$@" -dict="$results/seeds/$target.dict"
   local log=$results/running/$target.$kind.log
   local earlier
   earlier=$(grep -c "^$target	" "$results/executions.tsv" || true)
