@@ -50,8 +50,17 @@ results=build-fuzz
 mkdir -p "$results/running"
 exec {lock}>"$results/running/lock"  # fuzzers have it open as long as they run
 flock --nonblock $lock || { echo "another scripts/fuzz.sh, or a fuzzer of one, is at work in $results" >&2; exit 1; }
-TMPDIR=$(mktemp -d -p /dev/shm 2>/dev/null || mktemp -d)  # for the files that are read: in memory
+# The files that are read lie in memory. A call that was killed has left its folder, whose lock nobody holds any more; one just made may
+# have none yet.
+memory=/dev/shm
+[[ -w $memory ]] || memory=${TMPDIR:-/tmp}
+find "$memory" -maxdepth 1 -type d -user "$(id -u)" -name 'dynamic-icp-fuzz.??????' -mmin +1 2>/dev/null | while read -r left; do
+  flock --nonblock "$left" rm -rf "$left" || true
+done
+TMPDIR=$(mktemp -d -p "$memory" dynamic-icp-fuzz.XXXXXX)
 export TMPDIR
+exec {held}<"$TMPDIR"
+flock $held
 trap 'rm -rf "$TMPDIR"' EXIT
 interrupted=72  # the status of a stopped fuzzer
 echo "== Configuring and building"
