@@ -4,7 +4,7 @@
 # usage: scripts/fuzz.sh [--deep] [--runs N] [SECONDS] [TARGET...]     default: all targets
 #   SECONDS   at most so long for each target (default 60; with --runs as long as it takes)
 #   --runs N  until the target has had N executions in all, those of earlier calls counted
-#   --deep    without sanitizers, about twice as many executions a second; then the inputs that reached new code once more with them
+#   --deep    without sanitizers, several times as many executions a second; then the inputs that reached new code once more with them
 # The random numbers begin with SEED (environment, default 1) and differ from call to call, as all executions are counted
 # (build-fuzz/executions.tsv; of a run that was killed those that it had told of). Findings stay in build-fuzz/findings, inputs that reach new
 # code in build-fuzz/corpus; scripts/fuzz_table.py makes a table of what was tried. Status 1 after a finding. JOBS (environment, default 2):
@@ -88,7 +88,10 @@ counted() { awk -F '\t' -v target="$1" '$1 == target { sum += $2 } END { printf 
 fuzz() {  # target kind [option of libFuzzer...]
   local target=$1 kind=$2 folder=build-method status=0
   shift 2
-  [[ $kind == sanitized ]] || folder=build-deep
+  if [[ $kind == plain ]]; then
+    folder=build-deep
+    set -- "$@" -entropic_feature_frequency_threshold=20  # where all is rare, looking for what is rarest takes most of the time
+  fi
   [[ ! -e $results/seeds/$target.dict ]] || set -- "$@" -dict="$results/seeds/$target.dict"
   local log=$results/running/$target.$kind.log
   local earlier

@@ -56,8 +56,8 @@ FileKind unpacked_kind(const fs::path& file) {
   return kind == FileKind::kZstd ? formats::kind_of(zstd_file_head(file, formats::kKindBytes)) : kind;
 }
 
-std::unique_ptr<FileBag> open_unpacked(const fs::path& file, const fs::path& name) {
-  switch (const FileKind kind = formats::kind_of_file(file)) {
+std::unique_ptr<FileBag> open_unpacked(const fs::path& file, FileKind kind, const fs::path& name) {
+  switch (kind) {
     case FileKind::kRosBag:
       return open_ros1_bag(file, name);
     case FileKind::kMcap:
@@ -106,14 +106,14 @@ bool has_bag_name(const fs::path& file) {
 }
 
 std::unique_ptr<FileBag> open_file(const fs::path& file) {
-  if (formats::kind_of_file(file) != FileKind::kZstd) {
-    return open_unpacked(file, file);
+  if (const FileKind kind = formats::kind_of_file(file); kind != FileKind::kZstd) {
+    return open_unpacked(file, kind, file);
   }
   const auto unpacked = std::make_shared<const TemporaryFile>();
   const std::string fault = unpack_zstd_file(file, unpacked->path());
   std::unique_ptr<FileBag> bag;
   try {
-    bag = open_unpacked(unpacked->path(), file);
+    bag = open_unpacked(unpacked->path(), formats::kind_of_file(unpacked->path()), file);
   } catch (const DataError&) {
     if (fault.empty()) {
       throw;

@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/datasets/field_names.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <span>
 #include <string_view>
 #include <utility>
@@ -107,7 +108,9 @@ class FieldFinder {
  public:
   FieldFinder(const std::vector<std::string>& names, const std::map<std::string, std::string>& wanted,
               const std::string& origin, const std::vector<std::string>& unusable)
-      : names_(names), wanted_(wanted), origin_(origin), unusable_(unusable) {}
+      : names_(names), wanted_(wanted), origin_(origin), unusable_(unusable) {
+    std::transform(names.begin(), names.end(), std::back_inserter(plain_names_), plain_name);
+  }
 
   FieldMap find() {
     for (const auto& [key, column] : wanted_) {
@@ -117,7 +120,8 @@ class FieldFinder {
     }
     find_point();
     find_doppler();
-    map_.time = find_column("time", time_names());
+    static const std::vector<std::string> kTimes = time_names();
+    map_.time = find_column("time", kTimes);
     find_line_of_sight();
     find_channels();
     return std::move(map_);
@@ -126,11 +130,11 @@ class FieldFinder {
  private:
   /// The name in the file that is, but for its case and blanks, the one given.
   [[nodiscard]] const std::string* same_as(std::string_view name) const {
-    const auto exact = std::find(names_.begin(), names_.end(), name);
-    const auto found = exact != names_.end() ? exact : std::find_if(names_.begin(), names_.end(), [&](const auto& own) {
-      return plain_name(own) == plain_name(name);
-    });
-    return found == names_.end() ? nullptr : &*found;
+    if (const auto exact = std::find(names_.begin(), names_.end(), name); exact != names_.end()) {
+      return &*exact;
+    }
+    const auto found = std::find(plain_names_.begin(), plain_names_.end(), plain_name(name));
+    return found == plain_names_.end() ? nullptr : &names_[static_cast<std::size_t>(found - plain_names_.begin())];
   }
 
   [[nodiscard]] std::string there_are() const {
@@ -330,6 +334,7 @@ class FieldFinder {
   }
 
   const std::vector<std::string>& names_;
+  std::vector<std::string> plain_names_;  ///< of each of them: looked for about 150 times
   const std::map<std::string, std::string>& wanted_;
   const std::string& origin_;
   const std::vector<std::string>& unusable_;
