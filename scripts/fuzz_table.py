@@ -3,13 +3,17 @@
 build-fuzz, and how many lines of the readers the inputs it kept reach (a build of its own by clang, build-coverage).
 
 usage: scripts/fuzz_table.py [TARGET...]
+       scripts/fuzz_table.py --speed SECONDS [TARGET...]    instead: executions a second of a processor in so many seconds,
+                                                            of those programs that scripts/fuzz.sh has built
 """
 
 import json
 import pathlib
 import re
+import resource
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RESULTS = ROOT / "build-fuzz"
@@ -85,10 +89,40 @@ def covered_lines(target):
     return reached, lines
 
 
+def speed_of(program, target, seconds):
+    """Executions a second of a processor from the inputs that were kept, which it reads first; "-" without the program."""
+    if not program.exists():
+        return "-"
+    before = resource.getrusage(resource.RUSAGE_CHILDREN)
+    with tempfile.TemporaryDirectory(dir="/dev/shm") as memory:
+        inputs = [folder for folder in (RESULTS / "corpus" / target, RESULTS / "seeds" / target) if folder.is_dir()]
+        log = run(program, "-seed=1", "-max_len=8192", "-entropic_feature_frequency_threshold=20", "-print_final_stats=1",
+                  f"-max_total_time={seconds}", memory, *inputs, env={"TMPDIR": memory}, stderr=subprocess.PIPE).stderr
+    after = resource.getrusage(resource.RUSAGE_CHILDREN)
+    executions = int(re.search(r"^stat::number_of_executed_units: *(\d+)", log, re.MULTILINE).group(1))
+    return f"{executions / (after.ru_utime - before.ru_utime + after.ru_stime - before.ru_stime):,.0f}"
+
+
+def print_speeds(targets, seconds):
+    print("| target | executions a second with sanitizers | without |")
+    print("|---|---|---|")
+    for target in targets:
+        speeds = [speed_of(ROOT / build / "fuzz" / f"fuzz_{target}", target, seconds) for build in ("build-method", "build-deep")]
+        print(f"| {target} | {speeds[0]} | {speeds[1]} |", flush=True)
+
+
 def main():
-    targets = sys.argv[1:] or list(READERS)
+    words = sys.argv[1:]
+    seconds = None
+    if words[:1] == ["--speed"]:
+        if not words[1:2] or not re.fullmatch("[1-9][0-9]*", words[1]):
+            sys.exit("usage: scripts/fuzz_table.py [--speed SECONDS] [TARGET...]")
+        seconds, words = words[1], words[2:]
+    targets = words or list(READERS)
     if unknown := [target for target in targets if target not in READERS]:
         sys.exit(f"unknown target '{unknown[0]}'; known are: {', '.join(READERS)}")
+    if seconds:
+        return print_speeds(targets, seconds)
     run("cmake", "-S", ROOT, "-B", BUILD, "-G", "Ninja", "-DCMAKE_BUILD_TYPE=Debug", "-DCMAKE_CXX_COMPILER=clang++",
         "-DCMAKE_CXX_FLAGS_DEBUG=-O1", "-DCMAKE_CXX_FLAGS=-fprofile-instr-generate -fcoverage-mapping",
         "-DCMAKE_UNITY_BUILD=ON", "-DDYNAMIC_ICP_BUILD_FUZZERS=ON", "-DDYNAMIC_ICP_PRECOMPILED_HEADERS=OFF",
