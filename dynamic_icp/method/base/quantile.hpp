@@ -2,11 +2,13 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <span>
 #include <utility>
 #include <vector>
+
+#include "dynamic_icp/method/base/selection.hpp"
 
 namespace dynamic_icp {
 
@@ -19,9 +21,9 @@ inline double quantile_among(std::span<double> values, double share) {
   if (values.empty()) {
     return 0.0;
   }
-  const auto place = values.begin() + std::lround(share * static_cast<double>(values.size() - 1));
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
+  const auto place = static_cast<std::size_t>(std::lround(share * static_cast<double>(values.size() - 1)));
+  select_place(values, place);
+  return values[place];
 }
 
 /// The same of values that stay as they are.

@@ -12,6 +12,7 @@
 #include <span>
 #include <utility>
 
+#include "dynamic_icp/method/base/selection.hpp"
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 #include "dynamic_icp/method/spatial/cell_order.hpp"
 #include "dynamic_icp/method/tracking/flags.hpp"
@@ -66,9 +67,10 @@ void take_means(MovingCell& cell) {
 
 /// The median of some values, at least one; of an even number the mean of the two in the middle. Changes their order.
 double median_among(std::span<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return values.size() % 2 == 1 ? *middle : 0.5 * (*middle + *std::max_element(values.begin(), middle));
+  const std::size_t middle = values.size() / 2;
+  select_place(values, middle);
+  return values.size() % 2 == 1 ? values[middle]
+                                : 0.5 * (values[middle] + *std::ranges::max_element(values.first(middle)));
 }
 
 /// Whether a cell may lie beside the gap where the radial velocity of its body passes zero.
