@@ -15,6 +15,7 @@
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/tracking/cluster_velocity.hpp"
 #include "dynamic_icp/method/tracking/ground.hpp"
+#include "dynamic_icp/method/tracking/ground_heights.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/range_image.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"

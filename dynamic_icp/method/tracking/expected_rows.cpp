@@ -29,19 +29,6 @@ struct SoughtBox {
   SoughtPlace place;  ///< of the box, seen from the sensor
 };
 
-/// The place of a box in the frame of the sensor that moves with `drift` (m/s), while the sensor turns with `turn_rps`.
-SoughtPlace place_of(const OrientedBox& box, const Vector3d& drift, double turn_rps) {
-  SoughtPlace place;
-  place.centre = box.centre;
-  place.drift = drift;
-  place.half_length = 0.5 * box.size.x() * box.axes.col(0).head<2>();
-  place.half_width = 0.5 * box.size.y() * box.axes.col(1).head<2>();
-  place.reach_m = 0.5 * box.size.z() * box.axes.col(2).head<2>().norm();  // where it leans
-  place.half_height_m = 0.5 * aligned_extent(box).z();
-  place.turn_rps = turn_rps;
-  return place;
-}
-
 OrientedBox moved_by(const Eigen::Isometry3d& T, const OrientedBox& box) {
   return {T * box.centre, T.linear() * box.axes, box.size};
 }

@@ -2,11 +2,8 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
-#include <array>
 #include <cstddef>
-#include <cstdint>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include <Eigen/Core>
@@ -48,47 +45,6 @@ class GroundFilter {
   std::vector<Plane> last_;  ///< a few, the newest anywhere
   std::size_t next_ = 0;
   Ground ground_;
-};
-
-/// How far above or below that plane the ground is from place to place: roads bend, and planes are fitted to much of
-/// them.
-class GroundHeights {
- public:
-  /// A plane.
-  explicit GroundHeights(const Ground& ground = {}) : ground_(ground) {}
-
-  /// From the static points near the plane (m, sensor frame; `is_moving` has one flag per point).
-  GroundHeights(const Ground& ground, std::span<const Eigen::Vector3d> points, std::span<const std::uint8_t> is_moving,
-                const Eigen::Isometry3d& T_world_sensor);
-
-  [[nodiscard]] Eigen::Vector3d up() const { return ground_.up(); }
-
-  /// The ground below something whose lowest point seen is `lowest` (m, world). Where none is seen near by it is that
-  /// of the whole scan, unless that lies far below or above the point.
-  [[nodiscard]] Ground below(const Eigen::Vector3d& lowest) const;
-
- private:
-  static constexpr int kCells = 32;  // in each direction
-  static constexpr int kBins = 24;   // of heights
-  using Histogram = std::array<std::uint16_t, kBins>;
-
-  static constexpr std::size_t kBinBlock = 512;
-
-  /// Where some points belong.
-  struct Bins {
-    std::array<int, kBinBlock> cell;  ///< -1: nowhere
-    std::array<int, kBinBlock> bin;
-  };
-
-  static void find_bins(const Eigen::Vector3d* points, std::size_t stride, std::size_t count,
-                        const Eigen::Matrix3d& R_level_sensor, double plane_z, Bins& bins);
-
-  [[nodiscard]] std::optional<std::size_t> cell_of(const Eigen::Vector3d& from_sensor) const;
-  [[nodiscard]] Eigen::Vector3d in_level(const Eigen::Vector3d& point_world) const;
-
-  Ground ground_;
-  Eigen::Vector3d sensor_world_ = Eigen::Vector3d::Zero();
-  std::array<Histogram, static_cast<std::size_t>(kCells* kCells)> cells_{};
 };
 
 }  // namespace dynamic_icp::tracking

@@ -3,14 +3,10 @@
 #include "dynamic_icp/method/tracking/ground.hpp"
 
 #include <cmath>
-#include <cstdint>
-#include <optional>
-#include <vector>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/method/base/random_source.hpp"
 #include "dynamic_icp/method/base/se3.hpp"
 
 namespace dynamic_icp::tracking {
@@ -103,40 +99,6 @@ TEST(GroundFilter, HeadingsStayWhatTheyAre) {
   }
   EXPECT_NEAR(std::atan2(filter.ground().level(1, 0), filter.ground().level(0, 0)), 0.0, 0.1)
       << "nine rounds about the vertical enclose 0.07 rad";
-}
-
-/// Points of a road whose height is `height(x, y)`, and a few of walls on it.
-template <class Height>
-std::vector<Vector3d> road_points(const Height& height) {
-  std::vector<Vector3d> points;
-  for (std::uint64_t i = 0; i < 20000; ++i) {
-    const RandomSource one = RandomSource(3).fork(i);
-    const double x = one.uniform(0, -60, 60);
-    const double y = one.uniform(1, -60, 60);
-    const double above = i % 3 == 0 ? one.uniform(2, 0.0, 3.0) : 0.01 * one.normal(3);
-    points.emplace_back(x, y, height(x, y) + above);
-  }
-  return points;
-}
-
-TEST(GroundHeights, FollowARoadThatBends) {
-  const auto height = [](double x, double) { return -1.8 + 1e-4 * x * x; };
-  const std::vector<Vector3d> points = road_points(height);
-  const std::vector<std::uint8_t> is_moving(points.size(), 0);
-  const GroundHeights heights({Matrix3d::Identity(), -1.8}, points, is_moving, Eigen::Isometry3d::Identity());
-  for (const double x : {-50.0, -20.0, 0.0, 33.0, 55.0}) {
-    const std::optional<double> offset = heights.below({x, 10.0, height(x, 10.0) + 0.5}).offset_m;
-    ASSERT_TRUE(offset);
-    EXPECT_NEAR(*offset, height(x, 10.0), 0.1) << "x = " << x;
-  }
-}
-
-TEST(GroundHeights, WithoutPointsThePlaneCountsUnlessItIsFarBelow) {
-  const GroundHeights heights({Matrix3d::Identity(), -1.8});
-  EXPECT_EQ(heights.below({20, 0, -1.5}).offset_m, -1.8);
-  EXPECT_FALSE(heights.below({20, 0, 0.5}).offset_m);
-  EXPECT_FALSE(heights.below({20, 0, -2.5}).offset_m);
-  EXPECT_FALSE(GroundHeights().below({20, 0, 0.5}).offset_m) << "no plane is known";
 }
 
 }  // namespace

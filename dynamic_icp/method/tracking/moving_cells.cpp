@@ -300,8 +300,13 @@ void gather_cells(const Scan& scan, std::span<const double> radial, std::span<co
   spatial::CellOrder& order = result.order;
   make_room(order.keys, n);
   order.keys.resize(n);
-  workers.for_each(n, kPointBlock, [&](std::size_t i) {
-    order.keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
+  workers.for_blocks(n, kPointBlock, [&](std::size_t /*block*/, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (i + kAhead < n) {
+        prefetch_point(scan, result.rows[i + kAhead]);
+      }
+      order.keys[i] = spatial::clamped_cell_key(scan.points()[result.rows[i]] / config.cell_size_m);
+    }
   });
   order.sort();
   // In the order of the rows, which is that of the memory.

@@ -140,11 +140,9 @@ TrackingInput ObjectTracker::prepare(const Scan& scan, const ScanPatches* measur
   const ScanPatches& patches = patches_of(scan, measured, workers);
   view_.show(scan, sights_of(scan, measured, workers),
              sensor.T_world_sensor.linear().transpose() * sensor.velocity_world);
-  workers.both([&] { heights_.emplace(ground_.ground(), scan.points(), is_moving, sensor.T_world_sensor); },
-               [&] {
-                 gather_cells(scan, radial, is_moving, config_.grouping, workers, moving_);
-                 group_cells(moving_.cells, config_.grouping, grouping_, groups_);
-               });
+  heights_->begin(ground_.ground(), scan.points(), patches, is_moving, sensor.T_world_sensor);
+  gather_cells(scan, radial, is_moving, config_.grouping, workers, moving_);
+  group_cells(moving_.cells, config_.grouping, grouping_, groups_);
   cell_points_.clear();
   cell_directions_.clear();
   for (const MovingCell& cell : moving_.cells) {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -16,6 +17,7 @@
 #include "dynamic_icp/method/tracking/association.hpp"
 #include "dynamic_icp/method/tracking/expectation.hpp"
 #include "dynamic_icp/method/tracking/ground.hpp"
+#include "dynamic_icp/method/tracking/ground_heights.hpp"
 #include "dynamic_icp/method/tracking/sensor_motion.hpp"
 #include "dynamic_icp/method/tracking/track_record.hpp"
 #include "dynamic_icp/method/tracking/tracked_object.hpp"
@@ -121,7 +123,7 @@ class ObjectTracker {
   std::vector<std::size_t> unowned_points_;  ///< of the groups
   std::vector<std::uint32_t> unowned_;       ///< cells
   CellGroups unowned_groups_;
-  std::optional<GroundHeights> heights_;
+  std::unique_ptr<GroundHeights> heights_ = std::make_unique<GroundHeights>();
   std::vector<TrackedObject> objects_;  ///< as many as tracks, and behind them memory for more
 };
 

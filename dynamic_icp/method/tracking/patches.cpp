@@ -19,6 +19,18 @@ constexpr double kRoundingOfBounds_m = 0.01;  // more than rounding moves a poin
 
 }  // namespace
 
+SoughtPlace place_of(const OrientedBox& box, const Eigen::Vector3d& drift, double turn_rps) {
+  SoughtPlace place;
+  place.centre = box.centre;
+  place.drift = drift;
+  place.half_length = 0.5 * box.size.x() * box.axes.col(0).head<2>();
+  place.half_width = 0.5 * box.size.y() * box.axes.col(1).head<2>();
+  place.reach_m = 0.5 * box.size.z() * box.axes.col(2).head<2>().norm();  // where it leans
+  place.half_height_m = 0.5 * aligned_extent(box).z();
+  place.turn_rps = turn_rps;
+  return place;
+}
+
 void PatchBlock::bound(std::span<const Eigen::Vector3d> points, std::span<const double> times) {
   count_ = (points.size() + kRows - 1) / kRows;
   for (std::size_t patch = 0; patch < count_; ++patch) {

@@ -14,6 +14,7 @@
 #include "dynamic_icp/method/base/parallel.hpp"
 #include "dynamic_icp/method/base/scan.hpp"
 #include "dynamic_icp/method/tracking/flags.hpp"
+#include "dynamic_icp/method/tracking/oriented_box.hpp"
 
 namespace dynamic_icp::tracking {
 
@@ -30,6 +31,9 @@ struct SoughtPlace {
   /// How fast the sensor turns, rad/s: points may be moved by that much from where they are. Deskewed ones are not: 0.
   double turn_rps = 0.0;
 };
+
+/// The place of a box that moves with `drift` (m/s) in its frame, while the sensor turns with `turn_rps` (rad/s).
+SoughtPlace place_of(const OrientedBox& box, const Eigen::Vector3d& drift, double turn_rps);
 
 /// Bounds of up to 64 patches of a scan, 64 rows each. Rows that follow each other are seen near each other more often
 /// than not: side by side, or one above the other with the ranges of a whole line of sight. So each patch has a box of
