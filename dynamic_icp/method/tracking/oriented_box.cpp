@@ -59,14 +59,46 @@ struct Lowest {
   }
 };
 
-/// span_of without `rank` values at either end, fewer than kFew.
+/// span_of without `rank` values at either end, fewer than kFew and than there are values.
 Interval span_without_few(std::span<const double> values, std::size_t rank) {
   Lowest low;
   Lowest high;  // of the negative values
-  for (const double value : values) {
+  const auto add = [&](double value) {
     low.add(value, rank + 1);
     high.add(-value, rank + 1);
+  };
+  // Bodies are seen from one side to the other: after both ends few values are among the lowest or the highest, and it
+  // is asked for some at once whether any is.
+  constexpr std::size_t kAskedTogether = 2 * simd::kLanes;
+  std::size_t i = rank + 1;
+  const std::size_t end = std::max(i, values.size() - i);
+  std::ranges::for_each(values.first(i), add);
+  std::ranges::for_each(values.subspan(end), add);
+  const auto is_any_outermost = [&] {
+    bool is_any = false;
+    simd::run([&]() DYNAMIC_ICP_KERNEL {
+      const double* const value = values.data();
+      const std::size_t n = end;
+      const simd::Lanes lowest = low.values[rank] - simd::Lanes{};
+      const simd::Lanes highest = -high.values[rank] - simd::Lanes{};
+      for (; i + kAskedTogether <= n; i += kAskedTogether) {
+        simd::Lanes a, b;
+        simd::load(a, value + i);
+        simd::load(b, value + i + simd::kLanes);
+        const simd::LaneMask outermost = (a < lowest) | (b < lowest) | (a > highest) | (b > highest);
+        if ((outermost[0] | outermost[1] | outermost[2] | outermost[3]) != 0) {
+          is_any = true;
+          return;
+        }
+      }
+    });
+    return is_any;
+  };
+  while (is_any_outermost()) {
+    std::ranges::for_each(values.subspan(i, kAskedTogether), add);
+    i += kAskedTogether;
   }
+  std::ranges::for_each(values.subspan(i, end - i), add);
   return {low.values[rank], -high.values[rank]};
 }
 

@@ -70,6 +70,26 @@ TEST(OrientedBox, SpanLeavesOutTheOutermostShare) {
   EXPECT_EQ(trimmed.high, 99.0);
 }
 
+TEST(OrientedBox, SpansAreThoseOfSortedValuesInWhateverOrderTheyCome) {
+  for (const std::size_t n : {1u, 2u, 7u, 16u, 17u, 90u, 500u, 2000u}) {
+    std::vector<double> ascending;
+    for (std::uint64_t i = 0; i < n; ++i) {
+      ascending.push_back(std::round(20.0 * RandomSource(3).fork(i).normal(0)) / 20.0);  // some are equal
+    }
+    const std::vector<double> unordered = ascending;
+    std::ranges::sort(ascending);
+    const std::vector<double> descending(ascending.rbegin(), ascending.rend());
+    for (const double trim : {0.0, 0.01, 0.1, 0.45}) {
+      const auto rank = static_cast<std::size_t>(trim * static_cast<double>(n - 1));
+      for (const std::vector<double>& values : {ascending, unordered, descending}) {
+        const Interval span = span_of(values, trim);
+        EXPECT_EQ(span.low, ascending[rank]) << rank << " of " << n;
+        EXPECT_EQ(span.high, ascending[n - 1 - rank]) << rank << " of " << n;
+      }
+    }
+  }
+}
+
 TEST(OrientedBox, NothingAndOnePointHaveNoSpan) {
   EXPECT_EQ(span_along({}, Vector3d::Zero(), Vector3d::UnitX(), 0.02).length(), 0.0);
   const std::vector<Vector3d> one = {{3, 0, 0}};
