@@ -9,7 +9,7 @@
 namespace dynamic_icp {
 namespace {
 
-constexpr std::ptrdiff_t kFewValues = 16;      // are left to the standard library
+constexpr std::ptrdiff_t kFewValues = 6;       // are left to the standard library
 constexpr std::ptrdiff_t kUnevenly = 8;        // a part is small if it is less than this fraction
 constexpr std::size_t kRoundsPerDoubling = 2;  // halves would take one; where many more are needed, the library helps
 

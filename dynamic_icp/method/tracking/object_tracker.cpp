@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/tracking/object_tracker.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -10,6 +11,8 @@
 #include <stdexcept>
 #include <utility>
 
+#include "dynamic_icp/method/base/lanes.hpp"
+#include "dynamic_icp/method/base/simd.hpp"
 #include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/tracking/expected_rows.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
@@ -47,11 +50,27 @@ bool is_ground(const Detection& detection) {
 }
 
 bool are_finite(std::span<const double> values) {
-  // Without a way out, so that it becomes vectors.
   bool finite = true;
-  for (const double value : values) {
-    finite &= std::abs(value) <= std::numeric_limits<double>::max();
-  }
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    constexpr std::size_t kTogether = 4 * simd::kLanes;
+    const double* const value = values.data();
+    const std::size_t n = values.size();
+    // What is no finite number has a difference to itself that is none, and so have sums with it.
+    std::array<simd::Lanes, 4> sums{};
+    std::size_t i = 0;
+    for (; i + kTogether <= n; i += kTogether) {
+      for (std::size_t k = 0; k < sums.size(); ++k) {
+        simd::Lanes four;
+        simd::load(four, value + i + k * simd::kLanes);
+        sums[k] += four - four;
+      }
+    }
+    double sum = simd::sum((sums[0] + sums[1]) + (sums[2] + sums[3]));
+    for (; i < n; ++i) {
+      sum += value[i] - value[i];
+    }
+    finite = sum == 0.0;
+  });
   return finite;
 }
 
