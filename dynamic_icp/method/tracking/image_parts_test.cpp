@@ -46,7 +46,7 @@ Scan mixed_patches(std::size_t patches) {
     const double width = k % 3 == 0 ? 0.002 : of_patch.uniform(1, 0.0, k % 7 == 0 ? 3.0 : 0.3);
     const double range = of_patch.uniform(2, 1.0, 80.0);
     const double slope = of_patch.uniform(3, -0.4, 0.4);
-    for (std::uint64_t i = 0; i < 64; ++i) {
+    for (std::uint64_t i = 0; i < PatchBlock::kRows; ++i) {
       const RandomSource one = of_patch.fork(i);
       const double a = azimuth + width * one.uniform(0, -1.0, 1.0);
       const double r = range * one.uniform(1, 0.3, 1.0);

@@ -117,12 +117,12 @@ TEST(LazyImage, DrawsNoMoreThanIsAsked) {
   const ImageCell cell = image_cell(scan.points()[5000]);
   EXPECT_LT(image.nearest_squared(cell.column, cell.row), std::numeric_limits<float>::infinity());
   EXPECT_GT(drawn(), 0u);
-  EXPECT_LT(drawn(), scan.size() / 6);
+  EXPECT_LT(drawn(), scan.size() / 4);
   const std::vector<std::uint32_t> rows{1, 2};
   image.draw_rows(rows);
   EXPECT_EQ(image.place(2), place_in_image(image_cell(scan.points()[2]).column, image_cell(scan.points()[2]).row));
   EXPECT_NEAR(image.squared(2), scan.points()[2].squaredNorm(), 1e-5 * scan.points()[2].squaredNorm());
-  EXPECT_LT(drawn(), scan.size() / 6);
+  EXPECT_LT(drawn(), scan.size() / 4);
   image.draw_all();
   EXPECT_EQ(drawn(), scan.size());
 }

@@ -35,12 +35,12 @@ struct SoughtPlace {
 /// The place of a box that moves with `drift` (m/s) in its frame, while the sensor turns with `turn_rps` (rad/s).
 SoughtPlace place_of(const OrientedBox& box, const Eigen::Vector3d& drift, double turn_rps);
 
-/// Bounds of up to 64 patches of a scan, 64 rows each. Rows that follow each other are seen near each other more often
+/// Bounds of up to 64 patches of a scan, 128 rows each. Rows that follow each other are seen near each other more often
 /// than not: side by side, or one above the other with the ranges of a whole line of sight. So each patch has a box of
 /// its own, whose first axis points from the sensor to its middle row.
 class PatchBlock {
  public:
-  static constexpr std::size_t kRows = 64;  ///< of a patch
+  static constexpr std::size_t kRows = 128;  ///< of a patch
   static constexpr std::size_t kPatches = 64;
   static constexpr std::size_t kBlock = kRows * kPatches;  ///< rows
   using Flags = std::array<std::uint8_t, kPatches>;

@@ -34,14 +34,14 @@ Scan columns(std::size_t rows, bool has_times) {
 
 TEST(PatchBlock, APatchWithPointsInAPlaceIsFoundWhileTheSensorTurns) {
   const Vector3d turning(0.3, -0.2, 1.0);
-  for (const std::size_t rows : {1u, 63u, 66u, 131u, 4096u}) {
+  for (const std::size_t rows : {1u, 127u, 130u, 259u, 8192u}) {
     for (const bool has_times : {false, true}) {
       const Scan scan = columns(rows, has_times);
       SensorMotion sensor;  // it does not move: what is sought does
       sensor.angular_velocity_sensor = turning;
       PatchBlock patches;
       patches.bound(scan.points(), scan.times());
-      ASSERT_EQ(patches.count(), (rows + 63) / 64);
+      ASSERT_EQ(patches.count(), (rows + PatchBlock::kRows - 1) / PatchBlock::kRows);
       std::size_t found = 0;
       std::size_t needed = 0;
       for (std::uint64_t k = 0; k < 200; ++k) {
@@ -72,7 +72,7 @@ TEST(PatchBlock, APatchWithPointsInAPlaceIsFoundWhileTheSensorTurns) {
                                               std::abs(level.x() * ahead.y() - level.y() * ahead.x()) <= 1.0
                                         : level.norm() <= place.reach_m;
           const bool is_there = is_inside && std::abs(apart.z()) <= place.half_height_m;
-          holds[i / 64] |= is_there ? 1 : 0;
+          holds[i / PatchBlock::kRows] |= is_there ? 1 : 0;
         }
         for (std::size_t patch = 0; patch < holds.size(); ++patch) {
           EXPECT_LE(holds[patch], may_hold[patch]) << patch << " of " << rows;
@@ -107,8 +107,8 @@ TEST(ScanPatches, ThoseInAPlaceHoldAllItsRows) {
     place.half_height_m = reach;
     std::vector<std::uint32_t> visited;
     patches.visit(place, [&](std::size_t begin, std::size_t end) {
-      ASSERT_EQ(begin % 64, 0u);
-      ASSERT_EQ(end, std::min<std::size_t>(begin + 64, 1700));
+      ASSERT_EQ(begin % PatchBlock::kRows, 0u);
+      ASSERT_EQ(end, std::min<std::size_t>(begin + PatchBlock::kRows, 1700));
       for (std::size_t row = begin; row < end; ++row) {
         visited.push_back(static_cast<std::uint32_t>(row));
       }
