@@ -20,6 +20,7 @@ REASONS = [
     (r"drive\.bag|rig\.mcap", "bags with these topics are made by tests/bags_test.cpp"),
     (r"check_simulation\.py", "takes minutes; scripts/check.sh"),
     (r"--seed 71 --frames 250", "takes minutes"),
+    (r"--seed 151 --frames 40|map_ghosts\.py", "needs SciPy, which nothing else does"),
 ]
 
 
