@@ -12,9 +12,7 @@ namespace {
 
 constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
 constexpr double kLowestVehicle_m = 1.5;
-constexpr double kCorner_m = 0.3;  // sides of vehicles end so far before front and rear, which are round
-constexpr double kNarrow_m = 1.4;  // those of what is less wide do not
-constexpr double kNoBox = 0.05;    // bodies end by this share of their size nearer or farther than boxes do
+constexpr double kNoBox = 0.05;  // bodies end by this share of their size nearer or farther than boxes do
 
 LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
   LikelyExtent extent;

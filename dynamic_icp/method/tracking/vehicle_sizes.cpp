@@ -15,12 +15,14 @@ namespace {
 constexpr double kAlike = 0.07;    // standard deviation of the logarithm of what is seen of vehicles that are alike ...
 constexpr double kScatter = 0.1;   // ... and of what is not seen of them
 constexpr double kUnlike = -12.0;  // logarithm of a weight that counts for nothing
-constexpr double kLogLargest = 4.0;
+constexpr double kLogLargest = 4.0;  // of 55 m, and 2 cm: no vehicle is longer or less wide
 
 struct Weighted {
   double value;
   double weight;
 };
+
+bool is_possible(const Eigen::Vector3d& log_size) { return log_size.cwiseAbs().maxCoeff() < kLogLargest; }
 
 /// Half of the weight lies at or below it.
 double median_of(std::span<Weighted> values) {
@@ -43,6 +45,9 @@ double median_of(std::span<Weighted> values) {
 
 void VehicleSizes::note(std::int64_t id, const Eigen::Vector3d& size_m) {
   const Vehicle vehicle{id, size_m.array().log()};
+  if (!is_possible(vehicle.log_size)) {
+    return;
+  }
   const auto known =
       std::find_if(vehicles_.begin(), vehicles_.end(), [&](const Vehicle& other) { return other.id == id; });
   if (known != vehicles_.end()) {
@@ -112,12 +117,8 @@ std::array<Belief, 3> VehicleSizes::complete(const std::array<SeenSize, 3>& seen
 void VehicleSizes::state(StateArchive& archive) {
   archive.each(vehicles_, [&](Vehicle& vehicle) { archive(vehicle.id, vehicle.log_size); });
   archive(next_);
-  archive.require(vehicles_.size() <= kMemory && next_ < kMemory &&
-                      std::ranges::all_of(vehicles_,
-                                          [](const Vehicle& vehicle) {
-                                            return vehicle.id > 0 &&
-                                                   vehicle.log_size.cwiseAbs().maxCoeff() < kLogLargest;
-                                          }),
+  const auto is_right = [](const Vehicle& vehicle) { return vehicle.id > 0 && is_possible(vehicle.log_size); };
+  archive.require(vehicles_.size() <= kMemory && next_ < kMemory && std::ranges::all_of(vehicles_, is_right),
                   "the sizes of vehicles");
 }
 

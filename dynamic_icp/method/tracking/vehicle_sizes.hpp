@@ -31,7 +31,8 @@ struct SeenSize {
 /// and of one that was seen in part the rest follows from p(x | seen).
 class VehicleSizes {
  public:
-  /// Length, width and height of a vehicle, m; what was said of it before is forgotten.
+  /// Length, width and height of a vehicle, m; what was said of it before is forgotten. Not of what is no vehicle, as
+  /// flat things are.
   void note(std::int64_t id, const Eigen::Vector3d& size_m);
 
   /// Length, width and height of a vehicle of which so much was seen: the medians, and the mean squares of the

@@ -65,6 +65,15 @@ TEST(VehicleSizes, TheLastThatWasSaidOfAVehicleCounts) {
   EXPECT_NEAR(sizes.complete({SeenSize{1.0, false}, kWide, kHigh}, kAny)[0].mean, 5.6, 1e-9);
 }
 
+TEST(VehicleSizes, WhatIsNoVehicleIsNotNoted) {
+  VehicleSizes sizes;
+  sizes.note(1, {5.6, 2.0, 0.0});
+  sizes.note(2, {200.0, 2.0, 2.4});
+  const auto all = sizes.complete({SeenSize{1.0, false}, kWide, SeenSize{0.0, false}}, kAny);
+  EXPECT_EQ(all[0].mean, kAny[0].mean);
+  EXPECT_EQ(all[2].mean, kAny[2].mean);
+}
+
 TEST(VehicleSizes, OldVehiclesMakeRoomForNewOnes) {
   VehicleSizes sizes;
   sizes.note(1, kVan);
