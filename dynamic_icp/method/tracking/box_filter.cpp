@@ -50,7 +50,7 @@ BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double
   BodyFilter::Vector state = BodyFilter::Vector::Zero();
   state.head<3>() = position;
   state[BodyFilter::kYaw] = yaw_rad.value_or(0.0);
-  BodyFilter::Vector variances;
+  BodyFilter::Vector variances = BodyFilter::Vector::Zero();
   variances.head<3>().setConstant(kReference_m * kReference_m);
   variances[BodyFilter::kYaw] = yaw_sigma_rad * yaw_sigma_rad;
   variances[BodyFilter::kYawRate] = yaw_sigma_rad > 0.0 ? config.prior_yaw_rate_rps * config.prior_yaw_rate_rps : 0.0;

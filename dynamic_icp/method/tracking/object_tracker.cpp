@@ -51,13 +51,13 @@ bool is_ground(const Detection& detection) {
 bool are_finite(std::span<const double> values) {
   bool finite = true;
   simd::run([&]() DYNAMIC_ICP_KERNEL {
-    constexpr std::size_t kTogether = 4 * simd::kLanes;
+    constexpr std::size_t kBlock = 4 * simd::kLanes;
     const double* const value = values.data();
     const std::size_t n = values.size();
     // What is no finite number has a difference to itself that is none, and so have sums with it.
     std::array<simd::Lanes, 4> sums{};
     std::size_t i = 0;
-    for (; i + kTogether <= n; i += kTogether) {
+    for (; i + kBlock <= n; i += kBlock) {
       for (std::size_t k = 0; k < sums.size(); ++k) {
         simd::Lanes four;
         simd::load(four, value + i + k * simd::kLanes);
