@@ -22,9 +22,10 @@ using Eigen::Vector3d;
 constexpr double kLargestInnovation = 3.0;
 constexpr double kWorstSquare = 16.0;     // of a normalised residual, for the likelihood: all may happen
 constexpr double kMinInformation = 1e-4;  // (s/m)^2: a standard deviation of 100 m/s
+constexpr double kClimb_s = 1.0;          // how long vertical velocities last
 constexpr double kFaceWalk_m = 0.02;      // per square root of a second: bodies are no boxes
 
-/// Covariance of the velocity's random walk over one second, along and across the motion.
+/// Covariance of the velocity's random walk over one second, in the ground: along and across the motion.
 Matrix3d velocity_noise(const Vector3d& velocity, const Matrix3d& level, const MotionNoise& noise) {
   const Vector3d up = level.col(2);
   const Vector3d horizontal = velocity - up.dot(velocity) * up;
@@ -32,8 +33,7 @@ Matrix3d velocity_noise(const Vector3d& velocity, const Matrix3d& level, const M
   const Vector3d along = speed > 0.0 ? Vector3d(horizontal / speed) : Vector3d(level.col(0));
   const Vector3d across = up.cross(along);
   return noise.along_mps * noise.along_mps * along * along.transpose() +
-         noise.across_mps * noise.across_mps * across * across.transpose() +
-         noise.vertical_mps * noise.vertical_mps * up * up.transpose();
+         noise.across_mps * noise.across_mps * across * across.transpose();
 }
 
 }  // namespace
@@ -43,7 +43,7 @@ ConfigFields fields(MotionNoise& noise) {
       {"along_mps", &noise.along_mps, 0.01, 100.0, "m/s/sqrt(s)", "random walk of an object's speed along its motion"},
       {"across_mps", &noise.across_mps, 0.01, 100.0, "m/s/sqrt(s)",
        "random walk of its velocity across the motion, beyond what its yaw rate explains"},
-      {"vertical_mps", &noise.vertical_mps, 0.01, 100.0, "m/s/sqrt(s)", "random walk of its vertical velocity"},
+      {"vertical_mps", &noise.vertical_mps, 0.01, 100.0, "m/s", "typical vertical velocity, which lasts a second"},
       {"yaw_rate_rps", &noise.yaw_rate_rps, 0.001, 100.0, "rad/s/sqrt(s)", "random walk of its yaw rate"},
   };
 }
@@ -53,28 +53,36 @@ double BodyFilter::yaw_sigma() const { return std::sqrt(P_(kYaw, kYaw)); }
 Matrix3d BodyFilter::axes() const { return level_ * upright_axes(yaw()); }
 
 void BodyFilter::predict(double dt_s, const MotionNoise& noise) {
+  const double t = std::abs(dt_s);
+  const double sign = dt_s < 0.0 ? -1.0 : 1.0;
   const Vector3d v = velocity();
   const Matrix3d turn = exp_so3(up() * (yaw_rate() * dt_s));
   const Matrix3d half_turn = exp_so3(up() * (0.5 * yaw_rate() * dt_s));
+  // Vertical velocities come back to zero with the time constant tau: an Ornstein-Uhlenbeck process.
+  const Matrix3d vertical = up() * up().transpose();
+  const double kept = std::exp(-t / kClimb_s);
+  const double climbing_s = kClimb_s * (1.0 - kept);  // the way for each m/s
+  const Matrix3d velocity_after = turn - (1.0 - kept) * vertical;
+  const Matrix3d way = dt_s * half_turn + (sign * climbing_s - dt_s) * vertical;
   Eigen::Matrix<double, kFirstFace, kFirstFace> F = Eigen::Matrix<double, kFirstFace, kFirstFace>::Identity();
-  F.block<3, 3>(0, kVelocity) = dt_s * half_turn;
+  F.block<3, 3>(0, kVelocity) = way;
   F.block<3, 1>(0, kYawRate) = 0.5 * dt_s * dt_s * up().cross(half_turn * v);
-  F.block<3, 3>(kVelocity, kVelocity) = turn;
+  F.block<3, 3>(kVelocity, kVelocity) = velocity_after;
   F.block<3, 1>(kVelocity, kYawRate) = dt_s * up().cross(turn * v);
   F(kYaw, kYawRate) = dt_s;
-  x_.head<3>() += dt_s * half_turn * v;
-  x_.segment<3>(kVelocity) = turn * v;
+  x_.head<3>() += way * v;
+  x_.segment<3>(kVelocity) = velocity_after * v;
   x_[kYaw] += dt_s * yaw_rate();
   P_.topRows<kFirstFace>() = (F * P_.topRows<kFirstFace>()).eval();
   P_.leftCols<kFirstFace>() = (P_.leftCols<kFirstFace>() * F.transpose()).eval();
   // White noise of the accelerations over t.
-  const double t = std::abs(dt_s);
-  const double sign = dt_s < 0.0 ? -1.0 : 1.0;
   const Matrix3d q = velocity_noise(v, level_, noise);
-  P_.block<3, 3>(0, 0) += t * t * t / 3.0 * q;
-  P_.block<3, 3>(0, kVelocity) += sign * t * t / 2.0 * q;
-  P_.block<3, 3>(kVelocity, 0) += sign * t * t / 2.0 * q;
-  P_.block<3, 3>(kVelocity, kVelocity) += t * q;
+  const Matrix3d climb = noise.vertical_mps * noise.vertical_mps * vertical;
+  const Matrix3d shared = sign * (t * t / 2.0 * q + climbing_s * climbing_s / kClimb_s * climb);
+  P_.block<3, 3>(0, 0) += t * t * t / 3.0 * q + (2.0 * kClimb_s * (t - climbing_s) - climbing_s * climbing_s) * climb;
+  P_.block<3, 3>(0, kVelocity) += shared;
+  P_.block<3, 3>(kVelocity, 0) += shared;
+  P_.block<3, 3>(kVelocity, kVelocity) += t * q + (1.0 - kept * kept) * climb;
   if (P_(kYaw, kYaw) > 0.0) {  // else a body without heading
     const double turning = noise.yaw_rate_rps * noise.yaw_rate_rps;
     P_(kYaw, kYaw) += t * t * t / 3.0 * turning;

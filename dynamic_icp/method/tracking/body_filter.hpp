@@ -14,18 +14,20 @@ class StateArchive;
 
 namespace dynamic_icp::tracking {
 
-/// How motions change between scans: random walks of velocity and yaw rate, in units per square root of a second.
+/// How motions change between scans: random walks of velocity and yaw rate, in units per square root of a second, but
+/// for the vertical velocity: what stands on the ground follows it.
 struct MotionNoise {
-  double along_mps = 1.5;     ///< of the velocity, along the motion
-  double across_mps = 0.5;    ///< across it, beyond what the yaw rate explains
-  double vertical_mps = 0.2;  ///< upwards
-  double yaw_rate_rps = 0.3;  ///< of the yaw rate
+  double along_mps = 1.5;      ///< of the velocity, along the motion
+  double across_mps = 0.5;     ///< across it, beyond what the yaw rate explains
+  double vertical_mps = 0.25;  ///< m/s: standard deviation of the vertical velocity, which lasts a second
+  double yaw_rate_rps = 0.3;   ///< of the yaw rate
 };
 
 ConfigFields fields(MotionNoise& noise);
 
 /// Extended Kalman filter of an upright box that moves with nearly constant speed and yaw rate:
-///   x = [p; v; yaw; omega; d],  p' = v,  v' = omega z x v,  yaw' = omega,  omega' = 0,  d' = 0,  each plus noise,
+///   x = [p; v; yaw; omega; d],  p' = v,  v' = omega z x v - z (z . v) / 1 s,  yaw' = omega,  omega' = 0,  d' = 0,
+/// each plus noise,
 /// with a point p of the body, its velocity v, and d_f, how far each face lies from p. z is the third of the `level`
 /// axes, which are those of the ground in the world. That the point is no special one, and that faces never seen are
 /// unknown, makes parts that come into view no motion: d changes, and not p.

@@ -56,7 +56,7 @@ BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double
   variances[BodyFilter::kYawRate] = yaw_sigma_rad > 0.0 ? config.prior_yaw_rate_rps * config.prior_yaw_rate_rps : 0.0;
   variances.tail<kFaces.size()>().setConstant(kUnknownFace_m * kUnknownFace_m);
   BodyFilter::Matrix covariance = variances.asDiagonal();
-  const Vector3d speeds(config.prior_speed_mps, config.prior_speed_mps, config.prior_climb_mps);
+  const Vector3d speeds(config.prior_speed_mps, config.prior_speed_mps, config.motion.vertical_mps);
   covariance.block<3, 3>(BodyFilter::kVelocity, BodyFilter::kVelocity) =
       level * speeds.cwiseAbs2().asDiagonal() * level.transpose();
   return {state, covariance, level};

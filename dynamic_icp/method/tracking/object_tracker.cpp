@@ -14,6 +14,7 @@
 #include "dynamic_icp/method/base/simd.hpp"
 #include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/tracking/expected_rows.hpp"
+#include "dynamic_icp/method/tracking/ground_fit.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
 #include "dynamic_icp/method/tracking/track_merging.hpp"
 
@@ -110,11 +111,7 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
   ego_error_ = {T_world_sensor.translation(),
                 T_world_sensor.linear() * ego_covariance * T_world_sensor.linear().transpose()};
 
-  if (support) {
-    const Vector3d normal = T_world_sensor.linear() * support->normal;
-    ground_.update(normal, support->offset_m + normal.dot(T_world_sensor.translation()), T_world_sensor.translation());
-  }
-
+  find_ground(scan, is_moving, support, T_world_sensor);
   const TrackingInput input = prepare(scan, measured, radial, is_moving, sensor, workers);
   expect(input.stamp_s, sensor, [](const TrackRecord&) { return true; });
   gather_traffic(sensor);
@@ -137,6 +134,31 @@ const ScanPatches& ObjectTracker::patches_of(const Scan& scan, const ScanPatches
   }
   patches_.bound(scan, workers);
   return patches_;
+}
+
+/// Where the scan shows it: near the plane that carries the scene, or near where it was.
+void ObjectTracker::find_ground(const Scan& scan, std::span<const std::uint8_t> is_moving,
+                                const std::optional<ego_motion::SupportPlane>& support,
+                                const Eigen::Isometry3d& T_world_sensor) {
+  const Eigen::Matrix3d R_world_sensor = T_world_sensor.linear();
+  const Vector3d& sensor_world = T_world_sensor.translation();
+  std::optional<GroundFit> fit;
+  const auto try_from = [&](const ego_motion::SupportPlane& start) {
+    if (const std::optional<GroundFit> other = fit_ground(start, scan.points(), is_moving)) {
+      fit = fit ? likelier_ground(*fit, *other) : *other;
+    }
+  };
+  if (const Ground& last = ground_.ground(); last.offset_m) {
+    try_from({R_world_sensor.transpose() * last.up(), *last.offset_m - last.up().dot(sensor_world)});
+  }
+  if (support) {
+    try_from(*support);
+  }
+  if (fit || support) {
+    const ego_motion::SupportPlane& plane = fit ? fit->plane : *support;
+    const Vector3d normal = R_world_sensor * plane.normal;
+    ground_.update(normal, plane.offset_m + normal.dot(sensor_world), sensor_world);
+  }
 }
 
 /// Of what lies in the directions in which the points were measured; after patches_of. The sensors of a rig are not

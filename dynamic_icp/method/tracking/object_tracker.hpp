@@ -81,6 +81,8 @@ class ObjectTracker {
  private:
   [[nodiscard]] std::span<TrackRecord> living();
   void keep(TrackRecord& entry);
+  void find_ground(const Scan& scan, std::span<const std::uint8_t> is_moving,
+                   const std::optional<ego_motion::SupportPlane>& support, const Eigen::Isometry3d& T_world_sensor);
   const ScanPatches& patches_of(const Scan& scan, const ScanPatches* measured, const Workers& workers);
   const ScanPatches& sights_of(const Scan& scan, const ScanPatches* measured, const Workers& workers);
   TrackingInput prepare(const Scan& scan, const ScanPatches* measured, std::span<const double> radial,

@@ -15,7 +15,6 @@ ConfigFields fields(TrackConfig& config) {
       {"yaw_sigma_rad", &config.yaw_sigma_rad, 1e-4, 3.0, "rad",
        "difference between the direction of an object's sides and of its motion"},
       {"prior_speed_mps", &config.prior_speed_mps, 0.1, 1000.0, "m/s", "typical horizontal speed of new objects"},
-      {"prior_climb_mps", &config.prior_climb_mps, 0.01, 1000.0, "m/s", "typical vertical speed of new objects"},
       {"prior_yaw_rate_rps", &config.prior_yaw_rate_rps, 1e-3, 100.0, "rad/s", "typical yaw rate of new objects"},
       {"largest_width_m", &config.largest_width_m, 0.0, 100.0, "m", "greatest likely width of vehicles"},
   };

@@ -18,7 +18,6 @@ struct TrackConfig {
   double face_sigma_growth = 0.002;  ///< m per metre of range
   double yaw_sigma_rad = 0.05;       ///< between the sides of a body and its motion
   double prior_speed_mps = 20.0;     ///< standard deviation of either horizontal part of a velocity
-  double prior_climb_mps = 0.7;      ///< standard deviation of the vertical part: objects move nearly horizontally
   double prior_yaw_rate_rps = 0.35;  ///< standard deviation
   double largest_width_m = 2.6;      ///< no vehicle is wider
 };
