@@ -17,6 +17,8 @@ namespace {
 constexpr double kCell_m = 6.0;
 constexpr int kMaxReach = 3;  // cells
 constexpr double kBin_m = 0.05;
+constexpr double kBump_m = 0.1;  // the ground is so far from the plane ...
+constexpr double kBend = 0.02;   // ... and so much of the distance
 constexpr double kHighest_m = 1.0;               // of the lowest point that is seen of an object above the ground ...
 constexpr double kDeepest_m = 0.3;               // ... and below it
 constexpr std::size_t kMaxGroundPoints = 16384;  // of a scan: more would not make heights better
@@ -137,6 +139,7 @@ Ground GroundHeights::below(const Eigen::Vector3d& lowest) const {
   if (!ground_.offset_m) {
     return result;
   }
+  const double farthest_m = kBump_m + kBend * (lowest - sensor_world_).norm();
   // The nearest four cells, and where nothing is seen of the ground there, more of them.
   for (int reach = 1; patches_ != nullptr && reach <= kMaxReach; ++reach) {
     const CellRange range = cells_around(lowest, reach);
@@ -150,7 +153,10 @@ Ground GroundHeights::below(const Eigen::Vector3d& lowest) const {
         }
       });
     }
-    const auto most = static_cast<std::size_t>(std::max_element(sum.begin(), sum.end()) - sum.begin());
+    const auto allowed = static_cast<std::ptrdiff_t>(farthest_m / kBin_m);
+    const auto low = sum.begin() + std::max<std::ptrdiff_t>(0, kBins / 2 - allowed);
+    const auto high = sum.begin() + std::min<std::ptrdiff_t>(kBins, kBins / 2 + allowed);
+    const auto most = static_cast<std::size_t>(std::max_element(low, high) - sum.begin());
     std::uint32_t count = 0;
     double height = 0.0;
     for (std::size_t i = most > 0 ? most - 1 : 0; i <= std::min(most + 1, sum.size() - 1); ++i) {
