@@ -31,7 +31,7 @@ constexpr int kMoreBeyond = 2;          // so many points farther beyond an end 
 constexpr double kFaceWidth_m = 0.8;    // what is seen so wide at an end that looks at the sensor is a face
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
 constexpr double kCarHeight_m = 1.8;    // what is higher has no hood, or a short one
-constexpr double kFullHeight = 0.4;  // below this share of their height bodies reach as far as anywhere: hoods, bumpers
+constexpr double kHood_m = 0.6;  // below this height bodies reach as far as anywhere: hoods, bumpers
 
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there and `lower_m`
 /// below.
@@ -152,7 +152,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   const double ground =
       detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
   const double height = views[2].seen.high - ground;
-  const double full = height < kCarHeight_m ? ground + kFullHeight * height : views[2].seen.high;
+  const double full = height < kCarHeight_m ? ground + kHood_m : views[2].seen.high;
   const auto is_end = [&](const EndView& end, const Vector3d& outward) {
     if (end.has_points_beyond) {
       return false;
