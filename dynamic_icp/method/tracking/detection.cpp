@@ -6,6 +6,12 @@
 #include <cstddef>
 
 namespace dynamic_icp::tracking {
+namespace {
+
+constexpr double kLookBelow_m = 0.4;  // at least
+constexpr double kNearer_m = 1.0;     // what hides something is so much nearer
+
+}  // namespace
 
 Eigen::Vector3d mean_of(std::span<const Eigen::Vector3d> points) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
@@ -56,7 +62,11 @@ void make_detection(const Scan& scan, std::span<const double> radial, std::span<
       lowest_m = height_m;
     }
   }
-  detection.ground = heights.below(*lowest);
+  // What stands behind something else is seen from some height on.
+  const double step_m = std::max(kLookBelow_m, 3.0 * RangeImage::cell_width() * (*lowest - detection.sensor).norm());
+  const bool is_hidden_below =
+      view != nullptr && view->hides(detection.T_sensor_world * (*lowest - step_m * up), kNearer_m);
+  detection.ground = heights.below(*lowest, is_hidden_below);
   detection.motion.reset();
   detection.view = view;
 }

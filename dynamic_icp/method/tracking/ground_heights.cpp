@@ -20,6 +20,7 @@ constexpr double kBin_m = 0.05;
 constexpr double kBump_m = 0.1;  // the ground is so far from the plane ...
 constexpr double kBend = 0.02;   // ... and so much of the distance
 constexpr double kHighest_m = 1.0;               // of the lowest point that is seen of an object above the ground ...
+constexpr double kHighestHidden_m = 3.0;         // ... where something hides what is below ...
 constexpr double kDeepest_m = 0.3;               // ... and below it
 constexpr std::size_t kMaxGroundPoints = 16384;  // of a scan: more would not make heights better
 constexpr std::uint32_t kMinBinPoints = 6;       // of the bin with most points and its neighbours
@@ -134,7 +135,7 @@ GroundHeights::CellRange GroundHeights::cells_around(const Eigen::Vector3d& poin
   return {first(from_sensor.x()), last(from_sensor.x()), first(from_sensor.y()), last(from_sensor.y())};
 }
 
-Ground GroundHeights::below(const Eigen::Vector3d& lowest) const {
+Ground GroundHeights::below(const Eigen::Vector3d& lowest, bool is_hidden_below) const {
   Ground result = ground_;
   if (!ground_.offset_m) {
     return result;
@@ -169,7 +170,7 @@ Ground GroundHeights::below(const Eigen::Vector3d& lowest) const {
     }
   }
   const double height = ground_.up().dot(lowest) - *ground_.offset_m;
-  if (!(height > -kDeepest_m && height < kHighest_m)) {
+  if (!(height > -kDeepest_m && height < (is_hidden_below ? kHighestHidden_m : kHighest_m))) {
     result.offset_m.reset();
   }
   return result;

@@ -36,8 +36,9 @@ class GroundHeights {
   [[nodiscard]] Eigen::Vector3d up() const { return ground_.up(); }
 
   /// The ground below something whose lowest point seen is `lowest` (m, world). Where none is seen near by it is that
-  /// of the whole scan, unless that lies far below or above the point.
-  [[nodiscard]] Ground below(const Eigen::Vector3d& lowest) const;
+  /// of the whole scan, unless that lies far below or above the point; `is_hidden_below`: what is below the point could
+  /// not be seen.
+  [[nodiscard]] Ground below(const Eigen::Vector3d& lowest, bool is_hidden_below = false) const;
 
  private:
   static constexpr int kCells = 32;  // in each direction
