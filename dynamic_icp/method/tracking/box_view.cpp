@@ -31,17 +31,17 @@ constexpr int kMoreBeyond = 2;          // so many points farther beyond an end 
 constexpr double kFaceWidth_m = 0.8;    // what is seen so wide at an end that looks at the sensor is a face
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
 constexpr double kCarHeight_m = 1.8;    // what is higher has no hood, or a short one
-constexpr double kHood_m = 0.6;  // below this height bodies reach as far as anywhere: hoods, bumpers
+constexpr double kHood_m = 0.6;         // below this height bodies reach as far as anywhere: hoods, bumpers
 
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there and `lower_m`
-/// below.
-bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, const Vector3d& W,
+/// below. `shows_face`: what is seen there is a face rather than the edge of a side.
+bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, bool shows_face, const Vector3d& W,
                  const Detection& detection) {
   const Vector3d to_end = end - detection.sensor;
   const double range = to_end.norm();
   const Vector3d sight = to_end / range;
   const Vector3d sideways = outward - outward.dot(sight) * sight;
-  if (sideways.norm() < kEndOn) {
+  if (sideways.norm() < kEndOn && (shows_face || outward.dot(sight) > 0.0)) {
     return outward.dot(sight) < 0.0;  // the near end of what is seen end-on; the body hides the far one
   }
   // Points of the body that hardly move along the line of sight are missing among the moving ones.
@@ -161,7 +161,8 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     if (end.width > kFaceWidth_m && facing > kLooksAtSensor) {
       return true;
     }
-    return is_true_end(end.middle, outward, axes.col(2).dot(end.middle - reference) - full, W, detection);
+    return is_true_end(end.middle, outward, axes.col(2).dot(end.middle - reference) - full, end.width > kEndDepth_m, W,
+                       detection);
   };
   for (const int axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);
@@ -181,7 +182,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     }
   }
   // What is below bodies is hidden by them.
-  views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), 0.0, W, detection);
+  views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), 0.0, true, W, detection);
   return views;
 }
 
