@@ -111,8 +111,10 @@ bool BoxFilter::is_fast_for_sure() const {
   return !is_person_like(0.0, 0.0, speed - kSureSigmas * sigma);
 }
 
+/// Of what is hidden on all sides there may be any amount more.
 bool BoxFilter::may_be_person() const {
-  return !was_vehicle_ && is_person_like(std::max(span(0), span(1)), span(2), body_.velocity().norm());
+  return !was_vehicle_ && (is_whole(0) || is_whole(1)) &&
+         is_person_like(std::max(span(0), span(1)), span(2), body_.velocity().norm());
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
