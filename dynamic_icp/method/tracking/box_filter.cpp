@@ -175,6 +175,7 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
     correct_face(high_face(axis), view.high, view.seen.high, detection, config);
     correct_face(low_face(axis), view.low, -view.seen.low, detection, config);
   }
+  top_is_cut_ = views[2].high.is_cut;
   // What was seen, from where the reference is now.
   for (const int axis : {0, 1}) {
     const double shift = body_.axes().col(axis).dot(body_.position() - reference);
@@ -354,7 +355,7 @@ double BoxFilter::span(int axis) const { return extent(axis).length(); }
 SeenExtent BoxFilter::extent(int axis) const {
   const Face high = high_face(axis);
   const Face low = low_face(axis);
-  return {reach(high), reach(low), is_known(high), is_known(low)};
+  return {reach(high), reach(low), is_known(high), is_known(low), axis == 2 && top_is_cut_ && !is_known(high)};
 }
 
 BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {
@@ -394,8 +395,8 @@ BoxFilter BoxFilter::blank() {
 }
 
 void BoxFilter::state(StateArchive& archive) {
-  archive(body_, has_heading_, was_vehicle_, least_, faces_, log_likelihood_, size_log_likelihood_, log_prior_,
-          spread_mps_, signal_mps_);
+  archive(body_, has_heading_, was_vehicle_, top_is_cut_, least_, faces_, log_likelihood_, size_log_likelihood_,
+          log_prior_, spread_mps_, signal_mps_);
   for (std::optional<Interval>& seen : last_seen_) {
     bool is_known = seen.has_value();
     archive(is_known);

@@ -116,6 +116,7 @@ class BoxFilter {
   BodyFilter body_;
   bool has_heading_;
   bool was_vehicle_ = false;                            ///< faster than any person, at any time
+  bool top_is_cut_ = false;                             ///< by the edge of the field of view, at last
   std::array<double, kFaces.size()> least_{};           ///< m from the reference: points were seen so far out
   std::array<FaceView, kFaces.size()> faces_{};         ///< by Face
   std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last

@@ -73,6 +73,12 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, b
   return true;
 }
 
+/// Whether the upper edge of the field of view is right above the top.
+bool is_cut_above(const Vector3d& top, const Vector3d& up, const Detection& detection) {
+  const double step = 3.0 * RangeImage::cell_width() * (top - detection.sensor).norm();
+  return detection.view != nullptr && detection.view->is_above_all(detection.T_sensor_world * (top + step * up));
+}
+
 /// Where points (m, from the reference) are along each axis.
 using PlacesAlong = std::array<std::span<double>, 3>;
 
@@ -183,6 +189,10 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   }
   // What is below bodies is hidden by them.
   views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), 0.0, true, W, detection);
+  const Vector3d up = axes.col(2);
+  const Vector3d& below_top = views[2].high.middle;
+  views[2].high.is_cut =
+      is_cut_above(below_top + (views[2].seen.high - up.dot(below_top - reference)) * up, up, detection);
   return views;
 }
 

@@ -22,6 +22,7 @@ struct EndView {
   double width = 0.0;                                ///< m, across the axis, of what is seen at the end
   bool has_points_beyond = false;                    ///< far from it, few: seen over something nearer
   bool is_true = false;                              ///< whether the body ends there, too
+  bool is_cut = false;                               ///< of the top: by the upper edge of the field of view
 };
 
 /// What a detection shows along one axis of a box.

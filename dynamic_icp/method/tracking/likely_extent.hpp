@@ -15,6 +15,7 @@ struct SeenExtent {
   double low = 0.0;
   bool ends_high = false;  ///< the body ends there; else it reaches at least so far
   bool ends_low = false;
+  bool is_cut_high = false;  ///< by the edge of the field of view
 
   [[nodiscard]] double length() const { return std::max(0.0, high + low); }
   [[nodiscard]] bool is_whole() const { return ends_high && ends_low; }
@@ -33,8 +34,8 @@ struct LikelyExtent {
 
 /// Of a body along, to the left and up, with what was not seen filled in by what is likely: of vehicles that are like
 /// others that were seen whole (`sizes`), or else of any (size_prior). Where neither of its sides was seen from end to
-/// end, the highest point seen may be that of a hood. Nothing is guessed of a person, and of a body without heading
-/// only that there may be more.
+/// end, the highest point seen may be that of a hood; what the upper edge of the field of view cuts off may be as high
+/// as vehicles are. Nothing is guessed of a person, and of a body without heading only that there may be more.
 std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen, bool has_heading, bool may_be_person,
                                            const VehicleSizes& sizes = {});
 
