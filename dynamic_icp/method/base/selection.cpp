@@ -6,6 +6,9 @@
 #include <bit>
 #include <cstddef>
 
+#include "dynamic_icp/method/base/lanes.hpp"
+#include "dynamic_icp/method/base/simd.hpp"
+
 namespace dynamic_icp {
 namespace {
 
@@ -53,6 +56,32 @@ void select_place(std::span<double> values, std::size_t place) {
     }
   }
   std::nth_element(first, at, last);
+}
+
+std::size_t first_outside(std::span<const double> values, double low, double high) {
+  std::size_t found = 0;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    constexpr std::size_t kTogether = 2 * simd::kLanes;
+    const double* const value = values.data();
+    const std::size_t n = values.size();
+    const simd::Lanes lowest = low - simd::Lanes{};
+    const simd::Lanes highest = high - simd::Lanes{};
+    std::size_t i = 0;
+    for (; i + kTogether <= n; i += kTogether) {
+      simd::Lanes a, b;
+      simd::load(a, value + i);
+      simd::load(b, value + i + simd::kLanes);
+      const simd::LaneMask inside = (a >= lowest) & (b >= lowest) & (a <= highest) & (b <= highest);
+      if ((inside[0] & inside[1] & inside[2] & inside[3]) == 0) {
+        break;
+      }
+    }
+    while (i < n && value[i] >= low && value[i] <= high) {
+      ++i;
+    }
+    found = i;
+  });
+  return found;
 }
 
 }  // namespace dynamic_icp

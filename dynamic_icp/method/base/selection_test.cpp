@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <limits>
 #include <string>
 #include <utility>
 #include <vector>
@@ -58,6 +59,27 @@ TEST(SelectPlace, PutsTheValueThereThatSortingPutsThere) {
       }
     }
   }
+}
+
+TEST(FirstOutside, IsTheFirstOfWhateverNumberWhereverItStands) {
+  using Limits = std::numeric_limits<double>;
+  const double above = std::nextafter(2.0, 3.0);
+  for (std::size_t n = 0; n < 40; ++n) {
+    Values values(n, 2.0);  // the limits belong to it
+    for (std::size_t i = 0; i < n; i += 2) {
+      values[i] = -1.0;
+    }
+    EXPECT_EQ(first_outside(values, -1.0, 2.0), n);
+    for (std::size_t place = 0; place < n; ++place) {
+      for (const double other : {above, -1.5, Limits::infinity(), -Limits::infinity(), Limits::quiet_NaN()}) {
+        Values some = values;
+        some[place] = other;
+        some.back() = place + 1 == n ? other : 7.0;
+        EXPECT_EQ(first_outside(some, -1.0, 2.0), place) << other << " of " << n;
+      }
+    }
+  }
+  EXPECT_EQ(first_outside(Values{1.0, Limits::max(), Limits::infinity()}, Limits::lowest(), Limits::max()), 2u);
 }
 
 }  // namespace

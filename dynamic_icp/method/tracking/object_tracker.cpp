@@ -3,15 +3,14 @@
 #include "dynamic_icp/method/tracking/object_tracker.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <optional>
 #include <stdexcept>
 #include <utility>
 
-#include "dynamic_icp/method/base/lanes.hpp"
-#include "dynamic_icp/method/base/simd.hpp"
+#include "dynamic_icp/method/base/selection.hpp"
 #include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/tracking/expected_rows.hpp"
 #include "dynamic_icp/method/tracking/ground_fit.hpp"
@@ -25,7 +24,6 @@ using Eigen::Vector3d;
 
 constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
 constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
-constexpr int kSureScans = 5;          // sizes are known after so many
 constexpr double kMinHeight_m = 0.25;  // of what is no ground
 constexpr int kMany = 1 << 30;         // no drive has so many objects
 constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
@@ -50,28 +48,8 @@ bool is_ground(const Detection& detection) {
 }
 
 bool are_finite(std::span<const double> values) {
-  bool finite = true;
-  simd::run([&]() DYNAMIC_ICP_KERNEL {
-    constexpr std::size_t kBlock = 4 * simd::kLanes;
-    const double* const value = values.data();
-    const std::size_t n = values.size();
-    // What is no finite number has a difference to itself that is none, and so have sums with it.
-    std::array<simd::Lanes, 4> sums{};
-    std::size_t i = 0;
-    for (; i + kBlock <= n; i += kBlock) {
-      for (std::size_t k = 0; k < sums.size(); ++k) {
-        simd::Lanes four;
-        simd::load(four, value + i + k * simd::kLanes);
-        sums[k] += four - four;
-      }
-    }
-    double sum = simd::sum((sums[0] + sums[1]) + (sums[2] + sums[3]));
-    for (; i < n; ++i) {
-      sum += value[i] - value[i];
-    }
-    finite = sum == 0.0;
-  });
-  return finite;
+  using Limits = std::numeric_limits<double>;
+  return first_outside(values, Limits::lowest(), Limits::max()) == values.size();
 }
 
 }  // namespace
@@ -119,7 +97,9 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
   collect_members(input, workers);
   initiate_tracks(input, workers);
   delete_tracks(input);
-  note_sizes();
+  for (const TrackRecord& entry : living()) {
+    entry.note_size(sizes_);
+  }
   objects_.resize(std::max(objects_.size(), living_));
   workers.for_each(living_, 1, [&](std::size_t k) {
     entries_[k].report(T_world_sensor, ego_covariance, ground_.ground().up(), sizes_, config_, objects_[k]);
@@ -402,16 +382,6 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
     } else if (entry.members.size() > same->members.size()) {
       entry.take_name_of(*same);
       std::swap(*same, entry);
-    }
-  }
-}
-
-/// Others resemble what was seen whole.
-void ObjectTracker::note_sizes() {
-  for (const TrackRecord& entry : living()) {
-    const bool is_seen = entry.confirmed && entry.missed == 0 && entry.seen >= kSureScans;
-    if (is_seen && entry.predicted.is_sure_of_heading() && entry.predicted.best().is_whole_vehicle()) {
-      sizes_.note(entry.id, entry.now.box.size);
     }
   }
 }

@@ -97,7 +97,6 @@ class ObjectTracker {
   void initiate_tracks(const TrackingInput& input, const Workers& workers);
   void begin(const TrackingInput& input, std::span<const std::uint32_t> rows, TrackRecord& entry) const;
   void delete_tracks(const TrackingInput& input);
-  void note_sizes();
 
   TrackerConfig config_;
   std::vector<TrackRecord> entries_;  ///< the tracks, and behind them memory for more

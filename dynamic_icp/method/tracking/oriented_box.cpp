@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "dynamic_icp/method/base/lanes.hpp"
+#include "dynamic_icp/method/base/selection.hpp"
 #include "dynamic_icp/method/base/simd.hpp"
 #include "dynamic_icp/method/tracking/coordinates.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
@@ -32,13 +33,6 @@ struct PlanePoints {
   PlaneValues y;
   std::size_t count = 0;
 };
-
-/// The value that has `rank` others before it.
-double ranked(std::vector<double>& values, std::size_t rank) {
-  const auto place = values.begin() + static_cast<std::ptrdiff_t>(rank);
-  std::nth_element(values.begin(), place, values.end());
-  return *place;
-}
 
 constexpr std::size_t kFew = 8;
 
@@ -67,38 +61,15 @@ Interval span_without_few(std::span<const double> values, std::size_t rank) {
     low.add(value, rank + 1);
     high.add(-value, rank + 1);
   };
-  // Bodies are seen from one side to the other: after both ends few values are among the lowest or the highest, and it
-  // is asked for some at once whether any is.
-  constexpr std::size_t kAskedTogether = 2 * simd::kLanes;
-  std::size_t i = rank + 1;
-  const std::size_t end = std::max(i, values.size() - i);
-  std::ranges::for_each(values.first(i), add);
+  // Bodies are seen from one side to the other: after both ends few values are among the lowest or the highest.
+  const std::size_t begin = rank + 1;
+  const std::size_t end = std::max(begin, values.size() - begin);
+  std::ranges::for_each(values.first(begin), add);
   std::ranges::for_each(values.subspan(end), add);
-  const auto is_any_outermost = [&] {
-    bool is_any = false;
-    simd::run([&]() DYNAMIC_ICP_KERNEL {
-      const double* const value = values.data();
-      const std::size_t n = end;
-      const simd::Lanes lowest = low.values[rank] - simd::Lanes{};
-      const simd::Lanes highest = -high.values[rank] - simd::Lanes{};
-      for (; i + kAskedTogether <= n; i += kAskedTogether) {
-        simd::Lanes a, b;
-        simd::load(a, value + i);
-        simd::load(b, value + i + simd::kLanes);
-        const simd::LaneMask outermost = (a < lowest) | (b < lowest) | (a > highest) | (b > highest);
-        if ((outermost[0] | outermost[1] | outermost[2] | outermost[3]) != 0) {
-          is_any = true;
-          return;
-        }
-      }
-    });
-    return is_any;
-  };
-  while (is_any_outermost()) {
-    std::ranges::for_each(values.subspan(i, kAskedTogether), add);
-    i += kAskedTogether;
+  std::size_t i = begin;
+  while ((i += first_outside(values.subspan(i, end - i), low.values[rank], -high.values[rank])) < end) {
+    add(values[i++]);
   }
-  std::ranges::for_each(values.subspan(i, end - i), add);
   return {low.values[rank], -high.values[rank]};
 }
 
@@ -262,9 +233,11 @@ Interval span_of(std::span<const double> values, double trim) {
   if (rank < kFew) {
     return span_without_few(values, rank);
   }
-  std::vector<double> sorted(values.begin(), values.end());
-  const double low = ranked(sorted, rank);
-  return {low, ranked(sorted, sorted.size() - 1 - rank)};
+  std::vector<double> parted(values.begin(), values.end());
+  const std::size_t last = parted.size() - 1;
+  select_place(parted, rank);
+  select_place(std::span(parted).subspan(rank), last - 2 * rank);
+  return {parted[rank], parted[last - rank]};
 }
 
 Interval span_along(std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& origin, const Eigen::Vector3d& axis,

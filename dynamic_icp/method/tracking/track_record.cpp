@@ -15,6 +15,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
+constexpr int kSureScans = 5;             // sizes are known after so many
 constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
 constexpr int kMaxScans = 1 << 30;        // no drive has so many
 
@@ -66,6 +67,13 @@ bool TrackRecord::is_over(double stamp_s, const TrackerConfig& config) const {
   const double variance = now.centre_covariance.topLeftCorner<2, 2>().trace();
   const bool is_vague = variance > config.coast_sigma_m * config.coast_sigma_m;
   return (missed > 0 && (is_vague || stamp_s - track.time_s() > config.coast_s)) || stamp_s - moved_s > config.stand_s;
+}
+
+void TrackRecord::note_size(VehicleSizes& sizes) const {
+  const bool is_seen = confirmed && missed == 0 && seen >= kSureScans;
+  if (is_seen && predicted.is_sure_of_heading() && predicted.best().is_whole_vehicle()) {
+    sizes.note(id, now.box.size);
+  }
 }
 
 void TrackRecord::take_name_of(const TrackRecord& older) {

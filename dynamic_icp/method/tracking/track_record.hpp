@@ -63,6 +63,9 @@ struct TrackRecord {
   /// Whether nothing is to be expected of it any more.
   [[nodiscard]] bool is_over(double stamp_s, const TrackerConfig& config) const;
 
+  /// Tells what it measures if it was seen whole in the present scan: others resemble it.
+  void note_size(VehicleSizes& sizes) const;
+
   /// Goes on as the older one of two that turned out to be one object.
   void take_name_of(const TrackRecord& older);
 
