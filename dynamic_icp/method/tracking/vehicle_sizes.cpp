@@ -70,10 +70,13 @@ std::array<Belief, 3> VehicleSizes::complete(const std::array<SeenSize, 3>& seen
     log_seen[axis] = std::log(std::max(1e-3, seen[axis].m));
     density *= seen[axis].is_whole ? peak : 1.0;
   }
-  // Of the vehicles that it resembles, and last of none.
-  std::array<Weighted, kMemory + 1> like;
-  std::array<const Vehicle*, kMemory> which;
+  struct Resembling {
+    const Vehicle* vehicle;
+    double weight;
+  };
+  std::array<Resembling, kMemory> memory;
   std::size_t count = 0;
+  double sum = 1.0;  // that of none
   for (const Vehicle& vehicle : vehicles_) {
     double log_weight = 0.0;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -82,32 +85,32 @@ std::array<Belief, 3> VehicleSizes::complete(const std::array<SeenSize, 3>& seen
       log_weight -= 0.5 * off * off;
     }
     if (log_weight > kUnlike) {
-      which[count] = &vehicle;
-      like[count++].weight = density * std::exp(log_weight);
+      memory[count] = {&vehicle, density * std::exp(log_weight)};
+      sum += memory[count++].weight;
     }
   }
+  const std::span<const Resembling> resembling = std::span(memory).first(count);
   std::array<Belief, 3> result = otherwise;
-  if (count == 0 || density == 1.0) {  // what little is seen may be a part of any vehicle
+  if (resembling.empty() || density == 1.0) {  // what little is seen may be a part of any vehicle
     return result;
   }
   for (std::size_t axis = 0; axis < 3; ++axis) {
     if (seen[axis].is_whole) {
       continue;
     }
-    std::array<Weighted, kMemory + 1> values = like;
-    double sum = 1.0;
-    for (std::size_t i = 0; i < count; ++i) {
-      values[i].value = std::max(seen[axis].m, std::exp(which[i]->log_size[static_cast<Eigen::Index>(axis)]));
-      sum += values[i].weight;
-    }
+    std::array<Weighted, kMemory + 1> values;  // of those that it resembles, and last of none
     values[count] = {otherwise[axis].mean, 1.0};
+    std::ranges::transform(resembling, values.begin(), [&](const Resembling& one) {
+      const double m = std::exp(one.vehicle->log_size[static_cast<Eigen::Index>(axis)]);
+      return Weighted{std::max(seen[axis].m, m), one.weight};
+    });
     const double median = median_of(std::span(values).first(count + 1));
     double square = otherwise[axis].variance;
     for (const Weighted& one : std::span(values).first(count + 1)) {
       square += one.weight * (one.value - median) * (one.value - median);
     }
-    for (std::size_t i = 0; i < count; ++i) {
-      square += like[i].weight * kScatter * kScatter * median * median;
+    for (const Resembling& one : resembling) {
+      square += one.weight * kScatter * kScatter * median * median;
     }
     result[axis] = {median, square / sum};
   }
