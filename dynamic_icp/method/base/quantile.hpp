@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <span>
@@ -29,7 +30,16 @@ inline double quantile_among(std::span<double> values, double share) {
 /// The same of values that stay as they are.
 inline double quantile(std::vector<double> values, double share) { return quantile_among(values, share); }
 
-/// The middle value, of an even number the upper of the two; 0 of none.
+/// The middle value, of an even number the upper of the two, so that it is a value that was measured; 0 of none.
 inline double median(std::vector<double> values) { return quantile(std::move(values), 0.5); }
+
+/// The middle value, of an even number the mean of the two, as it is usually defined; of at least one finite value.
+/// Brings the values into another order.
+inline double interpolated_median_among(std::span<double> values) {
+  const std::size_t upper = values.size() / 2;
+  select_place(values, upper);
+  return values.size() % 2 == 1 ? values[upper]
+                                : 0.5 * (values[upper] + *std::ranges::max_element(values.first(upper)));
+}
 
 }  // namespace dynamic_icp

@@ -34,6 +34,24 @@ TEST(Quantile, MedianIsTheMiddleValueOrTheUpperOfTwo) {
   EXPECT_EQ(median({2.0}), 2.0);
 }
 
+TEST(Quantile, InterpolatedMedianIsHalfWayBetweenTheTwoInTheMiddle) {
+  const auto found = [](std::vector<double> values) { return interpolated_median_among(values); };
+  EXPECT_EQ(found({5.0, -1.0, 3.0}), 3.0);
+  EXPECT_EQ(found({5.0, -1.0, 3.0, 4.0}), 3.5);
+  EXPECT_EQ(found({7.0, 2.0}), 4.5);
+  EXPECT_EQ(found({2.0}), 2.0);
+  const RandomSource random(9);
+  for (std::uint64_t n = 1; n < 40; ++n) {
+    std::vector<double> values;
+    for (std::uint64_t i = 0; i < n; ++i) {
+      values.push_back(std::round(4.0 * random.fork(n).normal(i)));  // some are equal
+    }
+    std::vector<double> ascending = values;
+    std::ranges::sort(ascending);
+    EXPECT_EQ(found(values), 0.5 * (ascending[(n - 1) / 2] + ascending[n / 2])) << n;
+  }
+}
+
 TEST(Quantile, OfNothingIsZero) {
   EXPECT_EQ(quantile({}, 0.3), 0.0);
   EXPECT_EQ(median({}), 0.0);

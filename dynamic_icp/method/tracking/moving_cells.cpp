@@ -12,7 +12,7 @@
 #include <span>
 #include <utility>
 
-#include "dynamic_icp/method/base/selection.hpp"
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 #include "dynamic_icp/method/spatial/cell_order.hpp"
 #include "dynamic_icp/method/tracking/flags.hpp"
@@ -63,14 +63,6 @@ void take_means(MovingCell& cell) {
   cell.centroid /= count;
   cell.direction /= count;
   cell.time_s /= count;
-}
-
-/// The median of some values, at least one; of an even number the mean of the two in the middle. Changes their order.
-double median_among(std::span<double> values) {
-  const std::size_t middle = values.size() / 2;
-  select_place(values, middle);
-  return values.size() % 2 == 1 ? values[middle]
-                                : 0.5 * (values[middle] + *std::ranges::max_element(values.first(middle)));
 }
 
 /// Whether a cell may lie beside the gap where the radial velocity of its body passes zero.
@@ -322,8 +314,8 @@ void gather_cells(const Scan& scan, std::span<const double> radial, std::span<co
   }
   workers.for_each(order.cells(), kCellBlock, [&](std::size_t c) {
     take_means(result.cells[c]);
-    result.cells[c].radial_mps =
-        median_among(std::span(result.radial).subspan(order.first[c], order.first[c + 1] - order.first[c]));
+    result.cells[c].radial_mps = interpolated_median_among(
+        std::span(result.radial).subspan(order.first[c], order.first[c + 1] - order.first[c]));
   });
 }
 

@@ -21,7 +21,7 @@ namespace dynamic_icp::tracking {
 struct MovingCell {
   Eigen::Vector3d centroid = Eigen::Vector3d::Zero();   ///< m, sensor frame: mean of its points
   Eigen::Vector3d direction = Eigen::Vector3d::Zero();  ///< mean line of sight, about unit
-  double radial_mps = 0.0;                              ///< median of the radial velocities over ground
+  double radial_mps = 0.0;                              ///< interpolated median of the radial velocities over ground
   double time_s = 0.0;                                  ///< mean time after the stamp; 0 without times
   std::uint32_t count = 0;                              ///< number of its points
 };

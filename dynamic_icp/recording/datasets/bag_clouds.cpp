@@ -9,6 +9,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/recording/datasets/bag_stamps.hpp"
 #include "dynamic_icp/recording/datasets/bag_topics.hpp"
 #include "dynamic_icp/recording/messages/messages.hpp"
@@ -113,12 +114,7 @@ double period_of(const CloudTopic& topic, double otherwise_s) {
   for (std::size_t i = 1; i < topic.stamps.size(); ++i) {
     periods.push_back(seconds_between(topic.stamps[i - 1], topic.stamps[i]));
   }
-  if (periods.empty()) {
-    return otherwise_s;
-  }
-  const auto middle = periods.begin() + static_cast<std::ptrdiff_t>(periods.size() / 2);
-  std::nth_element(periods.begin(), middle, periods.end());
-  return *middle;
+  return periods.empty() ? otherwise_s : median(std::move(periods));
 }
 
 }  // namespace dynamic_icp::datasets

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include <fmt/format.h>
+
+#include "dynamic_icp/method/base/quantile.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -51,11 +54,10 @@ std::string what_is_wrong(std::span<const std::int64_t> recorded_ns, std::span<c
       distances_s.push_back(distance_s(headers[i], recorded_ns[i]));
     }
   }
-  const auto middle = distances_s.begin() + static_cast<std::ptrdiff_t>(distances_s.size() / 2);
-  std::nth_element(distances_s.begin(), middle, distances_s.end());
+  const double middle_s = median(std::move(distances_s));
   return fmt::format("{}lie {:.0f} s {} the times of recording",
                      zeros == 0 ? "" : fmt::format("are 0 in {} of {} messages, or ", zeros, headers.size()),
-                     std::abs(*middle), *middle < 0.0 ? "before" : "after");
+                     std::abs(middle_s), middle_s < 0.0 ? "before" : "after");
 }
 
 }  // namespace

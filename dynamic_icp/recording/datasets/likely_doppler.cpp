@@ -6,8 +6,11 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Cholesky>
+
+#include "dynamic_icp/method/base/quantile.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -18,12 +21,6 @@ constexpr int kRounds = 15;
 constexpr double kExplained = 1.0 / 3.0;  // of the spread may be left
 constexpr double kMinSpread = 0.05;
 constexpr double kAngleTolerance = 0.02;  // rad
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
 
 /// Median distance from the median.
 double spread_of(const std::vector<double>& values) {

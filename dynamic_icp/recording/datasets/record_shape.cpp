@@ -10,10 +10,12 @@
 #include <numeric>
 #include <span>
 #include <system_error>
+#include <utility>
 
 #include <Eigen/Core>
 #include <fmt/format.h>
 
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/recording/datasets/likely_doppler.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
 #include "dynamic_icp/recording/formats/half_floats.hpp"
@@ -71,12 +73,6 @@ double jump(const std::vector<double>& scaled, std::size_t lag) {
   return pairs == 0 ? INFINITY : sum / static_cast<double>(pairs);
 }
 
-double middle_of(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
-}
-
 /// The numbers of one column, NaN and infinite ones left out.
 std::vector<double> column_of(const std::vector<double>& scaled, std::size_t column, std::size_t stride) {
   std::vector<double> values;
@@ -96,8 +92,7 @@ bool are_alike(std::vector<double> one, std::vector<double> other) {
   const auto is_constant = [](const std::vector<double>& values) {
     return std::all_of(values.begin(), values.end(), [&](double value) { return value == values.front(); });
   };
-  return is_constant(one) == is_constant(other) &&
-         std::abs(middle_of(std::move(one)) - middle_of(std::move(other))) <= 1.0;
+  return is_constant(one) == is_constant(other) && std::abs(median(std::move(one)) - median(std::move(other))) <= 1.0;
 }
 
 /// Whether records of `stride` numbers are no records of `shorter` ones that take turns, such as those of several
@@ -192,13 +187,13 @@ bool may_be_seen_at(const Eigen::Vector3d& v, const PlainPoints& plain) {
     ranges.push_back(plain.points[i].norm());
     residuals.push_back(std::abs(plain.doppler[i] - v.dot(plain.points[i]) / ranges.back()));
   }
-  const double range = middle_of(ranges);
+  const double range = median(ranges);
   std::transform(ranges.begin(), ranges.end(), ranges.begin(), [&](double r) { return std::abs(r - range); });
   const Eigen::Vector3d& front = plain.points.front();
   const bool is_flat = std::all_of(plain.points.begin(), plain.points.end(),
                                    [&](const Eigen::Vector3d& p) { return p.y() == front.y() || p.z() == front.z(); });
-  return !is_flat && middle_of(std::move(ranges)) > kLeastVariation * range &&
-         middle_of(std::move(residuals)) < std::max(kUnexplained_mps, kUnexplainedShare * v.norm());
+  return !is_flat && median(std::move(ranges)) > kLeastVariation * range &&
+         median(std::move(residuals)) < std::max(kUnexplained_mps, kUnexplainedShare * v.norm());
 }
 
 /// Whether numbers make sense as x, y, z and Doppler though they repeat at another length, as those of several beams

@@ -7,6 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "dynamic_icp/method/base/quantile.hpp"
+
 namespace dynamic_icp::figures {
 namespace {
 
@@ -94,14 +96,7 @@ MapChoice choose_map(const std::vector<Path>& estimates, const Path& ground_trut
     }
   }
   // What a metre may shrink to. A drive that stands still hides nothing.
-  double least = 0.0;
-  if (base) {
-    least = metres_per_px(*base, width, height);
-  } else if (!scales.empty()) {
-    const auto middle = scales.begin() + static_cast<std::ptrdiff_t>(scales.size() / 2);
-    std::nth_element(scales.begin(), middle, scales.end());
-    least = *middle;
-  }
+  const double least = base ? metres_per_px(*base, width, height) : median(std::move(scales));
   const double most = least > 0.0 ? kShrinking * least : std::numeric_limits<double>::infinity();
 
   MapChoice choice;
