@@ -99,14 +99,9 @@ void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& worker
   number_sectors(rows);
 }
 
-void without_rows(const DopplerRows& rows, const spatial::CellOrder& order, std::span<const std::uint8_t> flags,
+void without_rows(const DopplerRows& rows, spatial::CellOrder& order, std::span<const std::uint8_t> flags,
                   DopplerRows& kept) {
-  std::vector<std::uint32_t> flagged(rows.cells(), 0);
-  for (std::size_t i = 0; i < flags.size(); ++i) {
-    if (flags[i] != 0) {  // few are
-      ++flagged[order.cell[i]];
-    }
-  }
+  order.count_items([&](std::size_t i) { return flags[i] != 0; });
   kept.reference_time_s = rows.reference_time_s;
   kept.duration_s = rows.duration_s;
   kept.takes_time = rows.takes_time;
@@ -120,11 +115,11 @@ void without_rows(const DopplerRows& rows, const spatial::CellOrder& order, std:
   kept.key.clear();
   kept.on_support.clear();
   for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
-    const std::uint32_t begin = rows.first[cell];
-    const std::uint32_t end = rows.first[cell + 1];
-    if (2 * flagged[cell] > end - begin) {
+    if (order.counted_most_of(cell)) {
       continue;
     }
+    const std::uint32_t begin = rows.first[cell];
+    const std::uint32_t end = rows.first[cell + 1];
     for (const auto column : kColumns) {
       (kept.*column).insert((kept.*column).end(), (rows.*column).begin() + begin, (rows.*column).begin() + end);
     }

@@ -49,8 +49,8 @@ void sort_into_cells(const Scan& scan, double cell_size_m, const Workers& worker
                      DopplerRows& rows);
 
 /// The rows of the cells of which at most half of the points are flagged (one flag per point of the scan, which `order`
-/// sorted), into the memory of `kept`.
-void without_rows(const DopplerRows& rows, const spatial::CellOrder& order, std::span<const std::uint8_t> flags,
+/// sorted and counts), into the memory of `kept`.
+void without_rows(const DopplerRows& rows, spatial::CellOrder& order, std::span<const std::uint8_t> flags,
                   DopplerRows& kept);
 
 /// Rows that vote on what is static, and the weight of each vote; the weights sum to one.

@@ -173,15 +173,11 @@ std::optional<SupportPlane> find_support_plane(const Scan& scan, const spatial::
   return find_support_plane(2 * of_several.size() > all.size() ? of_several : all);  // all of a sparse scan
 }
 
-std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::CellOrder& order,
-                                           const SupportPlane& plane) {
-  std::vector<std::uint32_t> on(order.cells(), 0);
-  for (std::size_t i = 0; i < scan.size(); ++i) {
-    on[order.cell[i]] += is_on(plane, scan.points()[i]) ? 1 : 0;
-  }
+std::vector<std::uint8_t> cells_on_support(const Scan& scan, spatial::CellOrder& order, const SupportPlane& plane) {
+  order.count_items([&](std::size_t i) { return is_on(plane, scan.points()[i]); });
   std::vector<std::uint8_t> result(order.cells());
   for (std::size_t cell = 0; cell < result.size(); ++cell) {
-    result[cell] = 2 * on[cell] > order.first[cell + 1] - order.first[cell] ? 1 : 0;
+    result[cell] = order.counted_most_of(cell) ? 1 : 0;
   }
   return result;
 }

@@ -30,8 +30,7 @@ std::optional<SupportPlane> find_support_plane(const std::vector<Eigen::Vector3d
 /// The same of a scan, by one point of each cell near by (`order` sorted its points).
 std::optional<SupportPlane> find_support_plane(const Scan& scan, const spatial::CellOrder& order);
 
-/// Of the cells of a scan: 1 where most points are on the plane.
-std::vector<std::uint8_t> cells_on_support(const Scan& scan, const spatial::CellOrder& order,
-                                           const SupportPlane& plane);
+/// Of the cells of a scan, which `order` sorted and counts: 1 where most points are on the plane.
+std::vector<std::uint8_t> cells_on_support(const Scan& scan, spatial::CellOrder& order, const SupportPlane& plane);
 
 }  // namespace dynamic_icp::ego_motion

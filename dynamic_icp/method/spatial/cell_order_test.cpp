@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <numeric>
 #include <random>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -33,6 +34,23 @@ TEST(CellOrder, IsAStableSortByTheFirstItemOfEachCell) {
       EXPECT_EQ(order.place(item), place);
       EXPECT_EQ(order.cell[item], order.numbers.find(order.keys[item]));
       EXPECT_EQ(order.rank[item] == 0, first_of(item) == static_cast<std::ptrdiff_t>(item));
+    }
+  }
+}
+
+TEST(CellOrder, TellsWhereMostItemsAreCounted) {
+  CellOrder order;
+  for (const std::vector<std::uint64_t>& keys : {std::vector<std::uint64_t>{7, 5, 7, 5, 5, 7, 9, 7}, {3, 3, 3}, {}}) {
+    order.keys = keys;
+    order.sort();
+    const auto is_counted = [](std::size_t item) { return item % 2 == 0; };
+    order.count_items(is_counted);  // again: nothing of the last items is counted
+    for (std::size_t c = 0; c < order.cells(); ++c) {
+      int more = 0;
+      for (std::size_t item = 0; item < keys.size(); ++item) {
+        more += order.cell[item] != c ? 0 : is_counted(item) ? 1 : -1;
+      }
+      EXPECT_EQ(order.counted_most_of(c), more > 0) << "cell " << c << " of " << order.cells();
     }
   }
 }

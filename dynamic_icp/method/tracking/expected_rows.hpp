@@ -20,11 +20,6 @@ namespace dynamic_icp::tracking {
 void flag_rows(const Scan& scan, const ScanPatches& patches, std::span<const double> radial, const SensorMotion& sensor,
                std::span<const Expectation> expectations, const Workers& workers, std::vector<std::uint8_t>& is_moving);
 
-/// Clears `is_moving` of the rows whose points are nearer to their sensor than `range_m`, in a scan that is not
-/// deskewed.
-void clear_near_rows(const Scan& scan, const ScanPatches& patches, double range_m,
-                     std::vector<std::uint8_t>& is_moving);
-
 /// The rows, ascending, of the points that are not among the moving ones in the box of an expectation, without the
 /// lowest part of the box, where the ground may be.
 void find_static_rows(const TrackingInput& input, const Expectation& expected, std::vector<std::uint32_t>& rows);

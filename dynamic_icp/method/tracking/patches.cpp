@@ -142,4 +142,29 @@ void ScanPatches::bound(std::span<const Eigen::Vector3d> points, std::span<const
   });
 }
 
+void clear_near_rows(const Scan& scan, const ScanPatches& patches, double range_m,
+                     std::vector<std::uint8_t>& is_moving) {
+  const auto clear_around = [&](const Eigen::Vector3d& origin, const auto& is_of_sensor) {
+    SoughtPlace place;
+    place.centre = origin;
+    place.reach_m = range_m;
+    place.half_height_m = range_m;
+    patches.visit(place, [&](std::size_t begin, std::size_t end) {
+      visit_flagged(is_moving, begin, end, [&](std::size_t row) {
+        if (is_of_sensor(row) && (scan.points()[row] - origin).squaredNorm() < range_m * range_m) {
+          is_moving[row] = 0;
+        }
+      });
+    });
+  };
+  if (!scan.is_of_rig()) {
+    clear_around(Eigen::Vector3d::Zero(), [](std::size_t) { return true; });
+    return;
+  }
+  for (std::size_t sensor = 0; sensor < scan.mountings().size(); ++sensor) {
+    clear_around(scan.mountings()[sensor].translation(),
+                 [&](std::size_t row) { return scan.channels().sensor[row] == sensor; });
+  }
+}
+
 }  // namespace dynamic_icp::tracking

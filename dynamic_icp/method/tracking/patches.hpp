@@ -107,4 +107,9 @@ class ScanPatches {
   std::vector<PatchBlock> blocks_;
 };
 
+/// Clears `is_moving` of the rows whose points are nearer to their sensor than `range_m`, in a scan that is not
+/// deskewed. `patches`: of the scan.
+void clear_near_rows(const Scan& scan, const ScanPatches& patches, double range_m,
+                     std::vector<std::uint8_t>& is_moving);
+
 }  // namespace dynamic_icp::tracking
