@@ -117,23 +117,6 @@ TEST_F(OutputFolderTest, AnEmptyFolderAndATrailingSlashAreFine) {
   EXPECT_EQ(read(out_ / "run.json"), "{}");
 }
 
-TEST_F(OutputFolderTest, RemovesWhatAKilledProcessLeftButNotWhatOneStillWrites) {
-  const pid_t child = ::fork();
-  if (child == 0) {
-    const OutputFolder killed(out_, kRun, false);
-    ::raise(SIGKILL);
-  }
-  ::waitpid(child, nullptr, 0);
-  EXPECT_EQ(entries(), 1u) << "the staging folder of the killed process";
-  const OutputFolder running(parent_ / "other", kRun, false);
-  {
-    OutputFolder folder(out_, kRun, false);
-    EXPECT_EQ(entries(), 2u) << "this one's and the other's";
-    EXPECT_TRUE(fs::exists(folder.path()));
-  }
-  EXPECT_TRUE(fs::exists(running.path()));
-}
-
 /// Starts a result there in a process that is killed then; `name` is a file in it.
 void leave_behind(const fs::path& place, const char* name) {
   const pid_t child = ::fork();
@@ -143,6 +126,18 @@ void leave_behind(const fs::path& place, const char* name) {
     ::raise(SIGKILL);
   }
   ::waitpid(child, nullptr, 0);
+}
+
+TEST_F(OutputFolderTest, RemovesWhatAKilledProcessLeftButNotWhatOneStillWrites) {
+  leave_behind(out_, "run.json");
+  EXPECT_EQ(entries(), 1u) << "the staging folder of the killed process";
+  const OutputFolder running(parent_ / "other", kRun, false);
+  {
+    OutputFolder folder(out_, kRun, false);
+    EXPECT_EQ(entries(), 2u) << "this one's and the other's";
+    EXPECT_TRUE(fs::exists(folder.path()));
+  }
+  EXPECT_TRUE(fs::exists(running.path()));
 }
 
 TEST_F(OutputFolderTest, RemovesWhatKilledProcessesLeftOfOtherResultsBesideIt) {
