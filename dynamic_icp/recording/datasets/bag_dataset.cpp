@@ -12,6 +12,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/datasets/bag_clouds.hpp"
+#include "dynamic_icp/recording/datasets/bag_groups.hpp"
 #include "dynamic_icp/recording/datasets/bag_topic_choice.hpp"
 #include "dynamic_icp/recording/datasets/bag_topics.hpp"
 #include "dynamic_icp/recording/datasets/bag_transforms.hpp"
@@ -29,7 +30,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kClockWentBack = 10;  // messages in a row from before the last scan
-constexpr std::size_t kLateSensor = 3;      // scans after which a sensor of a rig is not waited for
 
 class BagDataset final : public GrowingBagDataset {
  public:
@@ -81,9 +81,9 @@ class BagDataset final : public GrowingBagDataset {
 
   void settle(bool is_over) override {
     const CloudTopic& first = topics_.front();
-    while (stamps_.size() < first.stamps.size() && (is_over || has_others(stamps_.size()))) {
+    while (stamps_.size() < first.stamps.size() && (is_over || is_settled(topics_, stamps_.size()))) {
       if (is_rig()) {
-        groups_.push_back(group_of(stamps_.size()));
+        groups_.push_back(nearest_clouds(topics_, stamps_.size(), half_period_s_));
       }
       stamps_.push_back(first.stamps[stamps_.size()]);
     }
@@ -287,43 +287,6 @@ class BagDataset final : public GrowingBagDataset {
                                   unknown - sensor.begin(), *unknown, mountings_.size()));
     }
     raw.mountings = mountings_;
-  }
-
-  /// The last of some stamps that is before another one, or the first; their number where there are none.
-  static std::size_t last_before(const std::vector<Stamp>& stamps, Stamp stamp) {
-    const auto at = std::lower_bound(stamps.begin(), stamps.end(), stamp);
-    return static_cast<std::size_t>((at == stamps.begin() ? at : std::prev(at)) - stamps.begin());
-  }
-
-  /// Whether nothing that may still come changes which clouds of the others go with one of the first topic.
-  [[nodiscard]] bool has_others(std::size_t index) const {
-    const std::vector<Stamp>& stamps = topics_.front().stamps;
-    return std::all_of(topics_.begin(), topics_.end(), [&](const CloudTopic& topic) {
-      return &topic == &topics_.front() ? !is_rig() || index + 1 < stamps.size()
-                                        : (!topic.stamps.empty() && topic.stamps.back() >= stamps[index]) ||
-                                              index + kLateSensor < stamps.size();
-    });
-  }
-
-  /// For a cloud of the first topic the nearest of each of the others.
-  [[nodiscard]] std::vector<std::size_t> group_of(std::size_t index) const {
-    const std::vector<Stamp>& stamps = topics_.front().stamps;
-    const auto begin = stamps.begin() + static_cast<std::ptrdiff_t>(index);
-    const std::vector<Stamp> this_and_next(begin, begin + std::min<std::ptrdiff_t>(2, stamps.end() - begin));
-    std::vector<std::size_t> before;
-    std::vector<std::vector<Stamp>> near;
-    for (std::size_t k = 1; k < topics_.size(); ++k) {
-      const std::vector<Stamp>& others = topics_[k].stamps;
-      before.push_back(last_before(others, stamps[index]));
-      const std::size_t end = std::min(others.size(), before.back() + 3);
-      near.emplace_back(others.begin() + static_cast<std::ptrdiff_t>(before.back()),
-                        others.begin() + static_cast<std::ptrdiff_t>(end));
-    }
-    std::vector<std::size_t> group = nearest_in_time(this_and_next, near, half_period_s_).front();
-    for (std::size_t k = 0; k < group.size(); ++k) {
-      group[k] = group[k] == kAbsent ? kAbsent : group[k] + before[k];
-    }
-    return group;
   }
 
   void tell_absent() {

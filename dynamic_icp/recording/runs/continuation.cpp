@@ -148,6 +148,18 @@ Continuation continuation(const formats::OutputFolder& output, const fs::path& f
   }
 }
 
+void refuse_other_scans(const Checkpoint& from, const datasets::Dataset& dataset, const datasets::ScanRange& scans,
+                        const fs::path& final) {
+  if (from.next <= scans.begin || from.next >= scans.end) {
+    throw DataError(fmt::format("{}: cannot resume the run: its checkpoint is of scan {}, expected {} to {}",
+                                final.string(), from.next, scans.begin + 1, scans.end - 1));
+  }
+  if (checksum(dataset.scan(from.next - 1)) != from.last_scan) {
+    throw DataError(fmt::format("{}: cannot resume the run: {} is not what it was", final.string(),
+                                dataset.scan_file(from.next - 1).string()));
+  }
+}
+
 void remove_files_of_run(const fs::path& staging) {
   for (const std::string_view name : kWrittenAlong) {
     fs::remove_all(staging / name);

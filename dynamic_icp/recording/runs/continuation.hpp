@@ -7,6 +7,8 @@
 #include <optional>
 #include <string>
 
+#include "dynamic_icp/recording/datasets/dataset.hpp"
+#include "dynamic_icp/recording/datasets/scan_range.hpp"
 #include "dynamic_icp/recording/formats/output_folder.hpp"
 #include "dynamic_icp/recording/runs/checkpoint.hpp"
 
@@ -28,6 +30,11 @@ struct Continuation {
 Continuation continuation(const formats::OutputFolder& output, const std::filesystem::path& final,
                           const std::string& identity, bool replace,
                           const std::function<void(const std::string& text)>& notice);
+
+/// Throws DataError naming the run in `final` where it cannot go on from a checkpoint with the `scans` of a recording:
+/// they end before it or begin behind it, or the last one that was done is not what it was.
+void refuse_other_scans(const Checkpoint& from, const datasets::Dataset& dataset, const datasets::ScanRange& scans,
+                        const std::filesystem::path& final);
 
 /// Removes what a run wrote scan by scan into its staging folder.
 void remove_files_of_run(const std::filesystem::path& staging);

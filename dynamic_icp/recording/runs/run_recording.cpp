@@ -223,14 +223,7 @@ class Run {
     if (!from_) {
       return nullptr;
     }
-    if (from_->next <= scans_.begin || from_->next >= scans_.end) {
-      throw DataError(fmt::format("{}: cannot resume the run: its checkpoint is of scan {}, expected {} to {}",
-                                  settings_.output.string(), from_->next, scans_.begin + 1, scans_.end - 1));
-    }
-    if (checksum(dataset_.scan(from_->next - 1)) != from_->last_scan) {
-      throw DataError(fmt::format("{}: cannot resume the run: {} is not what it was", settings_.output.string(),
-                                  dataset_.scan_file(from_->next - 1).string()));
-    }
+    refuse_other_scans(*from_, dataset_, scans_, settings_.output);
     const RunResult before = result_;
     std::string fault;
     try {
