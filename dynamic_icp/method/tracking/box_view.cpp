@@ -115,6 +115,9 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
     end.gap = kMaxGap_m;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double depth = inwards(along[i]);
+      if (depth > kMaxGap_m) {
+        continue;  // as are most: neither at the end nor beside it
+      }
       if (depth <= kEndDepth_m) {
         end.middle += points[i];
         count += 1.0;
