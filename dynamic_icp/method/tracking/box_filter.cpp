@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
-#include <numbers>
+#include <utility>
 
 #include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/tracking/size_prior.hpp"
@@ -330,65 +330,6 @@ double BoxFilter::size_log_likelihood(const TrackConfig& config) const {
 bool BoxFilter::is_known(Face face) const { return body_.variance(face) < kKnownFace_m * kKnownFace_m; }
 
 double BoxFilter::reach(Face face) const { return is_known(face) ? body_.distance(face) : least_[index_of(face)]; }
-
-OrientedBox BoxFilter::seen_box() const {
-  OrientedBox box{body_.position(), body_.axes(), Vector3d::Zero()};
-  for (const int axis : {0, 1, 2}) {
-    const double high = reach(high_face(axis));
-    const double low = reach(low_face(axis));
-    box.size[axis] = std::max(0.0, high + low);
-    box.centre += 0.5 * (high - low) * box.axes.col(axis);
-  }
-  return box;
-}
-
-bool BoxFilter::is_whole_vehicle() const {
-  return has_heading_ && was_vehicle_ && is_whole(0) && is_whole(1) && is_whole(2);
-}
-
-bool BoxFilter::is_whole(int axis) const { return extent(axis).is_whole(); }
-
-double BoxFilter::likely_width() const { return is_whole(1) ? span(1) : typical_width_by_height(span(2)).mean; }
-
-double BoxFilter::span(int axis) const { return extent(axis).length(); }
-
-SeenExtent BoxFilter::extent(int axis) const {
-  const Face high = high_face(axis);
-  const Face low = low_face(axis);
-  return {reach(high), reach(low), is_known(high), is_known(low), axis == 2 && top_is_cut_ && !is_known(high)};
-}
-
-BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {
-  const std::array<LikelyExtent, 3> along =
-      likely_extents({extent(0), extent(1), extent(2)}, has_heading_, may_be_person(), sizes);
-  const Matrix3d axes = body_.axes();
-  const Vector3d middle(along[0].middle, along[1].middle, along[2].middle);
-  BoxEstimate estimate;
-  estimate.box = {body_.position() + axes * middle, axes, {along[0].size, along[1].size, along[2].size}};
-  estimate.faces = faces_;
-  estimate.velocity = body_.velocity_at(middle);
-  estimate.velocity_covariance = body_.velocity_covariance_at(middle);
-  Eigen::Matrix<double, 3, BodyFilter::kStates> H = Eigen::Matrix<double, 3, BodyFilter::kStates>::Zero();
-  H.leftCols<3>().setIdentity();
-  H.col(BodyFilter::kYaw) = axes.col(2).cross(axes * middle);
-  Matrix3d hidden = Matrix3d::Zero();
-  for (const int axis : {0, 1, 2}) {
-    const LikelyExtent& likely = along[static_cast<std::size_t>(axis)];
-    H.col(BodyFilter::kFirstFace + 2 * axis) = likely.weight_high * axes.col(axis);
-    H.col(BodyFilter::kFirstFace + 2 * axis + 1) = -likely.weight_low * axes.col(axis);
-    hidden(axis, axis) = likely.variance;
-  }
-  estimate.centre_covariance = H * body_.covariance() * H.transpose() + axes * hidden * axes.transpose();
-  if (!has_heading_) {  // the side that the motion is nearest to counts as the front
-    const Vector3d v = axes.transpose() * body_.velocity();
-    const double quarters = std::round(std::atan2(v.y(), v.x()) / (0.5 * std::numbers::pi));
-    estimate.box.axes = body_.level() * upright_axes(body_.yaw() + 0.5 * std::numbers::pi * quarters);
-    if (std::abs(quarters) == 1.0) {
-      std::swap(estimate.box.size.x(), estimate.box.size.y());
-    }
-  }
-  return estimate;
-}
 
 BoxFilter BoxFilter::blank() {
   return BoxFilter(BodyFilter(BodyFilter::Vector::Zero(), BodyFilter::Matrix::Zero(), Eigen::Matrix3d::Identity()));
