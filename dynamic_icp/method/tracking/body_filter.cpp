@@ -73,8 +73,8 @@ void BodyFilter::predict(double dt_s, const MotionNoise& noise) {
   x_.head<3>() += way * v;
   x_.segment<3>(kVelocity) = velocity_after * v;
   x_[kYaw] += dt_s * yaw_rate();
-  P_.topRows<kFirstFace>() = (F * P_.topRows<kFirstFace>()).eval();
-  P_.leftCols<kFirstFace>() = (P_.leftCols<kFirstFace>() * F.transpose()).eval();
+  P_.topRows<kFirstFace>() = F.lazyProduct(P_.topRows<kFirstFace>()).eval();
+  P_.leftCols<kFirstFace>() = P_.leftCols<kFirstFace>().lazyProduct(F.transpose()).eval();
   // White noise of the accelerations over t.
   const Matrix3d q = velocity_noise(v, level_, noise);
   const Matrix3d climb = noise.vertical_mps * noise.vertical_mps * vertical;
@@ -202,8 +202,8 @@ Matrix3d BodyFilter::velocity_covariance_at(const Vector3d& from_reference) cons
   return H * P_ * H.transpose();
 }
 
-double BodyFilter::correct_doppler(const ClusterVelocity& measured, const Vector3d& sensor_world,
-                                   const Matrix3d& floor) {
+double BodyFilter::correct_doppler(const ClusterVelocity& measured, const Vector3d& sensor_world, const Matrix3d& floor,
+                                   double beam_sigma_mps) {
   double log_likelihood = 0.0;
   // The parts along the eigenvectors are independent of each other; those without information drop out.
   const Eigen::SelfAdjointEigenSolver<Matrix3d> eigen(measured.information);
@@ -215,7 +215,8 @@ double BodyFilter::correct_doppler(const ClusterVelocity& measured, const Vector
     const Vector3d e = eigen.eigenvectors().col(i);
     const Row H = e.transpose() * doppler_jacobian(sensor_world);
     const double residual = e.dot(measured.W - doppler_velocity(sensor_world));
-    log_likelihood += correct(H, residual, 1.0 / information + e.dot(floor * e));
+    const double of_beams = beam_sigma_mps * beam_sigma_mps * eigen.eigenvalues()[2] / information;
+    log_likelihood += correct(H, residual, 1.0 / information + of_beams + e.dot(floor * e));
   }
   return log_likelihood;
 }

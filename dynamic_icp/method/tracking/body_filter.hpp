@@ -89,9 +89,10 @@ class BodyFilter {
   double correct_sideslip(double variance);
 
   /// The Doppler of one scan, W and information in world axes. `floor` is the covariance of what the regression cannot
-  /// know: errors all points share.
+  /// know: errors all points share. `beam_sigma_mps`: the standard deviation of the mean of errors that differ from
+  /// beam to beam; what is narrow seems to move across the line of sight by them.
   double correct_doppler(const ClusterVelocity& measured, const Eigen::Vector3d& sensor_world,
-                         const Eigen::Matrix3d& floor);
+                         const Eigen::Matrix3d& floor, double beam_sigma_mps = 0.0);
 
   /// The same body with the box pointing backwards: what was ahead is behind.
   void turn_around();

@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <numeric>
 #include <optional>
 #include <string>
 #include <utility>
@@ -232,6 +234,38 @@ TEST(BoxFilter, OfAPartWithoutHeadingTheCentreIsAsUncertainAsWhatIsHidden) {
   const BoxEstimate estimate = filter.estimate();
   const Eigen::Vector3d deviations = estimate.centre_covariance.diagonal().cwiseSqrt();
   EXPECT_GT(deviations.head<2>().maxCoeff(), 0.5);
+}
+
+TEST(BoxFilter, WhatIsHiddenOnAllSidesIsNoPerson) {
+  // Something as small and slow as a person: seen to its ends, and between two things that are nearer.
+  const TrackConfig config;
+  for (const bool is_between : {false, true}) {
+    RawScan raw;
+    for (double y = -0.25; y <= 0.25; y += 0.02) {
+      for (double z = -1.2; z <= -0.4; z += 0.05) {
+        raw.points.emplace_back(10.0, y, z);
+      }
+    }
+    const std::size_t count = raw.points.size();
+    for (double y = -4.0; y <= 4.0; y += 0.01) {
+      for (double z = -1.5; z <= 1.0 && is_between && std::abs(y) > 0.15; z += 0.02) {
+        raw.points.emplace_back(5.0, y, z);
+      }
+      raw.points.emplace_back(40.0, 5.0 * y, 0.0);
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const Scan scan = Scan::from_raw(raw);
+    std::vector<std::uint32_t> rows(count);
+    std::iota(rows.begin(), rows.end(), 0u);
+    std::vector<double> radial(scan.size(), 1.5);
+    const RangeImage image(scan, Vector3d::Zero(), Workers(1));
+    Detection detection;
+    make_detection(scan, radial, rows, SensorMotion{}, GroundHeights({Eigen::Matrix3d::Identity(), -1.5}), &image,
+                   detection);
+    const BoxEstimate estimate = BoxFilter(detection, 0.0, {}, config).estimate();
+    EXPECT_EQ(estimate.box.size.x() > 2.0, is_between) << "a part of a vehicle";
+    EXPECT_EQ(estimate.box.size.y() > 1.4, is_between);
+  }
 }
 
 }  // namespace

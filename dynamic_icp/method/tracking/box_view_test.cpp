@@ -195,5 +195,67 @@ TEST(BoxView, AFaceIsAnEndThoughSomethingHidesWhatIsBesideIt) {
   EXPECT_FALSE(views_along(Matrix3d::Identity(), side.front(), side, {5.0, 0.0, 0.0}, detection)[0].low.is_true);
 }
 
+TEST(BoxView, TheEdgeOfASideSeenEndOnIsNoEndWhereSomethingNearerBegins) {
+  // The front part of a lorry in the next lane, 9 degrees off the line of sight; a nearer vehicle hides the rest.
+  const std::vector<Vector3d> side = face_points({24.0, -4.0, 0.0}, {25.0, -4.0, 2.0});
+  for (const bool is_hidden : {true, false}) {
+    RawScan raw;
+    raw.points = side;
+    for (double y = -40.0; y < 20.0; y += 0.05) {
+      for (double z = -1.0; z <= 2.5; z += 0.1) {
+        raw.points.emplace_back(60.0, y, 3.0 * z);
+      }
+    }
+    for (double y = -6.0; y < -10.0 * 4.0 / 23.9 && is_hidden; y += 0.01) {
+      for (double z = -1.0; z <= 1.5; z += 0.02) {
+        raw.points.emplace_back(10.0, y, z);
+      }
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.view = &image;
+    const AxisView along = views_along(Matrix3d::Identity(), side.front(), side, {5.0, 0.0, 0.0}, detection)[0];
+    EXPECT_NE(along.low.is_true, is_hidden);
+    EXPECT_FALSE(along.high.is_true) << "the far end of what is seen end-on";
+  }
+}
+
+TEST(BoxView, AFrontOfWhichTheUpperPartIsHiddenEndsWhereItsHoodDoes) {
+  // Of a car at the edge of the field of view 0.3 to 0.7 m above the road are seen, and below them nothing is.
+  constexpr double kGround_m = -1.9;
+  const std::vector<Vector3d> front = face_points({2.0, -9.0, -1.6}, {2.5, -9.0, -1.2});
+  RawScan raw;
+  raw.points = front;
+  for (double x = -5.0; x <= 5.0; x += 0.05) {
+    raw.points.emplace_back(1.5 * x, -14.0, kGround_m);  // the road behind it, and what bounds it
+    raw.points.emplace_back(3.0 * x, -30.0, -1.0);
+    raw.points.emplace_back(3.0 * x, -30.0, 2.0);
+  }
+  raw.doppler.assign(raw.points.size(), 0.0);
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+  Detection detection;
+  detection.ground.offset_m = kGround_m;
+  detection.view = &image;
+  EXPECT_TRUE(views_along(Matrix3d::Identity(), front.front(), front, {5.0, -5.0, 0.0}, detection)[0].high.is_true);
+}
+
+TEST(BoxView, WhatReachesTheUpperEdgeOfTheViewIsCut) {
+  const std::vector<Vector3d> side = face_points({-2.0, -5.0, -0.5}, {2.0, -5.0, 0.8});
+  for (const double highest : {0.8, 1.2}) {  // m at the distance of the side: what is seen elsewhere
+    RawScan raw;
+    raw.points = side;
+    for (double x = -20.0; x <= 20.0; x += 0.05) {
+      raw.points.emplace_back(x, -20.0, 4.0 * highest);
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.view = &image;
+    const AxisView up = views_along(Matrix3d::Identity(), {0, -5, 0}, side, {5.0, -5.0, 0.0}, detection)[2];
+    EXPECT_EQ(up.high.is_cut, highest == 0.8);
+  }
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

@@ -175,5 +175,30 @@ TEST(GroundHeights, WithoutPointsThePlaneCountsUnlessItIsFarBelow) {
   EXPECT_FALSE(GroundHeights().below({20, 0, 0.5}).offset_m) << "no plane is known";
 }
 
+TEST(GroundHeights, BelowWhatIsHiddenFromBelowThePlaneMayBeFarther) {
+  const GroundHeights heights({Matrix3d::Identity(), -1.8});
+  EXPECT_EQ(heights.below({100, 0, 0.5}, true).offset_m, -1.8);
+  EXPECT_FALSE(heights.below({100, 0, 0.5}, false).offset_m);
+  EXPECT_FALSE(heights.below({100, 0, 1.5}, true).offset_m) << "more than 3 m above: on a hill";
+}
+
+TEST(GroundHeights, NearTheSensorWhatIsAboveThePlaneIsNotTheGround) {
+  // Below the field of view no road is seen; some reflections are half a metre above it. Far away roads bend so much.
+  for (const double range : {6.0, 60.0}) {
+    RawScan raw;
+    for (int i = 0; i < 40; ++i) {
+      raw.points.emplace_back(range + 0.02 * i, 0.1 * (i % 7), -1.35);
+      raw.doppler.push_back(0.0);
+    }
+    const Scan scan = Scan::from_raw(raw);
+    ScanPatches patches;
+    patches.bound(scan, Workers(1));
+    const std::vector<std::uint8_t> is_moving(scan.size(), 0);
+    GroundHeights heights;
+    heights.begin({Matrix3d::Identity(), -1.8}, scan.points(), patches, is_moving, Eigen::Isometry3d::Identity());
+    EXPECT_NEAR(*heights.below({range, 0.0, -1.2}).offset_m, range < 10.0 ? -1.8 : -1.35, 0.03);
+  }
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

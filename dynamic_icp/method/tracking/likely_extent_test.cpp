@@ -79,5 +79,19 @@ TEST(LikelyExtents, OfPeopleAndBodiesWithoutHeadingWhatIsSeenIsTheSize) {
   EXPECT_NEAR(std::sqrt(extents[0].variance), 0.5 * typical_width_by_height(2.5).mean, 1e-9) << "a part of a vehicle";
 }
 
+TEST(LikelyExtents, WhatTheViewCutsOffIsAsHighAsVehiclesMayBe) {
+  SeenExtent cut{1.0, 1.5, false, true};
+  cut.is_cut_high = true;
+  const LikelyExtent up = likely_extents({SeenExtent{1.0, 1.0, false, true}, kWidth, cut}, true, false)[2];
+  EXPECT_NEAR(up.size, 0.5 * (2.5 + 4.0), 1e-9);
+  EXPECT_NEAR(up.middle - 0.5 * up.size, -1.5, 1e-9) << "it stands where it stands";
+  EXPECT_GT(up.variance, 0.25 * 1.5 * 1.5 / 12.0) << "evenly spread from what is seen to what roads allow";
+  SeenExtent higher{3.0, 1.5, false, true};
+  higher.is_cut_high = true;
+  EXPECT_NEAR(likely_extents({kWidth, kWidth, higher}, true, false)[2].size, 4.5, 1e-9)
+      << "more than it shows is not said";
+  EXPECT_NEAR(likely_extents({kWidth, kWidth, cut}, true, true)[2].size, 2.5, 1e-9) << "nor of a person";
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

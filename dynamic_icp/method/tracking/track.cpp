@@ -8,7 +8,6 @@
 #include <memory_resource>
 #include <numbers>
 #include <optional>
-#include <span>
 #include <utility>
 
 #include "dynamic_icp/method/base/state_archive.hpp"
@@ -45,19 +44,6 @@ std::optional<BodySides> sides_of(const Detection& detection, const Eigen::Vecto
   return length < kShortestSide_m ? std::nullopt : std::optional(BodySides{*yaw, length});
 }
 
-/// The standard deviation of directions along an axis.
-double angular_spread(std::span<const Eigen::Vector3d> directions, const Eigen::Vector3d& axis) {
-  double sum = 0.0;
-  double squares = 0.0;
-  for (const Eigen::Vector3d& direction : directions) {
-    const double along = axis.dot(direction);
-    sum += along;
-    squares += along * along;
-  }
-  const auto n = static_cast<double>(directions.size());
-  return std::sqrt(std::max(0.0, squares / n - sum * sum / (n * n)));
-}
-
 /// That of most others near by.
 std::optional<double> likeliest_heading(const Detection& detection) {
   return detection.traffic != nullptr ? detection.traffic->likeliest_yaw(mean_of(detection.points)) : std::nullopt;
@@ -83,7 +69,7 @@ void Track::begin(const Detection& detection, double stamp_s, const TrackConfig&
 
 /// The direction in which a body moves, level axes, where it is known and no person moves so fast: a vehicle of which
 /// too little is seen to show its sides.
-std::optional<double> Track::heading_of_motion(const Detection& detection, const TrackConfig& config) const {
+std::optional<double> Track::heading_of_motion() const {
   const Eigen::Vector3d v = body().level().transpose() * body().velocity();
   const double speed = v.head<2>().norm();
   if (is_person_like(0.0, 0.0, speed)) {
@@ -91,9 +77,7 @@ std::optional<double> Track::heading_of_motion(const Detection& detection, const
   }
   const Eigen::Vector3d across = body().level() * Eigen::Vector3d(-v.y(), v.x(), 0.0) / speed;
   const Eigen::Matrix3d covariance = body().velocity_covariance_at(Eigen::Vector3d::Zero());
-  // Errors of the Doppler that differ over what is seen look like a velocity across it, the more the narrower it is.
-  const double error_mps = config.doppler_floor_mps / angular_spread(detection.directions, across);
-  if (std::hypot(std::sqrt(across.dot(covariance * across)), error_mps) > kKnownDirection_rad * speed) {
+  if (std::sqrt(across.dot(covariance * across)) > kKnownDirection_rad * speed) {
     return std::nullopt;
   }
   return std::atan2(v.y(), v.x());
@@ -107,7 +91,7 @@ void Track::add_headings(const Detection& detection, const BoxHistory& history, 
     add_headings_along(*sides, detection, along_sides, config);
   } else if (has_heading()) {
     return;
-  } else if (const std::optional<double> heading = heading_of_motion(detection, config)) {
+  } else if (const std::optional<double> heading = heading_of_motion()) {
     hypotheses_.emplace_back(detection, *heading, along_sides, config);
   } else if (const std::optional<double> likeliest = likeliest_heading(detection)) {
     hypotheses_.emplace_back(detection, *likeliest, history, config);

@@ -67,7 +67,7 @@ class Track {
   void add_headings(const Detection& detection, const BoxHistory& history, const TrackConfig& config);
   void add_headings_along(const BodySides& sides, const Detection& detection, const BoxHistory& along_sides,
                           const TrackConfig& config);
-  [[nodiscard]] std::optional<double> heading_of_motion(const Detection& detection, const TrackConfig& config) const;
+  [[nodiscard]] std::optional<double> heading_of_motion() const;
   [[nodiscard]] bool has_heading() const;
   [[nodiscard]] bool moves_sideways() const;
   void ask_traffic(const Detection& detection, const TrackConfig& config);
