@@ -20,13 +20,14 @@ struct GroundFit {
 };
 
 /// The plane through the points that do not move (`is_moving`: a flag for each of the `points`, m, sensor frame) near
-/// the plane `start`, which may be off by half a metre: least squares with Tukey's weights that narrow from step to
-/// step. Nothing where few points lie on it.
+/// the plane `start`, which may be off by half a metre: of some planes through three points that with most points on
+/// it, then least squares with Tukey's weights that narrow from step to step. Nothing where few points lie on it.
 std::optional<GroundFit> fit_ground(const ego_motion::SupportPlane& start, std::span<const Eigen::Vector3d> points,
                                     std::span<const std::uint8_t> is_moving);
 
-/// The fit of the ground, of two that the same scan shows: that which is nearer to the sensor, as what bounds a scene
-/// besides the ground passes below it near the carrier; but not one of far fewer points.
+/// The fit of the ground, of two that the same scan shows. Of about the same plane, that with more points. Else that
+/// which is nearer to the sensor, as what bounds a scene besides the ground passes below it near the carrier; but not
+/// one of far fewer points.
 const GroundFit& likelier_ground(const GroundFit& a, const GroundFit& b);
 
 }  // namespace dynamic_icp::tracking

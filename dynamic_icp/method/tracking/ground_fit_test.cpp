@@ -59,6 +59,19 @@ TEST(FitGround, FindsTheRoadFromAPlaneThatLeansOnWhatIsBesideIt) {
   EXPECT_GT(fit->points, 1100U);
 }
 
+TEST(FitGround, OfANarrowStripOfRoadNoPlaneThatLeansOnTheEmbankmentIsFound) {
+  // Three metres to either side are seen: a plane that is 2 degrees off is nowhere more than 0.1 m away from the road.
+  Street street;
+  street.add(400, 11.0, 16.0, -3.0, 3.0, kFlat);
+  street.add(400, 11.0, 40.0, 3.0, 9.0, [](double ahead, double left) {
+    return 0.05 * (left - 3.0) + 0.08 * std::sin(3.0 * ahead);  // grass
+  });
+  const SupportPlane start{exp_so3(Vector3d(2.0 * kDegree, 0.0, 0.0)) * street.road.normal, -1.8};
+  const auto fit = fit_ground(start, street.points, street.is_moving);
+  ASSERT_TRUE(fit);
+  EXPECT_LT(angle_of(fit->plane.normal, street.road.normal), 0.8 * kDegree);
+}
+
 TEST(FitGround, WhatMovesIsNoGround) {
   Street street;
   street.add(300, 11.0, 35.0, -7.0, 7.0, kFlat);
@@ -94,6 +107,9 @@ TEST(LikelierGround, IsTheNearerOneUnlessItHasFarFewerPoints) {
   EXPECT_EQ(&likelier_ground(embankment, road), &road);
   EXPECT_EQ(&likelier_ground(road, roofs), &road);
   EXPECT_EQ(&likelier_ground(roofs, road), &road);
+  const GroundFit leaning{{exp_so3(Vector3d(0.03, 0.0, 0.0)).col(2), -1.7}, 300};
+  EXPECT_EQ(&likelier_ground(road, leaning), &road) << "of about the same plane that with more points";
+  EXPECT_EQ(&likelier_ground(leaning, road), &road);
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/runs/map_writer.hpp"
 
 #include <algorithm>
+#include <utility>
 #include <vector>
 
 #include <fmt/format.h>
@@ -23,10 +24,13 @@ namespace fs = std::filesystem;
 constexpr double kMaxVoxels = 1 << 30;  // from the origin along an axis, see VoxelHashMap
 
 constexpr double kRegion_m = 4.0;
-// What a body leaves behind lies in its box or so near to it, but not on the road.
+// What a body leaves behind lies in its box or so near to it, but not on the road, which is known the less the farther
+// away it is.
 constexpr double kHalo_m = 0.15;
-constexpr double kRoad_m = 0.3;
-// An object clears its place once it has been seen so often, moves so fast and its motion is known.
+constexpr double kRoad_m = 0.1;
+constexpr double kRoadGrowth = 0.004;  // m per metre of range
+// An object clears its place once it has been seen so often, moves so fast and its motion is known; later also when it
+// is slower.
 constexpr int kScansSeen = 3;
 constexpr double kMinSpeed_mps = 1.0;
 
@@ -98,20 +102,25 @@ void MapWriter::add(const odometry::Frame& frame) {
     const auto index = static_cast<std::uint32_t>(i);
     regions_[region_of(voxels_.point(index))].push_back(index);
   }
+  std::vector<std::int64_t> movers;
   for (const tracking::TrackedObject& object : frame.tracked) {
-    if (object.scans_seen >= kScansSeen && object.tangential_observed &&
-        object.velocity_sensor.norm() > kMinSpeed_mps) {
+    const bool moves =
+        object.scans_seen >= kScansSeen && object.tangential_observed && object.velocity_sensor.norm() > kMinSpeed_mps;
+    if (moves || std::ranges::find(movers_, object.id) != movers_.end()) {
+      movers.push_back(object.id);
       take_out(object, frame.T_world_sensor);
     }
   }
+  movers_ = std::move(movers);
 }
 
 /// The points in the box of an object.
 void MapWriter::take_out(const tracking::TrackedObject& object, const Eigen::Isometry3d& T_world_sensor) {
   tracking::OrientedBox box = object.box;
   box.size.head<2>().array() += 2.0 * kHalo_m;
-  box.size.z() += kHalo_m - kRoad_m;
-  box.centre = T_world_sensor * Eigen::Vector3d(box.centre + 0.5 * (kHalo_m + kRoad_m) * box.axes.col(2));
+  const double road_m = kRoad_m + kRoadGrowth * box.centre.norm();
+  box.size.z() += kHalo_m - road_m;
+  box.centre = T_world_sensor * Eigen::Vector3d(box.centre + 0.5 * (kHalo_m + road_m) * box.axes.col(2));
   box.axes = T_world_sensor.linear() * box.axes;
   if (!(box.size.minCoeff() > 0.0)) {
     return;
@@ -156,7 +165,7 @@ void MapWriter::write(const fs::path& path) const {
 }
 
 void MapWriter::state(StateArchive& archive) {
-  archive(voxels_, regions_, is_ghost_, ghosts_);
+  archive(voxels_, regions_, is_ghost_, ghosts_, movers_);
   const auto are_points = [&](const auto& region) {
     return std::ranges::all_of(region.second, [&](std::uint32_t index) { return index < voxels_.size(); });
   };

@@ -64,6 +64,7 @@ class MapWriter {
   std::map<std::uint64_t, std::vector<std::uint32_t>> regions_;  ///< points by cubes of a few metres
   std::vector<std::uint8_t> is_ghost_;                           ///< of each point
   std::size_t ghosts_ = 0;
+  std::vector<std::int64_t> movers_;  ///< ids of tracked objects that moved for sure
 };
 
 }  // namespace dynamic_icp::runs

@@ -119,6 +119,16 @@ TEST_F(MapWriterTest, WhereAnObjectDrivesNothingStands) {
   // Of its own scan nothing is kept where it is.
   map.add(frame_with_car({{13.0, 0.0, 1.0}}, {13.0, 0.0, 0.75}, 4));
   EXPECT_EQ(map.size(), 2u) << "what stood ahead is gone, too";
+  // A car that halts is the same car; another that stands may be a wall.
+  odometry::Frame halted = frame_with_car({{20.0, 0.0, 1.0}}, {20.0, 0.0, 0.75}, 5);
+  halted.tracked.front().velocity_sensor.setZero();
+  odometry::Frame other = frame_with_car({{30.0, 0.0, 1.0}}, {30.0, 0.0, 0.75}, 5);
+  other.tracked.front().velocity_sensor.setZero();
+  other.tracked.front().id = halted.tracked.front().id + 1;
+  map.add(halted);
+  EXPECT_EQ(map.size(), 2u);
+  map.add(other);
+  EXPECT_EQ(map.size(), 3u);
 }
 
 TEST_F(MapWriterTest, EqualsTheDirectDefinitionAndDoesNotGrowInAKnownScene) {
