@@ -43,7 +43,6 @@ constexpr double kFacing = 0.3;          // cosine of the line of sight to a fac
 constexpr double kUniform = 0.29;        // standard deviation of what is anywhere in a gap, as a share
 constexpr double kWorstLog = -10.0;
 constexpr double kGroundSigma_m = 0.05;
-constexpr double kBeamShare = 0.5;       // of the error that points share: the mean of some beams
 constexpr double kErrorAngle_rad = 0.1;  // within it points share errors of the Doppler, and across it these differ
 
 BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double yaw_sigma_rad, const Matrix3d& level,
@@ -132,7 +131,7 @@ void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& c
   const Matrix3d along_sight = sight * sight.transpose();
   const Matrix3d floor = shared * shared * along_sight + changing * changing * (Matrix3d::Identity() - along_sight) +
                          sway * sway * up * up.transpose();
-  log_likelihood_ += body_.correct_doppler(measured, detection.sensor, floor, kBeamShare * shared);
+  log_likelihood_ += body_.correct_doppler(measured, detection.sensor, floor, shared);
 }
 
 /// Vehicles point where their sides do, and move there.

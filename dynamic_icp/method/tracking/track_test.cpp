@@ -121,7 +121,7 @@ Track track_of_part(const std::function<double(int)>& speed_mps, double height_m
                     int scans = 20) {
   const TrackConfig config;
   const Vector3d size(0.2, 0.7, height_m);
-  Vector3d centre(20.0, -3.0, 0.0);
+  Vector3d centre(20.0, -2.0, 0.0);
   std::optional<Track> track;
   for (int scan = 0; scan < scans; ++scan) {
     const Vector3d velocity(speed_mps(scan), 0.0, 0.0);
@@ -163,7 +163,7 @@ TEST(Track, OfWhatLittleIsSeenTheTrafficTellsTheHeading) {
   for (const double x : {10.0, 25.0, 40.0}) {
     traffic.add({x, -8.0, 0.0}, Vector3d::UnitX(), 3.0);
   }
-  // Slower than a person may be, and 9 degrees off the line of sight.
+  // Slower than a person may be, and 6 degrees off the line of sight.
   const Track alone = track_of_part(2.0, 2.4);
   EXPECT_FALSE(alone.best().has_heading());
   const Track among_others = track_of_part(2.0, 2.4, &traffic);

@@ -8,7 +8,7 @@ ConfigFields fields(TrackConfig& config) {
   ConfigFields all = {
       {"doppler_sigma_mps", &config.doppler_sigma_mps, 1e-4, 10.0, "m/s", "noise of the Doppler of one point"},
       {"doppler_floor_mps", &config.doppler_floor_mps, 0.0, 10.0, "m/s",
-       "error of the Doppler that all points of an object share, as noise of one scan"},
+       "error of the Doppler that all points of an object share, and of the mean of those of its beams"},
       {"sway_rps", &config.sway_rps, 0.0, 10.0, "rad/s", "roll and pitch rates of objects, taken as noise"},
       {"face_sigma_m", &config.face_sigma_m, 1e-3, 10.0, "m", "noise of where a side of an object is seen"},
       {"face_sigma_growth", &config.face_sigma_growth, 0.0, 1.0, "m/m", "growth of that noise with the range"},

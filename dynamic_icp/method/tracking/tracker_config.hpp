@@ -12,7 +12,7 @@ namespace dynamic_icp::tracking {
 struct TrackConfig {
   MotionNoise motion;
   double doppler_sigma_mps = 0.05;   ///< of one point
-  double doppler_floor_mps = 0.07;   ///< error all points of an object share: less, but it lasts for some scans
+  double doppler_floor_mps = 0.04;   ///< of errors that points of an object share, and of the mean of those of beams
   double sway_rps = 0.02;            ///< roll and pitch rate of objects, which the state does not hold
   double face_sigma_m = 0.04;        ///< of a side of the box, at the sensor
   double face_sigma_growth = 0.002;  ///< m per metre of range
