@@ -18,15 +18,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr std::size_t kLookedAt = 4096;      // of a scan are looked at: more would not make the plane better
+constexpr std::size_t kLookedAt = 2048;      // of a scan are looked at: more would not make the plane better
 constexpr std::size_t kFewestOnGround = 30;  // on the ground
 constexpr double kFlat_m = 40.0;             // roads are flat so far
 constexpr double kOnGround_m = 0.05;         // what is so near to the plane is on it
 
 constexpr double kGroundSearch_m = 0.5;      // about the start
 constexpr double kSameGroundUp = 0.98;       // cosine between the start and the ground
-constexpr std::uint64_t kGroundPlanes = 48;  // planes through three of the points each ...
-constexpr std::size_t kGroundJury = 512;     // ... are compared by so many of them
+constexpr std::uint64_t kGroundPlanes = 32;  // planes through three of the points each ...
+constexpr std::size_t kGroundJury = 256;     // ... are compared by so many of them
 
 // Half widths of the weights from step to step, m. The last is that of what roads bend.
 constexpr std::array kWidths_m = {0.15, 0.1, 0.07, 0.05, 0.05};
