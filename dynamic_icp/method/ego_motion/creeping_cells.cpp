@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "dynamic_icp/method/base/quantile.hpp"
+#include "dynamic_icp/method/ego_motion/cell_doppler.hpp"
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 
 namespace dynamic_icp::ego_motion {
@@ -22,44 +23,10 @@ constexpr double kSurface_mps = 0.015;
 constexpr double kCrowded = 0.25;
 constexpr double kNeighbourSigmas = 1.0;
 
-// So many cells on the surface that carries the scene tell how far the static scene is off.
-constexpr std::size_t kEnoughOnSupport = 20;
-
-/// How far the Doppler of a cell is from that of the static scene, m/s, and the variance of that by noise alone.
-struct CellDoppler {
-  std::vector<double> off;
-  std::vector<double> variance;
-};
-
-CellDoppler doppler_of_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps, double moving_mps) {
-  CellDoppler result;
-  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
-    double sum = 0.0;
-    double count = 0.0;
-    for (std::size_t row = rows.first[cell]; row < rows.first[cell + 1]; ++row) {
-      const Eigen::Vector3d velocity = ego.velocity_sensor + rows.dt[row] * ego.acceleration_sensor;
-      const double off = rows.s[row] + rows.u(row).dot(velocity) - ego.bias_mps;
-      if (std::abs(off) < moving_mps) {
-        sum += off;
-        count += 1.0;
-      }
-    }
-    count = std::max(1.0, count);
-    result.off.push_back(sum / count);
-    result.variance.push_back(noise_mps * noise_mps / count);
-  }
-  return result;
-}
-
 /// Cells that are static far more often than not: what carries the scene where that is known, or else the farthest cell
 /// of each direction sector.
 std::vector<std::size_t> likely_static(const DopplerRows& rows) {
-  std::vector<std::size_t> cells;
-  for (std::size_t cell = 0; cell < rows.on_support.size(); ++cell) {
-    if (rows.on_support[cell] != 0) {
-      cells.push_back(cell);
-    }
-  }
+  std::vector<std::size_t> cells = support_cells(rows);
   if (cells.size() >= kEnoughOnSupport) {
     return cells;
   }
@@ -119,12 +86,15 @@ void spread(const DopplerRows& rows, const std::vector<double>& sigmas_off, std:
 
 std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps,
                                          double moving_mps, double sigmas) {
-  const CellDoppler doppler = doppler_of_cells(rows, ego, noise_mps, moving_mps);
+  std::vector<CellDoppler> doppler(rows.cells());
+  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
+    doppler[cell] = doppler_of_cell(rows, cell, ego, noise_mps, moving_mps);
+  }
   std::vector<double> static_off;
   std::vector<double> static_variances;
   for (const std::size_t cell : likely_static(rows)) {
-    static_off.push_back(std::abs(doppler.off[cell]));
-    static_variances.push_back(doppler.variance[cell]);
+    static_off.push_back(std::abs(doppler[cell].off_mps));
+    static_variances.push_back(doppler[cell].variance);
   }
   std::vector<std::uint8_t> creeps(rows.cells(), 0);
   if (static_off.empty()) {
@@ -134,7 +104,7 @@ std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVeloc
   const double off = std::max(kSurface_mps * kSurface_mps, scatter * scatter - median(static_variances));
   std::vector<double> sigmas_off(rows.cells());
   for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
-    sigmas_off[cell] = doppler.off[cell] / std::sqrt(off + doppler.variance[cell]);
+    sigmas_off[cell] = doppler[cell].off_mps / std::sqrt(off + doppler[cell].variance);
     creeps[cell] = std::abs(sigmas_off[cell]) > sigmas ? 1 : 0;
   }
   if (static_cast<double>(std::ranges::count(creeps, 1)) > kCrowded * static_cast<double>(rows.cells())) {

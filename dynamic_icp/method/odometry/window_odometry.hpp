@@ -66,6 +66,7 @@ class WindowOdometry final : public Odometry {
   [[nodiscard]] tracking::SensorMotion predicted_motion(const Eigen::Vector3d& velocity_sensor) const;
   [[nodiscard]] const ego_motion::DopplerRows& rows_to_vote();
   void separate_static_points();
+  [[nodiscard]] double noise_for(const ego_motion::EgoVelocity& ego) const;
   [[nodiscard]] ego_motion::VelocityFilterConfig filter_for(const ego_motion::EgoVelocity& ego) const;
   [[nodiscard]] window::WindowScan scan_at(double stamp_s) const;
   void take_out_lever_arms();

@@ -8,6 +8,7 @@
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
 #include "dynamic_icp/method/ego_motion/creeping_cells.hpp"
 #include "dynamic_icp/method/ego_motion/rig_doppler.hpp"
+#include "dynamic_icp/method/ego_motion/support_velocity.hpp"
 #include "dynamic_icp/method/ego_motion/velocity_filter.hpp"
 #include "dynamic_icp/method/motion/twist.hpp"
 #include "dynamic_icp/method/odometry/compensated_motion.hpp"
@@ -98,6 +99,10 @@ void WindowOdometry::separate_static_points() {
   ego_ = is_relative
              ? ego_motion::estimate_velocity(rows_to_vote(), ego_prior(), config_.ego_motion.consensus, workers_)
              : velocity_before();
+  if (is_relative) {
+    ego_.velocity_sensor =
+        ego_motion::support_velocity(memory_.rows, ego_, noise_for(ego_), filter_for(ego_).tau_0_mps);
+  }
   if (lever_arm_omega_) {
     ego_.rotation = rig_rotation_;
   }
@@ -106,9 +111,8 @@ void WindowOdometry::separate_static_points() {
   ego_motion::compensated_doppler(whole, in_doppler, workers_, memory_.radial);
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(in_doppler), workers_, memory_.is_moving);
   if (is_relative && config_.ego_motion.filter.enabled) {
-    const double noise_mps = estimator_.point_noise().value_or(ego_.inlier_rms_mps);
     const std::vector<std::uint8_t> creeps = ego_motion::creeping_cells(
-        memory_.rows, ego_, noise_mps, filter_for(ego_).tau_0_mps, config_.ego_motion.static_sigmas);
+        memory_.rows, ego_, noise_for(ego_), filter_for(ego_).tau_0_mps, config_.ego_motion.static_sigmas);
     workers_.for_each(whole.size(), kPointBlock,
                       [&](std::size_t i) { memory_.is_moving[i] |= creeps[memory_.sort.cell[i]]; });
   }
@@ -148,11 +152,15 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   tracker_.flag_expected(whole, memory_.patches, memory_.radial, sensor, workers_, memory_.is_moving);
 }
 
+/// Standard deviation of the Doppler of a point, m/s.
+double WindowOdometry::noise_for(const ego_motion::EgoVelocity& ego) const {
+  return estimator_.point_noise().value_or(ego.inlier_rms_mps);
+}
+
 /// The threshold of the velocity filter, never less than what the noise of static points reaches now and then.
 ego_motion::VelocityFilterConfig WindowOdometry::filter_for(const ego_motion::EgoVelocity& ego) const {
   ego_motion::VelocityFilterConfig filter = config_.ego_motion.filter;
-  const double noise_mps = estimator_.point_noise().value_or(ego.inlier_rms_mps);
-  filter.tau_0_mps = std::max(filter.tau_0_mps, config_.ego_motion.static_sigmas * noise_mps);
+  filter.tau_0_mps = std::max(filter.tau_0_mps, config_.ego_motion.static_sigmas * noise_for(ego));
   return filter;
 }
 
