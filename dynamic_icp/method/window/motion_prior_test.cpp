@@ -140,20 +140,19 @@ TEST(MotionPrior, TheVibrationIsStationaryAndLivesAtTheFrequencyOfWheels) {
   EXPECT_GT(power(11.0), 3.0 * power(25.0));
 }
 
-/// Standard deviation of forward vibration and jerk as learned from 12 scans of 0.1 s of a motion measured at each
-/// knot.
+/// Standard deviation of forward vibration and jerk as learned from scans of 0.1 s of a motion measured at each knot.
 struct Learned {
   double vibration_m = 0.0;
   double roll_rad = 0.0;
   double jerk_mps3 = 0.0;
 };
 
-Learned learned(double amplitude_m) {
+Learned learned(double amplitude_m, int scans = 12) {
   constexpr double kMeasured_m = 1e-4;
   std::mt19937 random(3);
   std::normal_distribution<double> normal(0.0, kMeasured_m);
   MotionPrior prior{WindowConfig{}};
-  for (int scan = 0; scan < 12; ++scan) {
+  for (int scan = 0; scan < scans; ++scan) {
     Motion motion(0.4);
     PriorSums sums = sums_of(prior, motion);
     sums.H.diagonal().array() += 1.0;  // all within 1 m
@@ -197,6 +196,14 @@ TEST(MotionPrior, MoreUnknownsOnlyWhereItVibrates) {
   const PriorSums sums = sums_of(prior, motion);
   EXPECT_EQ(sums.H.rows(), Layout::kBefore + 6 * motion.layout.coefficients);
   EXPECT_GT(sums.H.norm(), 0.0);
+}
+
+// Else the acceleration of a vehicle that was even for some seconds is believed to stay when it brakes.
+TEST(MotionPrior, NoAccelerationIsKnownToLast) {
+  // White noise of the jerk, q in each knot interval, changes an acceleration within a second by sqrt(q h 1 s).
+  const double change_mps2 = learned(0.0, 100).jerk_mps3 * std::sqrt(kKnot_s);
+  EXPECT_GT(change_mps2, 0.5);
+  EXPECT_LT(change_mps2, 1.0) << "that there is little of it was learned";
 }
 
 }  // namespace
