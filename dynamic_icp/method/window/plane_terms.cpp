@@ -20,6 +20,7 @@ constexpr std::uint32_t kInformativePoints = 5;  // a patch tells of itself with
 constexpr std::size_t kInformativePatches = 50;  // and all patches together when there are so many
 constexpr double kBendInCommon = 0.4;            // the points of a scan on a patch meet part of its bend
 constexpr double kMinHeld = 1e-6;
+constexpr double kTiltOfModel = 0.3;     // a patch is off a plane in three places, each by itself
 constexpr double kNoPointing = 1e-14;    // rad^2
 constexpr double kNoInformation = 1e-6;  // 1/rad^2 and 1/m^2
 
@@ -71,7 +72,6 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
   const Eigen::Isometry3d& T_map_reference = trajectory.reference();
   const Eigen::Matrix3d R_reference_map = T_map_reference.linear().transpose();
   const double min_variance = noise.min_sigma_m * noise.min_sigma_m;
-  const double model_variance = noise.model_sigma_m * noise.model_sigma_m;
   slice.on_planes = 0;
   for (std::size_t k = slice.begin; k < slice.end; ++k) {
     const std::size_t i = order_[k];
@@ -101,7 +101,7 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
     row.e = plane.distance(in_map) - (1.0 - row.beyond) * row.m.dot(before) - row.beyond * row.m.dot(after);
     row.J = by_angles(scan_, i).transpose() * (slice.at.R.transpose() * n);
     row.own = std::max(plane.variance, min_variance);
-    row.in_common = plane.height_variance(in_map) + model_variance + kBendInCommon * plane.bend;
+    row.in_common = plane.height_variance(in_map) + model_variance_ + kBendInCommon * plane.bend;
   }
 }
 
@@ -111,6 +111,7 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
                            const PlaneNoise& noise, bool adapt) {
   R_map_reference_ = trajectory.reference().linear();
   pointing_variance_ = noise.pointing_variance;
+  model_variance_ = noise.model_sigma_m * noise.model_sigma_m;
   workers_.for_each(slices_.size(), 1, [&](std::size_t s) { place(trajectory, map_error, noise, slices_[s]); });
   members_.assign(map_.patch_limit(), 0);
   precision_.assign(map_.patch_limit(), 0.0);
@@ -156,7 +157,8 @@ void PlaneTerms::sum(Slice& slice) const {
     }
     slice.sums.add(row);
     const mapping::Plane& plane = row.patch->plane;
-    const Eigen::Matrix3d noise = (row.w * plane.variance / plane.points) * plane.tangential;
+    const Eigen::Matrix3d noise =
+        (row.w * (plane.variance / plane.points + kTiltOfModel * model_variance_)) * plane.tangential;
     const Eigen::Matrix3d turned = skew(row.lever) * noise;  // m = [X x n; n]
     slice.noise.topLeftCorner<3, 3>() += turned * skew(row.lever).transpose();
     slice.noise.topRightCorner<3, 3>() += turned;

@@ -122,6 +122,7 @@ class PlaneTerms {
   Eigen::Matrix3d R_map_reference_ = Eigen::Matrix3d::Identity();
   Matrix6d motions_ = Matrix6d::Identity();  ///< the principal ones, columns [phi; p], reference frame
   Eigen::Vector2d pointing_variance_ = Eigen::Vector2d::Zero();
+  double model_variance_ = 0.0;                         ///< m^2, of a patch from a plane
   Matrix8d common_information_ = Matrix8d::Identity();  ///< of [displacement of the map by these; pointing]
   Vector6d held_ = Vector6d::Ones();
 };

@@ -33,6 +33,7 @@ constexpr double kSlice_s = kKnots_s / 8.0;
 constexpr std::size_t kSlices = 64;
 constexpr double kStamp_s = 5.003;
 constexpr double kBendInCommon = 0.4;
+constexpr double kTiltOfModel = 0.3;
 
 SplineTrajectory true_trajectory() {
   Vector6d reference;
@@ -81,6 +82,7 @@ struct Definition {
   const Scan& scan;
   SplineTrajectory trajectory;
   VectorXd map_error;
+  double model_variance;
   double stamp_s = kStamp_s;
   std::vector<const Patch*> patches;
   VectorXd weights;
@@ -88,7 +90,7 @@ struct Definition {
 
   Definition(const Scan& points, const PlaneMap& map, const SplineTrajectory& at, const VectorXd& error,
              const PlaneNoise& noise, bool adapt)
-      : scan(points), trajectory(at), map_error(error) {
+      : scan(points), trajectory(at), map_error(error), model_variance(std::pow(noise.model_sigma_m, 2)) {
     std::map<const Patch*, double> members;
     std::map<const Patch*, double> precision;
     for (std::size_t i = 0; i < scan.size(); ++i) {
@@ -198,7 +200,8 @@ struct Definition {
         Eigen::Matrix<double, 6, 3> A;
         A << skew(trajectory.reference().inverse() * in_map(i)), Eigen::Matrix3d::Identity();
         A = A * trajectory.reference().linear().transpose();
-        sum += weights[static_cast<Index>(i)] * plane.variance / plane.points * A * plane.tangential * A.transpose();
+        const double variance = plane.variance / plane.points + kTiltOfModel * model_variance;
+        sum += weights[static_cast<Index>(i)] * variance * A * plane.tangential * A.transpose();
       }
     }
     return sum;
