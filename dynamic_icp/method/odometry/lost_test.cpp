@@ -41,6 +41,24 @@ TEST(WindowOdometryLost, LosesItsWayAndFindsItAgain) {
   }
 }
 
+// Planes and Doppler may contradict each other by what sensors err, not by more.
+TEST(WindowOdometryLost, IsLostWhenTheDopplerContradictsTheMap) {
+  const Drive drive{street(), circle(8.0, 0.0), {}};
+  for (const double off_mps : {0.3, 3.0}) {
+    const auto odometry = make_odometry(WindowOdometryConfig{}, {}, 1);
+    for (int k = 0; k <= 6; ++k) {
+      RawScan scan = drive.scan(k);
+      for (std::size_t i = 0; i < scan.points.size() && k == 6; ++i) {
+        scan.doppler[i] -= off_mps * scan.points[i].normalized().x();
+      }
+      const Frame frame = odometry->process(scan);
+      if (k == 6) {
+        EXPECT_EQ(verdict(frame.status), off_mps > 1.0 ? "lost" : "ok") << off_mps;
+      }
+    }
+  }
+}
+
 // There is no usual share of points that fit yet.
 TEST(WindowOdometryLost, IsLostWhenTheSecondScanFitsNothing) {
   const Drive here{street(), circle(10.0, 0.2), {}};

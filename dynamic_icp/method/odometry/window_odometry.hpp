@@ -76,6 +76,7 @@ class WindowOdometry final : public Odometry {
   void update(const window::WindowScan& now, Frame& frame);
   [[nodiscard]] window::StartOmega start_omega() const;
   [[nodiscard]] std::optional<Eigen::Isometry3d> search_second(const window::WindowScan& now) const;
+  [[nodiscard]] bool is_borne_out(const window::WindowScan& now) const;
   void renew_bent_map(const window::WindowScan& now, bool is_second, const Frame& frame);
   void describe(const window::WindowMotion& motion, double dt_s, Frame& frame) const;
   void predict_only(double stamp_s, FrameStatus status, Frame& frame) const;
