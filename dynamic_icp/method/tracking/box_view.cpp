@@ -27,16 +27,17 @@ constexpr double kLookBeyond_m = 0.4;
 constexpr double kClearance_m = 1.0;
 constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end, but for noise
 constexpr double kMaxGap_m = 0.5;
-constexpr int kMoreBeyond = 2;          // so many points farther beyond an end are no errors of measurement
 constexpr double kFaceWidth_m = 0.8;    // what is seen so wide at an end that looks at the sensor is a face
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
+constexpr double kUpperPart = 0.7;      // of the way up to the top: under a nearer body the lower part alone is seen
 constexpr double kCarHeight_m = 1.8;    // what is higher has no hood, or a short one
 constexpr double kHood_m = 0.6;         // below this height bodies reach as far as anywhere: hoods, bumpers
 
-/// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there and `lower_m`
-/// below. `shows_face`: what is seen there is a face rather than the edge of a side.
-bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, bool shows_face, const Vector3d& W,
-                 const Detection& detection) {
+/// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there, `lower_m` below
+/// and `higher_m` above. `shows_face`: what is seen there is a face rather than the edge of a side. A few points reach
+/// `reach_m` farther.
+bool is_true_end(const Vector3d& end, const Vector3d& outward, double reach_m, double lower_m, double higher_m,
+                 bool shows_face, const Vector3d& W, const Detection& detection) {
   const Vector3d to_end = end - detection.sensor;
   const double range = to_end.norm();
   const Vector3d sight = to_end / range;
@@ -55,7 +56,7 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, b
   const double cell = range * RangeImage::cell_width();
   const bool is_upward = outward.dot(detection.ground.up()) > 0.5;
   for (const double step : {cell, std::max(kLookBeyond_m, 3.0 * cell)}) {
-    const Vector3d beyond = detection.T_sensor_world * (end + step * sideways.normalized());
+    const Vector3d beyond = detection.T_sensor_world * (end + (reach_m + step) * sideways.normalized());
     if (is_upward && detection.view->is_above_all(beyond)) {
       return false;
     }
@@ -63,11 +64,10 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double lower_m, b
     if (detection.view->hides(beyond, is_dim && step > cell ? -kClearance_m : kClearance_m)) {
       return false;
     }
-    if (lower_m > 0.0) {
-      const Vector3d below = beyond - lower_m * (detection.T_sensor_world.linear() * detection.ground.up());
-      if (detection.view->hides(below, kClearance_m)) {
-        return false;
-      }
+    const Vector3d up = detection.T_sensor_world.linear() * detection.ground.up();
+    if ((lower_m > 0.0 && detection.view->hides(beyond - lower_m * up, kClearance_m)) ||
+        (higher_m > 0.0 && detection.view->hides(beyond + higher_m * up, kClearance_m))) {
+      return false;
     }
   }
   return true;
@@ -111,7 +111,7 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
     double count = 0.0;
     double sum = 0.0;
     double squares = 0.0;
-    int beyond = 0;
+    double farthest = 0.0;  // beyond the end
     end.gap = kMaxGap_m;
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double depth = inwards(along[i]);
@@ -127,9 +127,12 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
       if (depth > kSamePlace_m) {
         end.gap = std::min(end.gap, depth);
       }
-      beyond += depth < -kMaxGap_m ? 1 : 0;
+      if (-depth > end.reach) {
+        end.reach = std::min(farthest, -depth);
+        farthest = std::max(farthest, -depth);
+      }
     }
-    end.has_points_beyond = beyond >= kMoreBeyond;
+    end.has_points_beyond = end.reach > kMaxGap_m;
     end.middle /= count;
     end.width = std::sqrt(12.0 * std::max(0.0, squares / count - sum * sum / (count * count)));  // if evenly spread
     if (end.width > kFaceWidth_m) {  // so does a side with a few points of wheels and axles behind it
@@ -170,8 +173,9 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     if (end.width > kFaceWidth_m && facing > kLooksAtSensor) {
       return true;
     }
-    return is_true_end(end.middle, outward, axes.col(2).dot(end.middle - reference) - full, end.width > kEndDepth_m, W,
-                       detection);
+    const double at = axes.col(2).dot(end.middle - reference);
+    return is_true_end(end.middle, outward, end.reach, at - full, kUpperPart * (views[2].seen.high - at),
+                       end.width > kEndDepth_m, W, detection);
   };
   for (const int axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);
@@ -191,7 +195,8 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     }
   }
   // What is below bodies is hidden by them.
-  views[2].high.is_true = is_true_end(views[2].high.middle, axes.col(2), 0.0, true, W, detection);
+  views[2].high.is_true =
+      is_true_end(views[2].high.middle, axes.col(2), views[2].high.reach, 0.0, 0.0, true, W, detection);
   const Vector3d up = axes.col(2);
   const Vector3d& below_top = views[2].high.middle;
   views[2].high.is_cut =

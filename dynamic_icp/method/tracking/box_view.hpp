@@ -19,6 +19,7 @@ constexpr double kViewTrim = 0.01;
 struct EndView {
   Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m, world: of the points there
   double gap = 0.0;                                  ///< m, from the end to the next points
+  double reach = 0.0;                                ///< m, of the few points beyond the end, but for one
   double width = 0.0;                                ///< m, across the axis, of what is seen at the end
   bool has_points_beyond = false;                    ///< far from it, few: seen over something nearer
   bool is_true = false;                              ///< whether the body ends there, too

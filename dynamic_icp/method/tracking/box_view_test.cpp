@@ -127,6 +127,62 @@ TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
   }
 }
 
+TEST(BoxView, WhereTheUpperPartIsHiddenTheEndOfTheLowerOneIsNone) {
+  // The side of a van; a nearer lorry hides its front, and below the lorry a strip of it is seen up to a wheel.
+  constexpr double kGround_m = -1.9;
+  for (const bool is_hidden : {false, true}) {
+    std::vector<Vector3d> side = face_points({-2.0, -8.0, -1.5}, {is_hidden ? 1.0 : 2.0, -8.0, 0.5});
+    if (is_hidden) {
+      const std::vector<Vector3d> strip = face_points({1.1, -8.0, -1.5}, {2.0, -8.0, -1.2});
+      side.insert(side.end(), strip.begin(), strip.end());
+    }
+    RawScan raw;
+    raw.points = side;
+    for (double x = -4.0; x <= 4.0; x += 0.02) {
+      raw.points.emplace_back(5.0 * x, -40.0, 0.0);  // behind all
+      raw.points.emplace_back(5.0 * x, -40.0, -4.0);
+      raw.points.emplace_back(x, -12.0, kGround_m);
+      for (double z = -0.6; z < 1.0 && is_hidden && x > 0.65; z += 0.02) {
+        raw.points.emplace_back(x, -5.0, z);
+      }
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.ground.offset_m = kGround_m;
+    detection.view = &image;
+    const AxisView along = views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, side, {5.0, -5.0, 0.0}, detection)[0];
+    EXPECT_NE(along.high.is_true, is_hidden);
+    EXPECT_TRUE(along.low.is_true);
+  }
+}
+
+TEST(BoxView, WhatComesNextIsLookedForBehindTheLastPoints) {
+  // Of the side of a body three of six hundred points are seen 0.3 m beyond the others, up to where a nearer wall
+  // begins.
+  std::vector<Vector3d> side = face_points({-2.0, -8.0, -0.5}, {1.0, -8.0, 1.4});
+  for (const double z : {-0.5, -0.4, -0.3}) {
+    side.emplace_back(1.3, -8.0, z);
+  }
+  ASSERT_GT(side.size(), 500u);
+  for (const bool is_hidden : {false, true}) {
+    RawScan raw;
+    raw.points = side;
+    for (double x = -4.0; x <= 4.0; x += 0.02) {
+      raw.points.emplace_back(5.0 * x, -40.0, 0.0);
+      for (double z = -1.0; z < 0.6 && is_hidden && x > 0.9; z += 0.02) {
+        raw.points.emplace_back(x, -5.0, z);
+      }
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.view = &image;
+    const AxisView along = views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, side, {5.0, -5.0, 0.0}, detection)[0];
+    EXPECT_NE(along.high.is_true, is_hidden);
+  }
+}
+
 TEST(BoxView, AFewPointsBehindASideMakeNoFaceOfItsEnd) {
   // The rear part of a lorry, the end of which looks at the sensor; a wall that is nearer hides whether it goes on. At
   // its end a tenth of what is seen is a wheel on its other side.
