@@ -19,6 +19,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "dynamic_icp/method/base/replace.hpp"
 #include "dynamic_icp/method/base/stamp.hpp"
 
 namespace dynamic_icp {
@@ -189,7 +190,11 @@ class StateArchive {
     if constexpr (rows == Eigen::Dynamic || columns == Eigen::Dynamic) {
       const std::size_t height = size_of(static_cast<std::size_t>(matrix.rows()));
       const std::size_t width = size_of(static_cast<std::size_t>(matrix.cols()), height * sizeof(Number));
-      matrix.resize(static_cast<Eigen::Index>(height), static_cast<Eigen::Index>(width));
+      const auto read_rows = static_cast<Eigen::Index>(height);
+      const auto read_columns = static_cast<Eigen::Index>(width);
+      if (read_rows != matrix.rows() || read_columns != matrix.cols()) {
+        replace(matrix, std::decay_t<decltype(matrix)>::Zero(read_rows, read_columns));
+      }
     }
     bytes(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(Number));
     check_numbers(matrix.data(), static_cast<std::size_t>(matrix.size()));

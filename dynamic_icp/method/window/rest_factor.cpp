@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <vector>
 
+#include "dynamic_icp/method/base/replace.hpp"
+
 namespace dynamic_icp::window {
 namespace {
 
@@ -38,9 +40,9 @@ std::vector<Columns> columns_of(const Eigen::MatrixXd& W) {
 void RestFactor::set_tail(const Eigen::MatrixXd& rows) {
   const Eigen::Index n = rows.rows();
   const Eigen::Index head = rows.cols() - n;
-  tail_.compute(rows.rightCols(n));
-  W_ = rows.leftCols(head);
-  share_ = Eigen::MatrixXd::Zero(head, head);
+  replace(tail_, rows.rightCols(n));
+  replace(W_, rows.leftCols(head));
+  replace(share_, Eigen::MatrixXd::Zero(head, head));
   const std::vector<Columns> parts = columns_of(W_);
   for (const Columns& a : parts) {
     const Eigen::Index left = n - a.row;
@@ -61,7 +63,7 @@ void RestFactor::set_tail(const Eigen::MatrixXd& rows) {
   }
 }
 
-void RestFactor::compute(const Eigen::MatrixXd& A) { head_.compute(A - share_); }
+void RestFactor::compute(const Eigen::MatrixXd& A) { replace(head_, A - share_); }
 
 bool RestFactor::is_solvable() const {
   // What is not a number anywhere is not one in the diagonal either.

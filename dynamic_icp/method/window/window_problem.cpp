@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include <cmath>
 
+#include "dynamic_icp/method/base/replace.hpp"
 #include "dynamic_icp/method/window/window_estimator.hpp"
 
 // What a scan minimises: the terms of WindowEstimator, linearised.
@@ -38,7 +39,7 @@ Eigen::VectorXd tie_variances() {
 /// The past and the Doppler, on which theta acts, linearised at the state of the moment; theta is eliminated from them.
 void WindowEstimator::linearise() {
   const Layout at = layout();
-  linear_H_ = quadratic_->Q().topLeftCorner(at.head(), at.head());
+  replace(linear_H_, quadratic_->Q().topLeftCorner(at.head(), at.head()));
   if (doppler_ && config_.use_doppler) {
     doppler_->linearise(trajectory_);
     doppler_->add_information(at, scan_error_variance(), linear_H_);

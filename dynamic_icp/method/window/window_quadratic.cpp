@@ -9,6 +9,7 @@
 
 #include <Eigen/Cholesky>
 
+#include "dynamic_icp/method/base/replace.hpp"
 #include "dynamic_icp/method/base/state_archive.hpp"
 
 namespace dynamic_icp::window {
@@ -123,8 +124,8 @@ void WindowQuadratic::drop_coefficients(std::size_t count) {
   Eigen::VectorXd w = g_(dropped);
   eliminated.matrixL().solveInPlace(W);
   eliminated.matrixL().solveInPlace(w);
-  Q_ = Q_(remaining, remaining).eval();
-  g_ = g_(remaining).eval();
+  replace(Q_, Q_(remaining, remaining));
+  replace(g_, g_(remaining));
   subtract(W, w);
 }
 
@@ -140,8 +141,8 @@ void WindowQuadratic::keep_field_only(std::size_t coefficients) {
   field.noalias() -= W.transpose() * W;
   const Eigen::VectorXd field_g = g_.head(begin) - W.transpose() * w;
   layout_.coefficients = static_cast<Eigen::Index>(coefficients);
-  Q_ = Eigen::MatrixXd::Zero(layout_.size(), layout_.size());
-  g_ = Eigen::VectorXd::Zero(layout_.size());
+  replace(Q_, Eigen::MatrixXd::Zero(layout_.size(), layout_.size()));
+  replace(g_, Eigen::VectorXd::Zero(layout_.size()));
   Q_.topLeftCorner(begin, begin) = field;
   g_.head(begin) = field_g;
 }
