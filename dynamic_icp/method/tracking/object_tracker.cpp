@@ -275,7 +275,8 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   };
   gather_static(input, expected, entry);
   ++entry.age;
-  if (entry.members.size() < kMinPoints || input.view.are_mirrored(entry.members)) {
+  input.view.remove_mirrored(entry.members, entry.merged);
+  if (entry.members.size() < kMinPoints) {
     return miss();
   }
   Track& corrected = entry.other;
@@ -328,10 +329,9 @@ void ObjectTracker::initiate_tracks(const TrackingInput& input, const Workers& w
 /// Makes a new track of these rows of the scan. It was never seen if they are no object.
 void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint32_t> rows, TrackRecord& entry) const {
   entry.seen = 0;
-  if (input.view.are_mirrored(rows)) {
-    return;
-  }
-  if (!detect(input, rows, entry.detection)) {
+  refill(entry.members, rows);
+  input.view.remove_mirrored(entry.members, entry.merged);
+  if (entry.members.size() < kMinPoints || !detect(input, entry.members, entry.detection)) {
     return;
   }
   entry.track.begin(entry.detection, input.stamp_s, config_.track);
@@ -351,16 +351,16 @@ void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint3
   const auto contradictions = std::count_if(entry.static_rows.begin(), entry.static_rows.end(), [&](std::uint32_t row) {
     return contradicts(expected, input.direction_world(row), input.radial[row], config_);
   });
-  if (std::cmp_greater(contradictions, rows.size())) {
+  if (std::cmp_greater(contradictions, entry.members.size())) {
     return;
   }
-  refill(entry.members, rows);
   entry.age = 1;
   entry.seen = 1;
   entry.missed = 0;
   entry.has_moved = false;
   entry.moved_s = 0.0;
-  const bool seen_often = rows.size() >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
+  const bool seen_often =
+      entry.members.size() >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
   entry.confirmed = seen_often && entry.is_credible(ego_error_, config_);
   entry.note_motion(input.stamp_s, config_);
 }

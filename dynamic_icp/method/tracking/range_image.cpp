@@ -5,17 +5,20 @@
 #include <algorithm>
 #include <bitset>
 #include <cmath>
+#include <iterator>
+#include <vector>
 
 #include "dynamic_icp/method/tracking/image_cells.hpp"
+#include "dynamic_icp/method/tracking/memory.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr double kBehind_m = 1.0;          // what is so much nearer is another thing
-constexpr double kSurelyLess = 0.999;      // for rounding
-constexpr double kMinBehindShare = 0.5;    // of the rows of a mirror image lie behind the mirror
-constexpr std::size_t kRowsTogether = 32;  // are drawn at once
-constexpr double kFewBeside = 0.2;         // mirrors show less than this share of what is seen of themselves
+constexpr double kBehind_m = 1.0;        // what is so much nearer is another thing
+constexpr float kSameSurface_m = 0.5F;   // between points of one surface that are next to each other
+constexpr double kSurelyLess = 0.999;    // for rounding
+constexpr double kMinBehindShare = 0.5;  // of the rows of a mirror image lie behind the mirror
+constexpr double kFewBeside = 0.2;       // mirrors show less than this share of what is seen of themselves
 
 }  // namespace
 
@@ -58,20 +61,16 @@ bool RangeImage::is_behind(std::uint32_t row) const {
          is_nearer(column, image_row - 1) && is_nearer(column, image_row + 1);
 }
 
-bool RangeImage::are_mirrored(std::span<const std::uint32_t> rows) const {
-  // Most of what is asked about is seen as usual: that is known, and no more drawn, once half of it is.
-  std::size_t may_be_behind = rows.size();
-  for (std::size_t first = 0; first < rows.size(); first += kRowsTogether) {
-    const std::span<const std::uint32_t> some = rows.subspan(first, std::min(kRowsTogether, rows.size() - first));
-    image_->draw_rows(some);
-    for (const std::uint32_t row : some) {
-      may_be_behind -= is_behind(row) ? 0 : 1;
-    }
-    if (static_cast<double>(may_be_behind) <= kMinBehindShare * static_cast<double>(rows.size())) {
-      return false;
-    }
-  }
-  // All points in the cells of the rows are drawn by now.
+/// Whether two rows of the scan are on one surface: in the same cell or in two that touch, and about as far away.
+bool RangeImage::are_beside(std::uint32_t a, std::uint32_t b) const {
+  const std::uint32_t columns = image_->place(a) / kImageRows - image_->place(b) / kImageRows;
+  const std::uint32_t image_rows = image_->place(a) % kImageRows - image_->place(b) % kImageRows;
+  return columns + 1 <= 2 && image_rows + 1 <= 2 &&
+         std::abs(std::sqrt(image_->squared(a)) - std::sqrt(image_->squared(b))) < kSameSurface_m;
+}
+
+/// Beside all that is seen in the directions of these rows, of which all points are drawn.
+bool RangeImage::are_few(std::span<const std::uint32_t> rows) const {
   std::bitset<std::size_t{kImageColumns} * kImageRows> is_touched;
   for (const std::uint32_t row : rows) {
     is_touched[image_->place(row)] = true;
@@ -79,6 +78,24 @@ bool RangeImage::are_mirrored(std::span<const std::uint32_t> rows) const {
   std::size_t all = 0;
   image_->visit_drawn([&](std::uint32_t place) { all += is_touched[place] ? 1 : 0; });
   return static_cast<double>(rows.size()) < kFewBeside * static_cast<double>(all);
+}
+
+void RangeImage::remove_mirrored(std::vector<std::uint32_t>& rows, std::vector<std::uint32_t>& memory) const {
+  image_->draw_rows(rows);
+  std::vector<std::uint32_t>& behind = memory;
+  behind.clear();
+  make_room(behind, rows.size());
+  std::ranges::copy_if(rows, std::back_inserter(behind), [&](std::uint32_t row) { return is_behind(row); });
+  if (static_cast<double>(behind.size()) >= kMinBehindShare * static_cast<double>(rows.size())) {
+    if (are_few(rows)) {
+      rows.clear();
+    }
+    return;
+  }
+  std::erase_if(behind, [&](std::uint32_t row) {
+    return std::ranges::any_of(rows, [&](std::uint32_t other) { return are_beside(row, other) && !is_behind(other); });
+  });
+  std::erase_if(rows, [&](std::uint32_t row) { return std::ranges::binary_search(behind, row); });
 }
 
 bool RangeImage::is_above_all(const Eigen::Vector3d& point) const {

@@ -45,10 +45,11 @@ class RangeImage {
   /// Whether nothing in the whole scan is seen as high as `point` (m, sensor frame): it may be above the field of view.
   [[nodiscard]] bool is_above_all(const Eigen::Vector3d& point) const;
 
-  /// Whether these rows of the scan (at least one) seem to be seen through something nearer: most of them lie behind
-  /// what is seen in their directions and all around, and are few beside it. So do mirror images. What is seen through
-  /// a fence or leaves is more.
-  [[nodiscard]] bool are_mirrored(std::span<const std::uint32_t> rows) const;
+  /// Removes those of the rows of the scan that seem to be seen through something nearer, as mirror images are: they
+  /// lie behind what is seen in their directions and all around, and beside none of the others. Where most lie behind,
+  /// all go if they are few beside what is nearer; else all stay, as what is seen through a fence or leaves. `rows`:
+  /// ascending.
+  void remove_mirrored(std::vector<std::uint32_t>& rows, std::vector<std::uint32_t>& memory) const;
 
   /// Width of a cell at a distance of one metre, m: what is closer together may share one.
   static double cell_width();
@@ -58,6 +59,8 @@ class RangeImage {
 
   [[nodiscard]] bool is_in_view(int column) const;
   [[nodiscard]] bool is_behind(std::uint32_t row) const;
+  [[nodiscard]] bool are_beside(std::uint32_t a, std::uint32_t b) const;
+  [[nodiscard]] bool are_few(std::span<const std::uint32_t> rows) const;
 };
 
 }  // namespace dynamic_icp::tracking

@@ -114,11 +114,12 @@ TEST(RangeImage, KnowsHowHighItSees) {
   EXPECT_TRUE(image.is_above_all({-50.0, 0.0, 7.0})) << "in whatever direction";
 }
 
-/// The rows of some points behind a wall in all directions to 20 degrees, twelve of them spread from `from` to `to`
-/// degrees; `every`: the wall is a fence with a gap at every so many of its rays.
+/// Whether all rows are taken for mirrored, of some points behind a wall in all directions to 20 degrees, twelve of
+/// them spread from `from` to `to` degrees; `every`: the wall is a fence with a gap at every so many of its rays.
 bool mirrored_behind_wall(double from, double to, int every) {
   RawScan raw;
   std::vector<std::uint32_t> rows;
+  std::vector<std::uint32_t> memory;
   add_wall(raw, -20.0, 20.0, 5.0);
   if (every > 0) {
     for (std::size_t i = 0; i < raw.points.size(); i += static_cast<std::size_t>(every)) {
@@ -135,7 +136,8 @@ bool mirrored_behind_wall(double from, double to, int every) {
       raw.doppler.push_back(0.0);
     }
   }
-  return RangeImage(Scan::from_raw(raw), Vector3d::Zero(), Workers(1)).are_mirrored(rows);
+  RangeImage(Scan::from_raw(raw), Vector3d::Zero(), Workers(1)).remove_mirrored(rows, memory);
+  return rows.empty();
 }
 
 TEST(RangeImage, FewPointsThatSeemToBeBehindASurfaceAreMirrored) {
@@ -143,6 +145,29 @@ TEST(RangeImage, FewPointsThatSeemToBeBehindASurfaceAreMirrored) {
   EXPECT_FALSE(mirrored_behind_wall(21.5, 30.0, 0)) << "beside the wall";
   EXPECT_FALSE(mirrored_behind_wall(15.0, 30.0, 0)) << "a body that it hides in part";
   EXPECT_FALSE(mirrored_behind_wall(-10.0, 10.0, 2)) << "a fence";
+}
+
+TEST(RangeImage, OfABodyWhatIsSeenThroughSomethingNearerIsRemoved) {
+  // A body beside a wall, three points that seem to be of it behind the wall, and in the wall a slit of 0.3 degrees,
+  // through which its edge is seen.
+  RawScan raw;
+  std::vector<std::uint32_t> rows;
+  std::vector<std::uint32_t> memory;
+  const auto add = [&](double azimuth) {
+    rows.push_back(static_cast<std::uint32_t>(raw.points.size()));
+    raw.points.push_back(at(azimuth, 10.0));
+    raw.doppler.push_back(0.0);
+  };
+  for (const double azimuth : {12.0, 14.0, 17.0}) {
+    add(azimuth);
+  }
+  for (double azimuth = 19.8; azimuth < 25.0; azimuth += 0.1) {
+    add(azimuth);
+  }
+  const std::vector<std::uint32_t> body(rows.begin() + 3, rows.end());
+  add_wall(raw, -20.0, 20.0, 5.0);
+  RangeImage(Scan::from_raw(raw), Vector3d::Zero(), Workers(1)).remove_mirrored(rows, memory);
+  EXPECT_EQ(rows, body);
 }
 
 }  // namespace
