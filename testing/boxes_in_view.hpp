@@ -17,6 +17,7 @@
 #include "dynamic_icp/method/ego_motion/support_plane.hpp"
 #include "dynamic_icp/method/tracking/object_tracker.hpp"
 #include "dynamic_icp/method/tracking/oriented_box.hpp"
+#include "dynamic_icp/method/tracking/sensor_motion.hpp"
 
 namespace dynamic_icp::tracking {
 
@@ -49,6 +50,15 @@ struct Viewing {
   std::function<Eigen::Isometry3d(double time_s)> pose = [](double) { return Eigen::Isometry3d::Identity(); };
   double sweep_s = 0.0;  ///< from the first ray to the last, from right to left; 0: all at once
   double outliers = 0.005;
+
+  /// The sensor at a time, by differences of its poses.
+  [[nodiscard]] SensorMotion motion(double time_s) const {
+    constexpr double kStep_s = 1e-4;
+    const Eigen::Isometry3d T_world_sensor = pose(time_s);
+    const Eigen::Isometry3d later = pose(time_s + kStep_s);
+    return {T_world_sensor, (later.translation() - T_world_sensor.translation()) / kStep_s,
+            log_so3(T_world_sensor.linear().transpose() * later.linear()) / kStep_s};
+  }
 };
 
 /// One scan, deskewed with the true motion of the sensor.
@@ -157,11 +167,10 @@ inline ego_motion::SupportPlane ground_from(const Eigen::Isometry3d& T_world_sen
           -kSensorHeight_m - T_world_sensor.translation().z()};
 }
 
-inline std::vector<TrackedObject> step(ObjectTracker& tracker, const View& view,
-                                       const Eigen::Isometry3d& T_world_sensor = Eigen::Isometry3d::Identity(),
+inline std::vector<TrackedObject> step(ObjectTracker& tracker, const View& view, const SensorMotion& sensor = {},
                                        int threads = 1) {
-  const auto objects = tracker.update(view.scan, view.radial, view.is_moving, T_world_sensor,
-                                      ground_from(T_world_sensor), Workers(threads));
+  const auto objects = tracker.update(view.scan, view.radial, view.is_moving, sensor,
+                                      ground_from(sensor.T_world_sensor), Workers(threads));
   return {objects.begin(), objects.end()};
 }
 

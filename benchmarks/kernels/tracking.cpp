@@ -15,6 +15,11 @@
 namespace dynamic_icp::kernels {
 namespace {
 
+/// As far as instant scans need it.
+tracking::SensorMotion motion_of(const KnownScan& scan) {
+  return tracking::motion_at(scan.T_world_sensor, Eigen::Vector3d::Zero(), scan.velocity_sensor);
+}
+
 /// All scans of the drive one after the other, from a tracker that knows nothing. Their patches are known, which it
 /// asks for other things before.
 void object_tracker(benchmark::State& state) {
@@ -35,7 +40,7 @@ void object_tracker(benchmark::State& state) {
     for (std::size_t i = 0; i < kScans; ++i) {
       const KnownScan& scan = known_scan(Sensor::kUsual, i);
       tracks = tracker
-                   .update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, support[i], workers,
+                   .update(scan.whole, scan.radial, scan.is_moving, motion_of(scan), support[i], workers,
                            Eigen::Matrix3d::Zero(), &patches[i])
                    .size();
     }
@@ -53,7 +58,7 @@ void expected_rows(benchmark::State& state) {
   tracking::ObjectTracker tracker(odometry::WindowOdometryConfig{}.tracking);
   for (std::size_t i = 0; i + 1 < kScans; ++i) {
     const KnownScan& scan = known_scan(Sensor::kUsual, i);
-    tracker.update(scan.whole, scan.radial, scan.is_moving, scan.T_world_sensor, {}, workers);
+    tracker.update(scan.whole, scan.radial, scan.is_moving, motion_of(scan), {}, workers);
   }
   const KnownScan& last = known_scan(Sensor::kUsual, kScans - 1);
   tracking::ScanPatches patches;
@@ -61,7 +66,7 @@ void expected_rows(benchmark::State& state) {
   std::vector<std::uint8_t> flags;
   for ([[maybe_unused]] auto _ : state) {
     flags.assign(last.whole.size(), 0);
-    tracker.flag_expected(last.whole, patches, last.radial, {last.T_world_sensor}, workers, flags);
+    tracker.flag_expected(last.whole, patches, last.radial, motion_of(last), workers, flags);
   }
   state.counters["flagged"] = static_cast<double>(std::count(flags.begin(), flags.end(), 1));
   // Only the points near bodies are looked at, but the flags of all are cleared.

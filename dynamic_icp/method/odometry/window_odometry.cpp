@@ -346,7 +346,8 @@ void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) 
   if (config_.track_objects) {
     tracker_.clear_carrier(memory_.whole, memory_.patches, memory_.may_be_object);
     memory_.whole = motion::deskew(std::move(memory_.whole), sweep, workers_);
-    objects = tracker_.update(memory_.whole, memory_.radial, memory_.may_be_object, frame.T_world_sensor, support_,
+    objects = tracker_.update(memory_.whole, memory_.radial, memory_.may_be_object,
+                              tracking::motion_at(frame.T_world_sensor, sweep.omega, sweep.velocity), support_,
                               workers_, ego_.covariance, &memory_.patches);
   }
   describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, objects, workers_);

@@ -61,15 +61,13 @@ ego_motion::EgoVelocity WindowOdometry::velocity_before() const {
 
 /// The sensor during the scan at hand, with this velocity (m/s) and turning as it did.
 tracking::SensorMotion WindowOdometry::predicted_motion(const Eigen::Vector3d& velocity_sensor) const {
-  tracking::SensorMotion sensor{T_world_sensor_};
-  if (estimator_.scans() > 0) {
-    const window::TrajectoryPoint last = estimator_.trajectory().at_end();
-    const double dt_s = stream_.elapsed_s() - stamp_s_;
-    sensor.T_world_sensor = T_world_sensor_ * motion::motion_of(last.omega, velocity_sensor, dt_s);
-    sensor.velocity_world = sensor.T_world_sensor.linear() * velocity_sensor;
-    sensor.angular_velocity_sensor = last.omega;
+  if (estimator_.scans() == 0) {
+    return {T_world_sensor_};
   }
-  return sensor;
+  const window::TrajectoryPoint last = estimator_.trajectory().at_end();
+  const double dt_s = stream_.elapsed_s() - stamp_s_;
+  return tracking::motion_at(T_world_sensor_ * motion::motion_of(last.omega, velocity_sensor, dt_s), last.omega,
+                             velocity_sensor);
 }
 
 /// The rows of the scan at hand that vote on what stands: not those where a track expects its object. In a jam traffic
@@ -146,10 +144,9 @@ void WindowOdometry::judge_points(const window::WindowScan& now) {
   ego_motion::dynamic_mask(whole, memory_.radial, filter_for(ego_), workers_, memory_.is_moving);
   memory_.may_be_object = memory_.is_moving;
   // The map takes in nothing of what objects are about to cross.
-  tracking::SensorMotion sensor{T_world_sensor_};
-  sensor.velocity_world = T_world_sensor_.linear() * sweep.velocity;
-  sensor.angular_velocity_sensor = sweep.omega;
-  tracker_.flag_expected(whole, memory_.patches, memory_.radial, sensor, workers_, memory_.is_moving);
+  tracker_.flag_expected(whole, memory_.patches, memory_.radial,
+                         tracking::motion_at(T_world_sensor_, sweep.omega, sweep.velocity), workers_,
+                         memory_.is_moving);
 }
 
 /// Standard deviation of the Doppler of a point, m/s.

@@ -67,25 +67,23 @@ void ObjectTracker::keep(TrackRecord& entry) {
 
 std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span<const double> radial,
                                                      std::span<const std::uint8_t> is_moving,
-                                                     const Eigen::Isometry3d& T_world_sensor,
+                                                     const SensorMotion& sensor,
                                                      const std::optional<ego_motion::SupportPlane>& support,
                                                      const Workers& workers, const Eigen::Matrix3d& ego_covariance,
                                                      const ScanPatches* measured) {
   if (radial.size() != scan.size() || is_moving.size() != scan.size()) {
     throw std::invalid_argument("radial velocities and moving flags must have one value per point of the scan");
   }
-  if (!are_finite(radial) || !T_world_sensor.matrix().allFinite()) {
-    throw std::invalid_argument("radial velocities and the pose of the sensor must be finite");
+  if (!are_finite(radial) || !sensor.T_world_sensor.matrix().allFinite() || !sensor.velocity_world.allFinite() ||
+      !sensor.angular_velocity_sensor.allFinite()) {
+    throw std::invalid_argument("radial velocities and the motion of the sensor must be finite");
   }
   if (last_stamp_ && scan.stamp() <= *last_stamp_) {
     throw std::invalid_argument("scans must come in the order of their stamps");
   }
   first_stamp_ = first_stamp_.value_or(scan.stamp());
-  const SensorMotion sensor =
-      last_stamp_ ? continued_motion(T_world_last_, T_world_sensor, seconds_between(*last_stamp_, scan.stamp()))
-                  : SensorMotion{T_world_sensor};
   last_stamp_ = scan.stamp();
-  T_world_last_ = T_world_sensor;
+  const Eigen::Isometry3d& T_world_sensor = sensor.T_world_sensor;
   ego_error_ = {T_world_sensor.translation(),
                 T_world_sensor.linear() * ego_covariance * T_world_sensor.linear().transpose()};
 
@@ -391,7 +389,7 @@ void ObjectTracker::state(StateArchive& archive) {
   entries_.resize(living_);
   archive.each(entries_, [&](TrackRecord& entry) { archive(entry); });
   living_ = entries_.size();
-  archive(ground_, sizes_, next_id_, first_stamp_, last_stamp_, T_world_last_);
+  archive(ground_, sizes_, next_id_, first_stamp_, last_stamp_);
   archive.require(next_id_ > 0 && next_id_ < kMany &&
                       std::ranges::all_of(entries_, [&](const TrackRecord& entry) { return entry.id < next_id_; }),
                   "the number of an object");

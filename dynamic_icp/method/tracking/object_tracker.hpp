@@ -59,15 +59,15 @@ class ObjectTracker {
   /// confirmed.
   ///
   /// The points of the scan are where they were measured, in the sensor frame at its stamp (deskewed); lines of sight
-  /// are as measured. `radial`: for each row the velocity of the point itself along its line of sight over ground
-  /// (m/s). `is_moving`: for each row nonzero where that is too much for noise. `support`: the plane that carries the
-  /// scene, where it shows one. `ego_covariance`: of the velocity of the sensor, (m/s)^2, sensor frame; all velocities
-  /// over ground share its error. `measured`: the patches of the scan before it was deskewed, if they are known, which
-  /// saves looking at all points once more. The objects are valid until the next call. Throws std::invalid_argument
-  /// when these differ in length or are not finite, and when the stamp is not later than that of the previous scan.
+  /// are as measured, while it moved as `sensor` says. `radial`: for each row the velocity of the point itself along
+  /// its line of sight over ground (m/s). `is_moving`: for each row nonzero where that is too much for noise.
+  /// `support`: the plane that carries the scene, where it shows one. `ego_covariance`: of the velocity of the sensor,
+  /// (m/s)^2, sensor frame; all velocities over ground share its error. `measured`: the patches of the scan before it
+  /// was deskewed, if they are known, which saves looking at all points once more. The objects are valid until the next
+  /// call. Throws std::invalid_argument when these differ in length or are not finite, and when the stamp is not later
+  /// than that of the previous scan.
   std::span<const TrackedObject> update(const Scan& scan, std::span<const double> radial,
-                                        std::span<const std::uint8_t> is_moving,
-                                        const Eigen::Isometry3d& T_world_sensor,
+                                        std::span<const std::uint8_t> is_moving, const SensorMotion& sensor,
                                         const std::optional<ego_motion::SupportPlane>& support, const Workers& workers,
                                         const Eigen::Matrix3d& ego_covariance = Eigen::Matrix3d::Zero(),
                                         const ScanPatches* measured = nullptr);
@@ -106,7 +106,6 @@ class ObjectTracker {
   std::int64_t next_id_ = 1;
   std::optional<Stamp> first_stamp_;
   std::optional<Stamp> last_stamp_;
-  Eigen::Isometry3d T_world_last_ = Eigen::Isometry3d::Identity();
   EgoError ego_error_;
 
   // Of the last scan, for their memory

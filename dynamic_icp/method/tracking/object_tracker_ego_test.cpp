@@ -29,9 +29,9 @@ View with_wrong_velocity(View view, const Vector3d& error) {
 
 std::vector<TrackedObject> confirmed_with(const View& view, double ego_sigma_mps) {
   ObjectTracker tracker{TrackerConfig{}};
-  const auto objects = tracker.update(view.scan, view.radial, view.is_moving, Eigen::Isometry3d::Identity(),
-                                      ground_from(Eigen::Isometry3d::Identity()), Workers(1),
-                                      ego_sigma_mps * ego_sigma_mps * Matrix3d::Identity());
+  const auto objects =
+      tracker.update(view.scan, view.radial, view.is_moving, SensorMotion{}, ground_from(Eigen::Isometry3d::Identity()),
+                     Workers(1), ego_sigma_mps * ego_sigma_mps * Matrix3d::Identity());
   return confirmed({objects.begin(), objects.end()});
 }
 

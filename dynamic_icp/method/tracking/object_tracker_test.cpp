@@ -25,8 +25,7 @@ std::vector<Objects> track(const Traffic& traffic, int scans, int threads = 1, c
   ObjectTracker tracker{config};
   std::vector<Objects> result;
   for (int k = 0; k < scans; ++k) {
-    result.push_back(
-        step(tracker, view_of(traffic(k * kScanPeriod_s), k * kScanPeriod_s), Eigen::Isometry3d::Identity(), threads));
+    result.push_back(step(tracker, view_of(traffic(k * kScanPeriod_s), k * kScanPeriod_s), SensorMotion{}, threads));
   }
   return result;
 }
@@ -199,9 +198,10 @@ TEST(ObjectTracker, TheErrorOfTheSensorsVelocityIsPartOfAllVelocities) {
   for (int k = 0; k < 8; ++k) {
     const double t = k * kScanPeriod_s;
     const View view = view_of({car(15 + 8 * t, 2, 0.0, 8)}, t, 0.0);
-    const auto pose = Eigen::Isometry3d::Identity();
-    const auto known = exact.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), Workers(1));
-    const auto stated = unsure.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), Workers(1), ego);
+    const SensorMotion rest;
+    const auto ground = ground_from(rest.T_world_sensor);
+    const auto known = exact.update(view.scan, view.radial, view.is_moving, rest, ground, Workers(1));
+    const auto stated = unsure.update(view.scan, view.radial, view.is_moving, rest, ground, Workers(1), ego);
     ASSERT_EQ(known.size(), stated.size());
     for (std::size_t i = 0; i < known.size(); ++i) {
       EXPECT_LT((stated[i].covariance - known[i].covariance - ego).norm(), 1e-12);
@@ -214,21 +214,21 @@ TEST(ObjectTracker, TheErrorOfTheSensorsVelocityIsPartOfAllVelocities) {
 
 TEST(ObjectTracker, NothingAndOnePointAreNoObjects) {
   ObjectTracker tracker{TrackerConfig{}};
-  EXPECT_TRUE(tracker.update(Scan{}, {}, {}, Eigen::Isometry3d::Identity(), std::nullopt, Workers(1)).empty());
+  EXPECT_TRUE(tracker.update(Scan{}, {}, {}, SensorMotion{}, std::nullopt, Workers(1)).empty());
   RawScan raw;
   raw.stamp = {100000000};
   raw.points = {{10, 0, 0}};
   raw.doppler = {5.0};
   EXPECT_TRUE(tracker
-                  .update(Scan::from_raw(raw), std::vector<double>{5.0}, std::vector<std::uint8_t>{1},
-                          Eigen::Isometry3d::Identity(), std::nullopt, Workers(1))
+                  .update(Scan::from_raw(raw), std::vector<double>{5.0}, std::vector<std::uint8_t>{1}, SensorMotion{},
+                          std::nullopt, Workers(1))
                   .empty());
 }
 
 TEST(ObjectTracker, RefusesWhatDoesNotFitTogether) {
   ObjectTracker tracker{TrackerConfig{}};
   const View view = view_of({}, 1.0);
-  EXPECT_THROW(tracker.update(view.scan, {}, view.is_moving, Eigen::Isometry3d::Identity(), std::nullopt, Workers(1)),
+  EXPECT_THROW(tracker.update(view.scan, {}, view.is_moving, SensorMotion{}, std::nullopt, Workers(1)),
                std::invalid_argument);
   step(tracker, view);
   EXPECT_THROW(step(tracker, view), std::invalid_argument) << "the same stamp again";

@@ -35,6 +35,19 @@ MovingBox block(const Vector3d& centre, const Vector3d& size) {
   return {{centre, Eigen::Matrix3d::Identity(), size}, Vector3d::Zero(), 0.0};
 }
 
+TEST(ObjectTrackerView, WhatTheEdgeOfTheViewCutsOffInTheFirstScanIsNoEnd) {
+  // A car to the left of a sensor at 10 m/s, which sees it at the end of its sweep, a metre from where that began.
+  Viewing viewing;
+  viewing.pose = [](double t) { return Eigen::Isometry3d(Eigen::Translation3d(10.0 * t, 0.0, 0.0)); };
+  viewing.sweep_s = kScanPeriod_s;
+  const Traffic traffic = [](double t) { return std::vector<MovingBox>{car(4.0 + 12.0 * t, 5.0, 0.0, 12.0)}; };
+  ObjectTracker tracker{TrackerConfig{}};
+  const Objects objects = step(tracker, view_of(traffic, 0.0, viewing), viewing.motion(0.0));
+  ASSERT_EQ(objects.size(), 1u);
+  EXPECT_EQ(objects[0].faces[index_of(Face::kRight)], FaceView::kSeen);
+  EXPECT_NE(objects[0].faces[index_of(Face::kRear)], FaceView::kSeen);
+}
+
 TEST(ObjectTrackerView, ASensorThatMovesTurnsTiltsAndSweepsSeesTheTruth) {
   const Traffic traffic = [](double t) {
     return std::vector<MovingBox>{car(14 + 5 * t, 13 + 5.5 * t, std::atan2(5.5, 5.0), std::hypot(5.5, 5.0))};
@@ -46,7 +59,7 @@ TEST(ObjectTrackerView, ASensorThatMovesTurnsTiltsAndSweepsSeesTheTruth) {
       const double t = k * kScanPeriod_s;
       const View view = view_of(traffic, t, viewing);
       const Eigen::Isometry3d T_world_sensor = turning_and_tilted(t);
-      const Objects objects = confirmed(step(tracker, view, T_world_sensor));
+      const Objects objects = confirmed(step(tracker, view, viewing.motion(t)));
       if (k < 8) {
         continue;
       }

@@ -32,11 +32,9 @@ Eigen::Vector3d SensorMotion::turned(const Eigen::Vector3d& vector, double time_
   return T_world_sensor.linear() * (vector + first + 0.5 * angle.cross(first));
 }
 
-SensorMotion continued_motion(const Eigen::Isometry3d& T_world_earlier, const Eigen::Isometry3d& T_world_sensor,
-                              double dt_s) {
-  const Eigen::Isometry3d T_earlier_sensor = T_world_earlier.inverse() * T_world_sensor;
-  return {T_world_sensor, (T_world_sensor.translation() - T_world_earlier.translation()) / dt_s,
-          log_so3(T_earlier_sensor.linear()) / dt_s};
+SensorMotion motion_at(const Eigen::Isometry3d& T_world_sensor, const Eigen::Vector3d& omega,
+                       const Eigen::Vector3d& velocity) {
+  return {T_world_sensor, T_world_sensor.linear() * velocity, omega};
 }
 
 }  // namespace dynamic_icp::tracking

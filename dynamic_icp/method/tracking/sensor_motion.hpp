@@ -27,8 +27,8 @@ struct SensorMotion {
   [[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& vector, double time_s) const;
 };
 
-/// The motion from the pose one scan earlier, `dt_s` > 0 before, taken as going on.
-SensorMotion continued_motion(const Eigen::Isometry3d& T_world_earlier, const Eigen::Isometry3d& T_world_sensor,
-                              double dt_s);
+/// From a pose and the velocities there: `omega` (rad/s) and `velocity` (m/s), sensor axes.
+SensorMotion motion_at(const Eigen::Isometry3d& T_world_sensor, const Eigen::Vector3d& omega,
+                       const Eigen::Vector3d& velocity);
 
 }  // namespace dynamic_icp::tracking

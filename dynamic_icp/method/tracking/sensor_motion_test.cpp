@@ -11,14 +11,12 @@ namespace {
 
 using Eigen::Vector3d;
 
-TEST(SensorMotion, GoesOnAsBefore) {
-  // Turning by 0.05 rad and moving 1 m between two scans 0.1 s apart.
-  Eigen::Isometry3d earlier = Eigen::Isometry3d::Identity();
-  earlier.linear() = exp_so3({0, 0, 0.3});
-  Eigen::Isometry3d now = earlier;
-  now.linear() = earlier.linear() * exp_so3({0, 0, 0.05});
+TEST(SensorMotion, GoesOnEvenly) {
+  // 10 m/s along the world's x axis, turning by 0.5 rad/s.
+  Eigen::Isometry3d now = Eigen::Isometry3d::Identity();
+  now.linear() = exp_so3({0, 0, 0.35});
   now.translation() = Vector3d(1, 0, 0);
-  const SensorMotion motion = continued_motion(earlier, now, 0.1);
+  const SensorMotion motion = motion_at(now, {0, 0, 0.5}, now.linear().transpose() * Vector3d(10, 0, 0));
   EXPECT_TRUE(motion.position(0.1).isApprox(Vector3d(2, 0, 0), 1e-12));
   const Vector3d u = Vector3d(1, 0.2, 0.1).normalized();
   EXPECT_TRUE(motion.direction_world(u, 0.1).isApprox(exp_so3({0, 0, 0.4}) * u, 1e-4)) << "second order in 0.05 rad";

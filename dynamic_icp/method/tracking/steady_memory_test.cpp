@@ -42,13 +42,13 @@ TEST(TrackerMemory, NothingIsAllocatedInTheLongRun) {
     for (int k = 0; k < kWarmUp + 2 * kRound; ++k) {
       const double t = k * kScanPeriod_s;
       View view = view_of(rounds_of_traffic(t), t);
-      const auto pose = Eigen::Isometry3d::Identity();
+      const SensorMotion rest;
       const std::size_t before = allocation_count;
       patches.bound(view.scan, workers);
-      tracker.flag_expected(view.scan, patches, view.radial, SensorMotion{pose}, workers, view.is_moving);
+      tracker.flag_expected(view.scan, patches, view.radial, rest, workers, view.is_moving);
       tracker.clear_carrier(view.scan, patches, view.is_moving);
-      const auto all = tracker.update(view.scan, view.radial, view.is_moving, pose, ground_from(pose), workers,
-                                      Eigen::Matrix3d::Zero(), &patches);
+      const auto all = tracker.update(view.scan, view.radial, view.is_moving, rest, ground_from(rest.T_world_sensor),
+                                      workers, Eigen::Matrix3d::Zero(), &patches);
       const std::size_t asked = allocation_count - before;
       for (const TrackedObject& object : all) {
         newest = std::max(newest, object.id);
