@@ -29,16 +29,25 @@ constexpr double kSamePlace_m = 0.03;  // points nearer to an end are at the end
 constexpr double kMaxGap_m = 0.5;
 constexpr double kFaceWidth_m = 0.8;    // what is seen so wide at an end that looks at the sensor is a face
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
+constexpr double kFlatDepth_m = 0.1;    // so is what is narrower, but not deeper than this ...
+constexpr double kFlatWidth = 2.5;      // ... and so many times wider than deep ...
+constexpr double kFlatFacing = 0.1;     // ... if it looks at the sensor but a little
+constexpr double kFewest = 3.0;         // points of an end
 constexpr double kUpperPart = 0.7;      // of the way up to the top: under a nearer body the lower part alone is seen
 constexpr double kCarHeight_m = 1.8;    // what is higher has no hood, or a short one
 constexpr double kHood_m = 0.6;         // below this height bodies reach as far as anywhere: hoods, bumpers
 
-/// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there, `lower_m` below
-/// and `higher_m` above. `shows_face`: what is seen there is a face rather than the edge of a side. A few points reach
-/// `reach_m` farther.
-bool is_true_end(const Vector3d& end, const Vector3d& outward, double reach_m, double lower_m, double higher_m,
-                 bool shows_face, const Vector3d& W, const Detection& detection) {
-  const Vector3d to_end = end - detection.sensor;
+/// How far above and below an end, m, it is asked what comes next.
+struct LookBeside {
+  double lower = 0.0;
+  double higher = 0.0;
+};
+
+/// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there, below and above.
+/// `shows_face`: what is seen there is a face rather than the edge of a side.
+bool is_true_end(const EndView& end, const Vector3d& outward, const LookBeside& beside, bool shows_face,
+                 const Vector3d& W, const Detection& detection) {
+  const Vector3d to_end = end.middle - detection.sensor;
   const double range = to_end.norm();
   const Vector3d sight = to_end / range;
   const Vector3d sideways = outward - outward.dot(sight) * sight;
@@ -56,7 +65,7 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double reach_m, d
   const double cell = range * RangeImage::cell_width();
   const bool is_upward = outward.dot(detection.ground.up()) > 0.5;
   for (const double step : {cell, std::max(kLookBeyond_m, 3.0 * cell)}) {
-    const Vector3d beyond = detection.T_sensor_world * (end + (reach_m + step) * sideways.normalized());
+    const Vector3d beyond = detection.T_sensor_world * (end.middle + (end.reach + step) * sideways.normalized());
     if (is_upward && detection.view->is_above_all(beyond)) {
       return false;
     }
@@ -65,8 +74,8 @@ bool is_true_end(const Vector3d& end, const Vector3d& outward, double reach_m, d
       return false;
     }
     const Vector3d up = detection.T_sensor_world.linear() * detection.ground.up();
-    if ((lower_m > 0.0 && detection.view->hides(beyond - lower_m * up, kClearance_m)) ||
-        (higher_m > 0.0 && detection.view->hides(beyond + higher_m * up, kClearance_m))) {
+    if ((beside.lower > 0.0 && detection.view->hides(beyond - beside.lower * up, kClearance_m)) ||
+        (beside.higher > 0.0 && detection.view->hides(beyond + beside.higher * up, kClearance_m))) {
       return false;
     }
   }
@@ -103,14 +112,33 @@ void find_places_along(const Matrix3d& axes, const Vector3d& reference, std::spa
   });
 }
 
-/// `along` and `across`: places of the points along the axis and one at right angles to it.
-AxisView view_along(std::span<const double> along, std::span<const double> across, std::span<const Vector3d> points) {
+/// Where values end: without kViewTrim of them at either end, and without one that lies far from all others.
+Interval seen_span(std::span<const double> along) {
+  const Interval span = span_of(along, kViewTrim);
+  Interval inner{span.high, span.low};
+  std::size_t at_low = 0;
+  std::size_t at_high = 0;
+  for (const double q : along) {
+    const bool is_low = q < span.low + kMaxGap_m;
+    const bool is_high = q > span.high - kMaxGap_m;
+    at_low += is_low ? 1 : 0;
+    at_high += is_high ? 1 : 0;
+    inner.low = is_low ? inner.low : std::min(inner.low, q);
+    inner.high = is_high ? inner.high : std::max(inner.high, q);
+  }
+  return {at_low == 1 ? inner.low : span.low, at_high == 1 ? inner.high : span.high};
+}
+
+/// `along` and `across`: places of the points along the axis and one at right angles to it; `sensor_across`: that of
+/// the sensor.
+AxisView view_along(std::span<const double> along, std::span<const double> across, double sensor_across,
+                    std::span<const Vector3d> points) {
   AxisView view;
-  view.seen = span_of(along, kViewTrim);
+  view.seen = seen_span(along);
   const auto look_at = [&](EndView& end, auto&& inwards) {  // how far inwards of the end a point lies
-    double count = 0.0;
     double sum = 0.0;
     double squares = 0.0;
+    double depths = 0.0;
     double farthest = 0.0;  // beyond the end
     end.gap = kMaxGap_m;
     for (std::size_t i = 0; i < points.size(); ++i) {
@@ -119,10 +147,10 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
         continue;  // as are most: neither at the end nor beside it
       }
       if (depth <= kEndDepth_m) {
-        end.middle += points[i];
-        count += 1.0;
+        end.count += 1.0;
         sum += across[i];
         squares += across[i] * across[i];
+        depths += depth * depth;
       }
       if (depth > kSamePlace_m) {
         end.gap = std::min(end.gap, depth);
@@ -133,14 +161,26 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
       }
     }
     end.has_points_beyond = end.reach > kMaxGap_m;
-    end.middle /= count;
-    end.width = std::sqrt(12.0 * std::max(0.0, squares / count - sum * sum / (count * count)));  // if evenly spread
-    if (end.width > kFaceWidth_m) {  // so does a side with a few points of wheels and axles behind it
-      double deviations = 0.0;
-      for (std::size_t i = 0; i < points.size(); ++i) {
-        deviations += inwards(along[i]) <= kEndDepth_m ? std::abs(across[i] - sum / count) : 0.0;
+    end.depth = std::sqrt(depths / end.count);
+    const double mean = sum / end.count;
+    end.width = std::sqrt(12.0 * std::max(0.0, squares / end.count - mean * mean));  // if evenly spread
+    // What is seen through gaps, of wheels and axles, lies behind the face that ends here.
+    const double towards_sensor = sensor_across < mean ? -1.0 : 1.0;
+    double nearer = 0.0;
+    double deviations = 0.0;
+    for (std::size_t i = 0; i < points.size(); ++i) {
+      if (inwards(along[i]) <= kEndDepth_m) {
+        const double off = across[i] - mean;
+        deviations += std::abs(off);
+        if (towards_sensor * off > -kSamePlace_m) {
+          end.middle += points[i];
+          nearer += 1.0;
+        }
       }
-      end.width = std::min(end.width, 4.0 * deviations / count);
+    }
+    end.middle /= nearer;
+    if (end.width > kFaceWidth_m) {  // a side with a few points behind it is not wide
+      end.width = std::min(end.width, 4.0 * deviations / end.count);
     }
   };
   look_at(view.low, [&](double q) { return q - view.seen.low; });
@@ -159,33 +199,34 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   find_places_along(axes, reference, points, along);
   std::array<AxisView, 3> views;
   std::array<bool, 2> faces_sensor{};
-  views[2] = view_along(along[2], along[1], points);
+  const Vector3d sensor = axes.transpose() * (detection.sensor - reference);
+  views[2] = view_along(along[2], along[1], sensor.y(), points);
   // Over something nearer often the cabin of a car is seen, and neither its hood nor its boot.
   const double ground =
       detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
   const double height = views[2].seen.high - ground;
   const double full = height < kCarHeight_m ? ground + kHood_m : views[2].seen.high;
   const auto is_end = [&](const EndView& end, const Vector3d& outward) {
-    if (end.has_points_beyond) {
+    if (end.has_points_beyond || end.count < kFewest) {
       return false;
     }
     const double facing = outward.dot((detection.sensor - end.middle).normalized());
-    if (end.width > kFaceWidth_m && facing > kLooksAtSensor) {
+    const bool is_flat = end.depth < kFlatDepth_m && end.width > kFlatWidth * end.depth;
+    if ((is_flat && facing > kFlatFacing) || (end.width > kFaceWidth_m && facing > kLooksAtSensor)) {
       return true;
     }
     const double at = axes.col(2).dot(end.middle - reference);
-    return is_true_end(end.middle, outward, end.reach, at - full, kUpperPart * (views[2].seen.high - at),
-                       end.width > kEndDepth_m, W, detection);
+    return is_true_end(end, outward, {at - full, kUpperPart * (views[2].seen.high - at)}, end.width > kEndDepth_m, W,
+                       detection);
   };
   for (const int axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);
-    AxisView& view = views[k] = view_along(along[k], along[1 - k], points);
-    const double sensor = axes.col(axis).dot(detection.sensor - reference);
-    const double grazing = kGrazing * (detection.sensor - reference).norm();
-    view.high.is_true = sensor > view.seen.high && is_end(view.high, axes.col(axis));
-    view.low.is_true = sensor < view.seen.low && is_end(view.low, -axes.col(axis));
-    faces_sensor[static_cast<std::size_t>(axis)] = (view.high.is_true && sensor > view.seen.high + grazing) ||
-                                                   (view.low.is_true && sensor < view.seen.low - grazing);
+    AxisView& view = views[k] = view_along(along[k], along[1 - k], sensor[1 - axis], points);
+    const double grazing = kGrazing * sensor.norm();
+    view.high.is_true = sensor[axis] > view.seen.high && is_end(view.high, axes.col(axis));
+    view.low.is_true = sensor[axis] < view.seen.low && is_end(view.low, -axes.col(axis));
+    faces_sensor[k] = (view.high.is_true && sensor[axis] > view.seen.high + grazing) ||
+                      (view.low.is_true && sensor[axis] < view.seen.low - grazing);
   }
   for (const int axis : {0, 1}) {
     AxisView& view = views[static_cast<std::size_t>(axis)];
@@ -195,8 +236,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     }
   }
   // What is below bodies is hidden by them.
-  views[2].high.is_true =
-      is_true_end(views[2].high.middle, axes.col(2), views[2].high.reach, 0.0, 0.0, true, W, detection);
+  views[2].high.is_true = is_true_end(views[2].high, axes.col(2), {}, true, W, detection);
   const Vector3d up = axes.col(2);
   const Vector3d& below_top = views[2].high.middle;
   views[2].high.is_cut =

@@ -17,10 +17,12 @@ constexpr double kViewTrim = 0.01;
 
 /// Where the points along one axis of a box end.
 struct EndView {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m, world: of the points there
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m, world: of the points there, of the nearer part of them
+  double count = 0.0;                                ///< of these points
   double gap = 0.0;                                  ///< m, from the end to the next points
   double reach = 0.0;                                ///< m, of the few points beyond the end, but for one
   double width = 0.0;                                ///< m, across the axis, of what is seen at the end
+  double depth = 0.0;                                ///< m, along the axis: of these points, root mean square
   bool has_points_beyond = false;                    ///< far from it, few: seen over something nearer
   bool is_true = false;                              ///< whether the body ends there, too
   bool is_cut = false;                               ///< of the top: by the upper edge of the field of view

@@ -237,6 +237,8 @@ TEST(BoxView, AFaceIsAnEndThoughSomethingHidesWhatIsBesideIt) {
   // the same shows no end.
   const std::vector<Vector3d> rear = face_points({20.0, 5.0, -0.5}, {20.0, 6.0, 0.5});
   const std::vector<Vector3d> side = face_points({20.0, 6.0, -0.5}, {22.0, 6.0, 0.5});
+  const std::vector<Vector3d> strip = face_points({20.0, 12.0, -0.5}, {20.0, 12.3, 0.5});
+  const std::vector<Vector3d> block = face_points({20.0, 12.0, -0.5}, {20.3, 12.3, 0.5});
   RawScan raw;
   for (double azimuth = -0.8; azimuth <= 0.8; azimuth += 0.002) {
     for (double z = -1.0; z <= 1.0; z += 0.1) {
@@ -247,8 +249,53 @@ TEST(BoxView, AFaceIsAnEndThoughSomethingHidesWhatIsBesideIt) {
   const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
   Detection detection;
   detection.view = &image;
-  EXPECT_TRUE(views_along(Matrix3d::Identity(), rear.front(), rear, {5.0, 0.0, 0.0}, detection)[0].low.is_true);
-  EXPECT_FALSE(views_along(Matrix3d::Identity(), side.front(), side, {5.0, 0.0, 0.0}, detection)[0].low.is_true);
+  const auto views_of = [&](const std::vector<Vector3d>& body) {
+    return views_along(Matrix3d::Identity(), body.front(), body, {5.0, 0.0, 0.0}, detection);
+  };
+  EXPECT_TRUE(views_of(rear)[0].low.is_true);
+  EXPECT_FALSE(views_of(side)[0].low.is_true);
+  EXPECT_TRUE(views_of(side)[1].low.is_true) << "the side itself, of which no end is seen";
+  EXPECT_TRUE(views_of(strip)[0].low.is_true) << "narrow, but flat";
+  EXPECT_FALSE(views_of(block)[0].low.is_true);
+}
+
+TEST(BoxView, APointFarFromAllOthersIsNoEnd) {
+  std::vector<Vector3d> rear = face_points({10.0, -0.4, -0.3}, {10.0, 0.4, 0.2});
+  ASSERT_LT(rear.size(), 100u);
+  const auto left_end = [&] {
+    return views_along(Matrix3d::Identity(), {10.0, 0.0, 0.0}, rear, {5.0, 0.0, 0.0}, {})[1].seen.high;
+  };
+  rear.emplace_back(9.5, 1.5, 0.0);
+  EXPECT_NEAR(left_end(), 0.4, 1e-9);
+  rear.emplace_back(9.5, 1.3, 0.0);
+  EXPECT_NEAR(left_end(), 1.5, 1e-9) << "two may be of the body";
+}
+
+TEST(BoxView, TheFarEndOfAFaceIsLookedForOnThatFace) {
+  // The side of a lorry and a part of its rear, which the edge of the field of view cuts off. Through a gap some of the
+  // lorry's other side is seen, straight behind which nothing would hide that it went on.
+  std::vector<Vector3d> body = face_points({1.5, 2.0, -0.5}, {2.4, 2.0, 0.5});
+  const std::vector<Vector3d> behind_gap = face_points({4.4, 2.0, -0.5}, {9.0, 2.0, 0.5});
+  const std::vector<Vector3d> rear = face_points({1.5, 2.1, -0.5}, {1.5, 2.8, 0.5});
+  const std::vector<Vector3d> through_gap = face_points({5.0, 2.6, -0.1}, {7.0, 2.8, -0.1});
+  body.insert(body.end(), behind_gap.begin(), behind_gap.end());
+  body.insert(body.end(), rear.begin(), rear.end());
+  body.insert(body.end(), through_gap.begin(), through_gap.end());
+  RawScan raw;
+  raw.points = body;
+  for (double azimuth = -1.0; azimuth <= std::atan2(2.8, 1.5); azimuth += 0.002) {
+    for (double z = -6.0; z <= 6.0; z += 1.0) {
+      raw.points.emplace_back(30.0 * std::cos(azimuth), 30.0 * std::sin(azimuth), z);
+    }
+  }
+  raw.doppler.assign(raw.points.size(), 0.0);
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+  Detection detection;
+  detection.view = &image;
+  const auto [along, left, up] = views_along(Matrix3d::Identity(), {1.5, 2.0, 0.0}, body, {5.0, 5.0, 0.0}, detection);
+  EXPECT_TRUE(along.low.is_true) << "the rear";
+  EXPECT_TRUE(left.low.is_true) << "the side";
+  EXPECT_FALSE(left.high.is_true);
 }
 
 TEST(BoxView, TheEdgeOfASideSeenEndOnIsNoEndWhereSomethingNearerBegins) {
