@@ -29,11 +29,13 @@ constexpr double kGrowth = 0.3;           // of a bound, towards what is seen be
 constexpr double kYawSearch_rad = 0.35;   // about the heading
 constexpr double kOnePointYaw_rad = 0.8;  // standard deviation of directions fitted to n points, times the root of n
 constexpr double kFirstYawSigma_rad = 0.1;
-constexpr double kSideslip_rad = 0.03;  // between heading and motion of the middle of a body ...
-constexpr double kSideslip_mps = 0.1;   // ... and whatever the speed ...
-constexpr double kPivotShare = 0.15;    // ... and of the length that the point without sideslip is behind the middle
-constexpr double kBackwards_mps = 0.5;  // what moves backwards faster than this was taken the wrong way round
-constexpr double kLogHeading = -2.0;    // a scan without heading: more than the corrections of one cost
+constexpr double kSideslip_rad = 0.03;   // between heading and motion of the middle of a body ...
+constexpr double kSideslip_mps = 0.1;    // ... and whatever the speed ...
+constexpr double kPivotShare = 0.15;     // ... and of the length that the point without sideslip is behind the middle
+constexpr double kTightestTurn_m = 5.0;  // radius in which a vehicle turns, about ...
+constexpr double kTurning_rps = 0.1;     // ... and whatever the speed
+constexpr double kBackwards_mps = 0.5;   // what moves backwards faster than this was taken the wrong way round
+constexpr double kLogHeading = -2.0;     // a scan without heading: more than the corrections of one cost
 constexpr double kWidthSigma_m = 0.5;
 constexpr double kSureSigmas = 3.0;      // nothing is beyond doubt that is less likely
 constexpr double kStump = 0.25;          // of the typical length or width
@@ -151,6 +153,8 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
   const double sigma_mps = kSideslip_mps + kSideslip_rad * body_.velocity().norm() +
                            kPivotShare * std::max(0.0, length) * std::abs(body_.yaw_rate());
   log_likelihood_ += body_.correct_sideslip(sigma_mps * sigma_mps);
+  const double turn_rps = kTurning_rps + body_.velocity().norm() / kTightestTurn_m;
+  body_.correct_yaw_rate(0.0, turn_rps * turn_rps);
   if (body_.axes().col(0).dot(body_.velocity()) < -kBackwards_mps) {
     body_.turn_around();
     for (const int axis : {0, 1}) {
