@@ -222,6 +222,7 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   }
   if (is_known(face) && body_.beyond(face, at_end) > kFalseEnd_m + kFalseEndSigmas * known_sigma) {
     body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);  // it was no end
+    log_likelihood_ -= 0.5 * kFalseEndSigmas * kFalseEndSigmas;
     least_[i] = seen;
   }
   const bool was_known = is_known(face);  // else it could be anywhere, and no place surprises

@@ -111,6 +111,25 @@ TEST(BoxFilter, ABoxThatGrowsStaysWhereItsTrueEndIs) {
   }
 }
 
+TEST(BoxFilter, AnEndThatWasNoneSpeaksAgainstTheMotion) {
+  // Seen from behind, to 0.3 of its length: it stays where the sensor sees it, or 1.5 m behind where it should be.
+  const Vector3d velocity(10, 0, 0);
+  const Vector3d centre(25, 6, 0);
+  const TrackConfig config;
+  const auto log_likelihood = [&](double behind_m) {
+    BoxFilter filter(rear_and_side(centre, velocity, 0.3, 1), 0.0, {}, config);
+    for (std::uint64_t k = 2; k < 6; ++k) {
+      const bool is_last = k == 5;
+      const Vector3d moved = 0.1 * static_cast<double>(k - 1) * velocity;
+      filter.predict(0.1, config);
+      filter.correct(rear_and_side(centre + moved - Vector3d(is_last ? behind_m : 0.0, 0.0, 0.0), velocity, 0.3, k),
+                     config);
+    }
+    return filter.log_likelihood();
+  };
+  EXPECT_LT(log_likelihood(1.5), log_likelihood(0.0) - 4.0);
+}
+
 TEST(BoxFilter, WhatMovesBackwardsWasTakenTheWrongWayRound) {
   const Vector3d velocity(10, 0, 0);
   const TrackConfig config;
