@@ -210,26 +210,27 @@ TEST(BoxView, AFewPointsBehindASideMakeNoFaceOfItsEnd) {
   }
 }
 
-TEST(BoxView, OfALorryTheUpperPartEndsWhereTheLowerOneDoes) {
+TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButForTheFrontOfAVan) {
   // The same as above, of what is higher than any car.
-  const std::vector<Vector3d> upper = face_points({-4.0, -8.0, -0.5}, {4.0, -8.0, 1.0});
-  RawScan raw;
-  raw.points = upper;
-  for (double x = -6.0; x <= 6.0; x += 0.02) {
-    raw.points.emplace_back(2.0 * x, -20.0, 0.0);
-    for (double z = -1.5; z < -0.4; z += 0.02) {
-      raw.points.emplace_back(x, -5.0, z);
+  for (const double top : {0.9, 1.5}) {  // of a van and a lorry
+    const std::vector<Vector3d> upper = face_points({-4.0, -8.0, -0.5}, {4.0, -8.0, top});
+    RawScan raw;
+    raw.points = upper;
+    for (double x = -6.0; x <= 6.0; x += 0.02) {
+      raw.points.emplace_back(2.0 * x, -20.0, 0.0);
+      for (double z = -1.5; z < -0.4; z += 0.02) {
+        raw.points.emplace_back(x, -5.0, z);
+      }
     }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.ground.offset_m = -1.5;
+    detection.view = &image;
+    const AxisView along = views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, upper, {5.0, -5.0, 0.0}, detection)[0];
+    EXPECT_EQ(along.high.is_true, top > 1.0) << "the front";
+    EXPECT_TRUE(along.low.is_true);
   }
-  raw.doppler.assign(raw.points.size(), 0.0);
-  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
-  Detection detection;
-  detection.ground.offset_m = -1.5;
-  detection.view = &image;
-  const auto [along, left, up] =
-      views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, upper, {5.0, -5.0, 0.0}, detection);
-  EXPECT_TRUE(along.high.is_true);
-  EXPECT_TRUE(along.low.is_true);
 }
 
 TEST(BoxView, AFaceIsAnEndThoughSomethingHidesWhatIsBesideIt) {
