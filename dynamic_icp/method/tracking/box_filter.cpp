@@ -210,11 +210,12 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   const double seen = span_end + 0.5 * gap;
   // The end of the span, beside the middle of the points there.
   const Vector3d at_end = end.middle + (seen - outward.dot(end.middle - body_.position())) * outward;
-  const Vector3d face_end = at_end + hidden_corner(face, at_end, detection) * outward;
-  const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
+  const Vector3d face_end = at_end + (hidden_corner(face, at_end, detection) + 0.5 * end.hidden) * outward;
+  const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap, kUniform * end.hidden);
   const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
-  // Where it was seen to reach farther it does not end.
-  const bool is_end = end.is_true && (is_known(face) || seen > least_[i] - kInside_m);
+  // Where it was seen to reach farther it does not end; and an end anywhere in what is hidden does not get better
+  // known.
+  const bool is_end = end.is_true && (is_known(face) ? end.hidden == 0.0 : seen > least_[i] - kInside_m);
   if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
     least_[i] = std::max(least_[i], seen);
   } else {

@@ -36,6 +36,7 @@ constexpr double kFewest = 3.0;         // points of an end
 constexpr double kUpperPart = 0.7;      // of the way up to the top: under a nearer body the lower part alone is seen
 constexpr double kCarHeight_m = 1.8;    // what is higher has no boot ...
 constexpr double kVanHeight_m = 2.8;    // ... and what is higher no hood
+constexpr double kVanHood_m = 1.2;      // vans' are at most so long
 constexpr double kHood_m = 0.6;         // below this height bodies reach as far as anywhere: hoods, bumpers
 
 /// How far above and below an end, m, it is asked what comes next.
@@ -206,7 +207,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   const double ground =
       detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
   const double height = views[2].seen.high - ground;
-  const auto is_end = [&](const EndView& end, const Vector3d& outward) {
+  const auto is_end = [&](EndView& end, const Vector3d& outward) {
     if (end.has_points_beyond || end.count < kFewest) {
       return false;
     }
@@ -216,11 +217,19 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
       return true;
     }
     const double at = axes.col(2).dot(end.middle - reference);
-    const bool is_front = outward.dot(axes.col(0)) > 0.5;
-    const bool may_be_cabin = height < (is_front ? kVanHeight_m : kCarHeight_m);
-    const double full = may_be_cabin ? ground + kHood_m : views[2].seen.high;
-    return is_true_end(end, outward, {at - full, kUpperPart * (views[2].seen.high - at)}, end.width > kEndDepth_m, W,
-                       detection);
+    const auto is_end_down_to = [&](double height_m) {
+      return is_true_end(end, outward, {at - height_m, kUpperPart * (views[2].seen.high - at)}, end.width > kEndDepth_m,
+                         W, detection);
+    };
+    if (height < kCarHeight_m) {
+      return is_end_down_to(ground + kHood_m);
+    }
+    if (!is_end_down_to(views[2].seen.high)) {
+      return false;
+    }
+    const bool may_have_hood = height < kVanHeight_m && outward.dot(axes.col(0)) > 0.5;
+    end.hidden = may_have_hood && !is_end_down_to(ground + kHood_m) ? kVanHood_m : 0.0;
+    return true;
   };
   for (const int axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);

@@ -210,7 +210,7 @@ TEST(BoxView, AFewPointsBehindASideMakeNoFaceOfItsEnd) {
   }
 }
 
-TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButForTheFrontOfAVan) {
+TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButForTheHoodOfAVan) {
   // The same as above, of what is higher than any car.
   for (const double top : {0.9, 1.5}) {  // of a van and a lorry
     const std::vector<Vector3d> upper = face_points({-4.0, -8.0, -0.5}, {4.0, -8.0, top});
@@ -228,8 +228,10 @@ TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButForTheFrontOfAV
     detection.ground.offset_m = -1.5;
     detection.view = &image;
     const AxisView along = views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, upper, {5.0, -5.0, 0.0}, detection)[0];
-    EXPECT_EQ(along.high.is_true, top > 1.0) << "the front";
+    EXPECT_TRUE(along.high.is_true);
+    EXPECT_EQ(along.high.hidden > 0.0, top < 1.0) << "the front";
     EXPECT_TRUE(along.low.is_true);
+    EXPECT_EQ(along.low.hidden, 0.0);
   }
 }
 
