@@ -26,7 +26,8 @@ OrientedBox BoxFilter::seen_box() const {
 }
 
 bool BoxFilter::is_whole_vehicle() const {
-  return has_heading_ && was_vehicle_ && is_whole(0) && is_whole(1) && is_whole(2);
+  return has_heading_ && was_vehicle_ && is_whole(0) && is_whole(1) && is_whole(2) &&
+         hidden_[index_of(Face::kFront)] == 0.0;
 }
 
 bool BoxFilter::is_whole(int axis) const { return extent(axis).is_whole(); }
@@ -38,7 +39,11 @@ double BoxFilter::span(int axis) const { return extent(axis).length(); }
 SeenExtent BoxFilter::extent(int axis) const {
   const Face high = high_face(axis);
   const Face low = low_face(axis);
-  return {reach(high), reach(low), is_known(high), is_known(low), axis == 2 && top_is_cut_ && !is_known(high)};
+  const auto likely_reach = [&](Face face) {
+    return reach(face) + (is_known(face) ? 0.5 * hidden_[index_of(face)] : 0.0);
+  };
+  return {likely_reach(high), likely_reach(low), is_known(high), is_known(low),
+          axis == 2 && top_is_cut_ && !is_known(high)};
 }
 
 BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {
@@ -59,7 +64,8 @@ BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {
     const LikelyExtent& likely = along[static_cast<std::size_t>(axis)];
     H.col(BodyFilter::kFirstFace + 2 * axis) = likely.weight_high * axes.col(axis);
     H.col(BodyFilter::kFirstFace + 2 * axis + 1) = -likely.weight_low * axes.col(axis);
-    hidden(axis, axis) = likely.variance;
+    const double in_hidden = kUniform * likely.weight_high * hidden_[index_of(high_face(axis))];
+    hidden(axis, axis) = likely.variance + in_hidden * in_hidden;
   }
   estimate.centre_covariance = H * body_.covariance() * H.transpose() + axes * hidden * axes.transpose();
   if (!has_heading_) {  // the side that the motion is nearest to counts as the front

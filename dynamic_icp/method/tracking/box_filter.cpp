@@ -42,7 +42,6 @@ constexpr double kStump = 0.25;          // of the typical length or width
 constexpr double kVehicleWidth_m = 1.4;  // what is less wide may be short
 constexpr double kSizeScatter = 0.25;    // of what is seen of sizes about the typical ones, as a share
 constexpr double kFacing = 0.3;          // cosine of the line of sight to a face that looks at the sensor
-constexpr double kUniform = 0.29;        // standard deviation of what is anywhere in a gap, as a share
 constexpr double kWorstLog = -10.0;
 constexpr double kGroundSigma_m = 0.05;
 constexpr double kErrorAngle_rad = 0.1;  // within it points share errors of the Doppler, and across it these differ
@@ -160,6 +159,7 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
     for (const int axis : {0, 1}) {
       std::swap(least_[index_of(high_face(axis))], least_[index_of(low_face(axis))]);
       std::swap(faces_[index_of(high_face(axis))], faces_[index_of(low_face(axis))]);
+      std::swap(hidden_[index_of(high_face(axis))], hidden_[index_of(low_face(axis))]);
       if (std::optional<Interval>& last = last_seen_[static_cast<std::size_t>(axis)]) {
         last = Interval{-last->high, -last->low};
       }
@@ -210,12 +210,12 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   const double seen = span_end + 0.5 * gap;
   // The end of the span, beside the middle of the points there.
   const Vector3d at_end = end.middle + (seen - outward.dot(end.middle - body_.position())) * outward;
-  const Vector3d face_end = at_end + (hidden_corner(face, at_end, detection) + 0.5 * end.hidden) * outward;
-  const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap, kUniform * end.hidden);
+  const Vector3d face_end = at_end + hidden_corner(face, at_end, detection) * outward;
+  const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
   const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
-  // Where it was seen to reach farther it does not end; and an end anywhere in what is hidden does not get better
-  // known.
-  const bool is_end = end.is_true && (is_known(face) ? end.hidden == 0.0 : seen > least_[i] - kInside_m);
+  // Where it was seen to reach farther it does not end, and what was seen to the end does not end above what is hidden.
+  const bool is_end =
+      end.is_true && (is_known(face) ? end.hidden == 0.0 || hidden_[i] > 0.0 : seen > least_[i] - kInside_m);
   if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
     least_[i] = std::max(least_[i], seen);
   } else {
@@ -229,6 +229,7 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   const bool was_known = is_known(face);  // else it could be anywhere, and no place surprises
   if (is_end) {
     faces_[i] = FaceView::kSeen;
+    hidden_[i] = end.hidden;
   } else {
     faces_[i] = faces_[i] == FaceView::kUnknown ? FaceView::kUnknown : FaceView::kHidden;
     if (!was_known || body_.beyond(face, at_end) < known_sigma) {
@@ -342,8 +343,8 @@ BoxFilter BoxFilter::blank() {
 }
 
 void BoxFilter::state(StateArchive& archive) {
-  archive(body_, has_heading_, was_vehicle_, top_is_cut_, least_, faces_, log_likelihood_, size_log_likelihood_,
-          log_prior_, spread_mps_, signal_mps_);
+  archive(body_, has_heading_, was_vehicle_, top_is_cut_, least_, faces_, hidden_, log_likelihood_,
+          size_log_likelihood_, log_prior_, spread_mps_, signal_mps_);
   for (std::optional<Interval>& seen : last_seen_) {
     bool is_known = seen.has_value();
     archive(is_known);

@@ -35,6 +35,9 @@ struct BoxHistory {
   bool was_vehicle = false;     ///< no person moves as it did
 };
 
+/// Standard deviation of what is anywhere in a gap, as a share.
+constexpr double kUniform = 0.29;
+
 /// Sides shorter than this have no direction, m.
 constexpr double kShortestSide_m = 1.0;
 
@@ -119,6 +122,7 @@ class BoxFilter {
   bool top_is_cut_ = false;                             ///< by the edge of the field of view, at last
   std::array<double, kFaces.size()> least_{};           ///< m from the reference: points were seen so far out
   std::array<FaceView, kFaces.size()> faces_{};         ///< by Face
+  std::array<double, kFaces.size()> hidden_{};          ///< m: so much farther a face may be below where it was seen
   std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last
   double log_likelihood_ = 0.0;                         ///< of the motion
   double size_log_likelihood_ = 0.0;                    ///< of the sizes

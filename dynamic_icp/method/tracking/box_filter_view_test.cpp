@@ -163,6 +163,47 @@ TEST(BoxFilterView, WhatSomethingNearerHidesStaysAsItWas) {
   EXPECT_GE(hidden, 4);
 }
 
+TEST(BoxFilterView, TheFrontOfAVanSeenOverSomethingMayBeFartherBelow) {
+  // The upper half of the side of a van, behind a wall that hides hood and wheels; then nothing hides it.
+  const TrackConfig config;
+  const auto estimate_of = [&](bool is_hidden) {
+    const Vector3d velocity(8.0, 0.0, 0.0);
+    std::optional<BoxFilter> filter;
+    for (int k = 0; k < 4; ++k) {
+      const double moved = velocity.x() * kScanPeriod_s * k;
+      Detection detection;
+      detection.ground.offset_m = -1.5;
+      RawScan raw;
+      for (double x = 6.0 + moved; x <= 10.01 + moved; x += 0.1) {
+        for (double z = -0.4; z <= 0.91; z += 0.1) {
+          detection.points.emplace_back(x, -8.0, z);
+          detection.directions.push_back(detection.points.back().normalized());
+          detection.radial.push_back(detection.directions.back().dot(velocity));
+          detection.times.push_back(0.0);
+        }
+      }
+      raw.points = detection.points;
+      for (double x = 0.0; x <= 20.0; x += 0.02) {
+        raw.points.emplace_back(2.0 * x, -20.0, 0.0);
+        raw.points.emplace_back(2.0 * x, -20.0, -3.0);
+        for (double z = -1.5; z < -0.3 && is_hidden; z += 0.02) {
+          raw.points.emplace_back(x, -5.0, z);
+        }
+      }
+      raw.doppler.assign(raw.points.size(), 0.0);
+      const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+      detection.view = &image;
+      take_in(filter, detection, 0.0, config);
+    }
+    EXPECT_NEAR(filter->body().velocity().x(), 8.0, 0.3);
+    return filter->estimate();
+  };
+  const BoxEstimate hidden = estimate_of(true);
+  const BoxEstimate open = estimate_of(false);
+  EXPECT_NEAR(hidden.box.size.x() - open.box.size.x(), 0.6, 0.15) << "half of 1.2 m";
+  EXPECT_GT(hidden.centre_covariance(0, 0) - open.centre_covariance(0, 0), 0.02) << "(0.5 0.29 1.2 m)^2 = 0.03 m^2";
+}
+
 TEST(BoxFilterView, ErrorsOfTheDopplerDoNotTurnWhatIsTooSlowToTurn) {
   // The front of a lorry beside the sensor, whose Doppler errs by 0.15 m/s over ten degrees, the same in all scans.
   const TrackConfig config;

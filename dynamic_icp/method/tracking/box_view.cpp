@@ -128,7 +128,8 @@ Interval seen_span(std::span<const double> along) {
     inner.low = is_low ? inner.low : std::min(inner.low, q);
     inner.high = is_high ? inner.high : std::max(inner.high, q);
   }
-  return {at_low == 1 ? inner.low : span.low, at_high == 1 ? inner.high : span.high};
+  const Interval without{at_low == 1 ? inner.low : span.low, at_high == 1 ? inner.high : span.high};
+  return without.length() < 0.0 ? span : without;  // of two points neither is far from all others
 }
 
 /// `along` and `across`: places of the points along the axis and one at right angles to it; `sensor_across`: that of

@@ -272,6 +272,8 @@ TEST(BoxView, APointFarFromAllOthersIsNoEnd) {
   EXPECT_NEAR(left_end(), 0.4, 1e-9);
   rear.emplace_back(9.5, 1.3, 0.0);
   EXPECT_NEAR(left_end(), 1.5, 1e-9) << "two may be of the body";
+  const std::vector<Vector3d> two = {{10.0, -1.0, 0.0}, {10.0, 1.0, 0.0}};
+  EXPECT_NEAR(views_along(Matrix3d::Identity(), two.front(), two, {5.0, 0.0, 0.0}, {})[1].seen.length(), 2.0, 1e-9);
 }
 
 TEST(BoxView, TheFarEndOfAFaceIsLookedForOnThatFace) {
