@@ -27,7 +27,7 @@ OrientedBox BoxFilter::seen_box() const {
 
 bool BoxFilter::is_whole_vehicle() const {
   return has_heading_ && was_vehicle_ && is_whole(0) && is_whole(1) && is_whole(2) &&
-         hidden_[index_of(Face::kFront)] == 0.0;
+         std::ranges::all_of(hidden_, [](double below_m) { return below_m == 0.0; });
 }
 
 bool BoxFilter::is_whole(int axis) const { return extent(axis).is_whole(); }
@@ -64,8 +64,9 @@ BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {
     const LikelyExtent& likely = along[static_cast<std::size_t>(axis)];
     H.col(BodyFilter::kFirstFace + 2 * axis) = likely.weight_high * axes.col(axis);
     H.col(BodyFilter::kFirstFace + 2 * axis + 1) = -likely.weight_low * axes.col(axis);
-    const double in_hidden = kUniform * likely.weight_high * hidden_[index_of(high_face(axis))];
-    hidden(axis, axis) = likely.variance + in_hidden * in_hidden;
+    const double below = std::hypot(likely.weight_high * hidden_[index_of(high_face(axis))],
+                                    likely.weight_low * hidden_[index_of(low_face(axis))]);
+    hidden(axis, axis) = likely.variance + kUniform * kUniform * below * below;
   }
   estimate.centre_covariance = H * body_.covariance() * H.transpose() + axes * hidden * axes.transpose();
   if (!has_heading_) {  // the side that the motion is nearest to counts as the front
