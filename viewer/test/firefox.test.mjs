@@ -20,7 +20,8 @@ for (const kind of Object.keys(samples)) {
     for (const tab of await page.$$('.tabs button')) {
       await tab.click();
       assert.equal(await tab.getAttribute('aria-selected'), 'true');
-      assert.ok((await page.locator('.sheet:visible').innerText()).length > 20, await tab.textContent());
+      // Charts have no text before Firefox has drawn them once (content-visibility).
+      await page.waitForFunction(() => [...document.querySelectorAll('.sheet')].find((sheet) => !sheet.hidden).innerText.length > 20);
     }
     await page.click('.play');
     await page.waitForFunction(() => Number(document.querySelector('.scene-holder').dataset.frame) > 6);
