@@ -89,16 +89,21 @@ void append_row(RawScan& scan, const RawScan& from, std::size_t row) {
 }
 
 /// That the others are the same motions and velocities seen from another frame, but for noise: points fall into other
-/// cells of the grids.
+/// cells of the grids. 3000 cases of each property differ by at most four fifths of these limits; an alignment from
+/// scan to scan that was still moving when it ended may differ by any amount.
 void must_be_close(const Pipeline& pipeline, const std::vector<Frame>& ones, const std::vector<Frame>& others,
                    const Eigen::Isometry3d& T_other_one = Eigen::Isometry3d::Identity()) {
   const bool is_default = pipeline.preset == "default";
-  const double limit_m = is_default ? 0.004 : 0.08;
-  const double limit_mps = is_default ? 0.05 : 0.4;
+  const double limit_m = is_default ? 0.004 : 0.15;
+  const double limit_mps = is_default ? 0.05 : 0.9;
+  const auto has_ended = [](const Frame& frame) { return frame.status != FrameStatus::kIterationLimit; };
   for (std::size_t k = 0; k < ones.size(); ++k) {
+    if (!is_default && !(has_ended(ones[k]) && has_ended(others[k]))) {
+      continue;
+    }
     const Eigen::Isometry3d expected = T_other_one * ones[k].T_target_source * T_other_one.inverse();
     const Eigen::Isometry3d E = others[k].T_target_source * expected.inverse();
-    const double limit_deg = !is_default ? 0.4 : k == 1 ? 0.3 : 0.2;  // two scans hardly show how the sensor turns
+    const double limit_deg = !is_default ? 0.7 : k == 1 ? 0.3 : 0.1;  // two scans hardly show how the sensor turns
     RC_LOG() << "scan " << k << ": " << E.translation().norm() << " m\n";
     RC_ASSERT(E.translation().norm() < limit_m);
     RC_ASSERT(rotation_angle(E.linear()) < limit_deg / 180.0 * std::numbers::pi);
