@@ -20,6 +20,7 @@ CellDoppler doppler_of_cell(const DopplerRows& rows, std::size_t cell, const Ego
       count += 1.0;
     }
   }
+  result.share = count / std::max(1.0, static_cast<double>(rows.first[cell + 1] - rows.first[cell]));
   count = std::max(1.0, count);
   result.u /= count;
   result.off_mps /= count;

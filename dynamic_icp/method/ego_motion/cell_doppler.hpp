@@ -20,6 +20,7 @@ struct CellDoppler {
   Eigen::Vector3d u = Eigen::Vector3d::Zero();  ///< mean line of sight
   double off_mps = 0.0;                         ///< mean of s + u . v(t) - bias
   double variance = 0.0;                        ///< (m/s)^2, of that by the noise of points alone
+  double share = 0.0;                           ///< of the points of the cell
 };
 
 /// `noise_mps` is the standard deviation of single points; those that are off by `moving_mps` or more move or are

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstddef>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 #include "dynamic_icp/method/base/quantile.hpp"
@@ -17,6 +18,9 @@ namespace {
 
 // What surfaces differ by even where the sensor has no error, m/s.
 constexpr double kSurface_mps = 0.015;
+
+// What moves has any Doppler that sensors tell, up to this.
+constexpr double kFastest_mps = 100.0;
 
 // Where so many cells creep, one that is next to them and off to the same side by so many standard deviations creeps,
 // too. Elsewhere it is most likely static.
@@ -45,6 +49,29 @@ std::vector<std::size_t> likely_static(const DopplerRows& rows) {
   return farthest;
 }
 
+bool is_on_support(const DopplerRows& rows, std::size_t cell) {
+  return !rows.on_support.empty() && rows.on_support[cell] != 0;
+}
+
+/// How likely it is that a cell which is not on the support stands, over that it moves: by what is known to move.
+double odds_of_static(const DopplerRows& rows, const std::vector<CellDoppler>& doppler,
+                      const std::vector<std::uint8_t>& creeps) {
+  double moving = 1.0;
+  double standing = 1.0;
+  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
+    if (!is_on_support(rows, cell)) {
+      (creeps[cell] != 0 || doppler[cell].share < 0.5 ? moving : standing) += 1.0;
+    }
+  }
+  return standing / moving;
+}
+
+/// So many standard deviations off a cell moves for as likely as it stands: 1 / (2 v_max) = odds N(off; 0, sigma^2).
+double even_sigmas(double odds_of_static, double sigma_mps) {
+  const double ratio = odds_of_static * 2.0 * kFastest_mps / (std::sqrt(2.0 * std::numbers::pi) * sigma_mps);
+  return std::sqrt(2.0 * std::log(std::max(1.0, ratio)));
+}
+
 /// From cells that creep to those next to them that are off to the same side.
 void spread(const DopplerRows& rows, const std::vector<double>& sigmas_off, std::vector<std::uint8_t>& creeps) {
   std::vector<std::pair<std::uint64_t, std::size_t>> by_key;
@@ -62,8 +89,7 @@ void spread(const DopplerRows& rows, const std::vector<double>& sigmas_off, std:
       return;
     }
     const std::size_t cell = at->second;
-    const bool carries = !rows.on_support.empty() && rows.on_support[cell] != 0;
-    if (!carries && sigmas_off[cell] * (sigmas_off[from] > 0.0 ? 1.0 : -1.0) > kNeighbourSigmas) {
+    if (!is_on_support(rows, cell) && sigmas_off[cell] * (sigmas_off[from] > 0.0 ? 1.0 : -1.0) > kNeighbourSigmas) {
       creeps[cell] = 1;
       open.push_back(cell);
     }
@@ -103,9 +129,16 @@ std::vector<std::uint8_t> creeping_cells(const DopplerRows& rows, const EgoVeloc
   const double scatter = kSigmaPerMad * median(static_off);
   const double off = std::max(kSurface_mps * kSurface_mps, scatter * scatter - median(static_variances));
   std::vector<double> sigmas_off(rows.cells());
+  const auto sigma_of = [&](std::size_t cell) { return std::sqrt(off + doppler[cell].variance); };
   for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
-    sigmas_off[cell] = doppler[cell].off_mps / std::sqrt(off + doppler[cell].variance);
+    sigmas_off[cell] = doppler[cell].off_mps / sigma_of(cell);
     creeps[cell] = std::abs(sigmas_off[cell]) > sigmas ? 1 : 0;
+  }
+  const double odds = odds_of_static(rows, doppler, creeps);
+  for (std::size_t cell = 0; cell < rows.cells(); ++cell) {
+    if (!is_on_support(rows, cell) && std::abs(sigmas_off[cell]) > even_sigmas(odds, sigma_of(cell))) {
+      creeps[cell] = 1;
+    }
   }
   if (static_cast<double>(std::ranges::count(creeps, 1)) > kCrowded * static_cast<double>(rows.cells())) {
     spread(rows, sigmas_off, creeps);

@@ -11,6 +11,7 @@
 
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/method/base/quantile.hpp"
 #include "dynamic_icp/method/spatial/cell_key.hpp"
 
 namespace dynamic_icp::ego_motion {
@@ -173,6 +174,27 @@ TEST(CreepingCells, WhereTheSupportIsKnownFarThingsNeedNotStand) {
   const std::vector<std::uint8_t> creeps = creeping_cells(scene.rows, scene.ego, kNoise_mps, kMoving_mps, kSigmas);
   for (std::size_t cell = 0; cell < creeps.size(); ++cell) {
     EXPECT_EQ(creeps[cell], cell % 2) << cell;
+  }
+}
+
+TEST(CreepingCells, InTrafficWhatIsOffMostLikelyCreeps) {
+  // A road that errs by 0.05 m/s, and things above it that are off by 3.7 times as much: errors of the sensor where all
+  // else stands, traffic where nearly all else moves.
+  for (const bool in_traffic : {false, true}) {
+    Scene scene;
+    std::vector<std::size_t> slow;
+    for (std::uint32_t sector = 0; sector < 100; ++sector) {
+      scene.add_cell(sector, 12.0, 400, sector % 2 == 0 ? 0.05 : -0.05);
+      scene.rows.on_support.push_back(1);
+      if (sector % 20 == 0) {
+        slow.push_back(scene.rows.cells());
+      }
+      scene.add_cell(sector, 20.0, 400, sector % 20 == 0 ? 3.7 * 0.05 * kSigmaPerMad : in_traffic ? 3.0 : 0.0);
+      scene.rows.on_support.push_back(0);
+    }
+    const std::vector<std::uint8_t> creeps = creeping_cells(scene.rows, scene.ego, kNoise_mps, kMoving_mps, kSigmas);
+    EXPECT_EQ(count(creeps, slow), in_traffic ? slow.size() : 0U);
+    EXPECT_EQ(count(creeps), count(creeps, slow)) << "what moves tells no cell, and the road carries it";
   }
 }
 

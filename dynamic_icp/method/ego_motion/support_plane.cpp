@@ -31,6 +31,10 @@ constexpr double kMinWidth_m = 2.0;
 constexpr double kMinPlaneShare = 0.1;
 constexpr std::size_t kMinPlanePoints = 30;
 
+// The sensor is above what carries it. The upper edge of the field of view bounds the scene, too, and roofs of traffic
+// that reach it make a plane, which passes through the sensor.
+constexpr double kLeastHeight_m = 0.2;
+
 // Both sides of a road and its embankments are up to so much steep against each other: cosine.
 constexpr double kSameUp = 0.8;
 
@@ -55,7 +59,7 @@ bool bounds(const Count& count, std::size_t points) {
   return static_cast<double>(count.beyond) <= kMaxBeyond * static_cast<double>(points);
 }
 
-/// The plane through the points near a plane; nothing where they are not wide.
+/// The plane through the points near a plane; nothing where they are not wide, or the sensor is not above it.
 std::optional<SupportPlane> fitted(const SupportPlane& plane, const std::vector<Eigen::Vector3d>& points) {
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
@@ -76,7 +80,7 @@ std::optional<SupportPlane> fitted(const SupportPlane& plane, const std::vector<
   result.normal = axes.eigenvectors().col(0);
   result.normal *= result.normal.dot(plane.normal) < 0.0 ? -1.0 : 1.0;
   result.offset_m = result.normal.dot(mean);
-  return result;
+  return result.height(Eigen::Vector3d::Zero()) > kLeastHeight_m ? std::optional(result) : std::nullopt;
 }
 
 std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {

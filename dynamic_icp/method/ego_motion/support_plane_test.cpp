@@ -124,6 +124,19 @@ TEST(SupportPlane, IsNotTheSideOfALorry) {
   EXPECT_FALSE(find_support_plane(street.points));
 }
 
+TEST(SupportPlane, IsNotTheUpperEdgeOfTheView) {
+  // What bounds all that is seen: roofs that reach the upper edge of the field of view, 10 degrees above the sensor.
+  Street street;
+  std::uniform_real_distribution<double> ahead(10.0, 30.0);
+  std::uniform_real_distribution<double> across(-10.0, 10.0);
+  std::uniform_real_distribution<double> below(0.0, 12.0);
+  for (int k = 0; k < 400; ++k) {
+    const double x = ahead(street.random);
+    street.add(x, across(street.random), 0.18 * x - (k % 2 == 0 ? below(street.random) : 0.0), false);
+  }
+  EXPECT_FALSE(find_support_plane(street.points));
+}
+
 TEST(SupportPlane, IsNothingThatHasPointsOnBothSides) {
   Street street;
   street.add_road(200);

@@ -23,9 +23,13 @@ constexpr int kSteps = 5;
 constexpr double kTukeyCutoff = 3.0;    // of the scale of the cells
 constexpr double kMinScale_mps = 0.05;  // of a sensor without errors: what is farther off is no road
 constexpr double kPrior_mps = 0.5;      // the surface may hardly show a direction, mostly its own
+constexpr double kAcross_mps = 0.2;  // standard deviation of the velocity along the normal: whatever drives sways ...
+constexpr double kNormal_rad = 0.1;  // ... and the normal is known only so well
 
-/// The change of the velocity that the cells ask for.
-Eigen::Vector3d change_of_velocity(const std::vector<CellDoppler>& cells) {
+/// The change of `velocity` that the cells ask for.
+Eigen::Vector3d change_of_velocity(const std::vector<CellDoppler>& cells, const Eigen::Vector3d& velocity,
+                                   const Eigen::Vector3d& normal) {
+  const double across_variance = kAcross_mps * kAcross_mps + kNormal_rad * kNormal_rad * velocity.squaredNorm();
   Eigen::Vector3d change = Eigen::Vector3d::Zero();
   std::vector<double> sizes(cells.size());
   for (int step = 0; step < kSteps; ++step) {
@@ -34,6 +38,8 @@ Eigen::Vector3d change_of_velocity(const std::vector<CellDoppler>& cells) {
     const double scale = std::max(kMinScale_mps, kSigmaPerMad * median(sizes));
     Eigen::Matrix3d information = Eigen::Matrix3d::Identity() / (kPrior_mps * kPrior_mps);
     Eigen::Vector3d gradient = change / (kPrior_mps * kPrior_mps);
+    information += normal * normal.transpose() / across_variance;
+    gradient += normal.dot(velocity + change) / across_variance * normal;
     for (const CellDoppler& cell : cells) {
       const double weight = estimation::tukey_weight(off(cell), kTukeyCutoff * scale) / (scale * scale + cell.variance);
       information += weight * cell.u * cell.u.transpose();
@@ -46,7 +52,8 @@ Eigen::Vector3d change_of_velocity(const std::vector<CellDoppler>& cells) {
 
 }  // namespace
 
-Eigen::Vector3d support_velocity(const DopplerRows& rows, const EgoVelocity& ego, double noise_mps, double moving_mps) {
+Eigen::Vector3d support_velocity(const DopplerRows& rows, const EgoVelocity& ego, const Eigen::Vector3d& normal,
+                                 double noise_mps, double moving_mps) {
   EgoVelocity of_support = ego;
   const std::vector<std::size_t> cells = support_cells(rows);
   std::vector<CellDoppler> doppler(cells.size());
@@ -55,7 +62,7 @@ Eigen::Vector3d support_velocity(const DopplerRows& rows, const EgoVelocity& ego
       std::ranges::transform(cells, doppler.begin(), [&](std::size_t cell) {
         return doppler_of_cell(rows, cell, of_support, noise_mps, moving_mps);
       });
-      of_support.velocity_sensor += change_of_velocity(doppler);
+      of_support.velocity_sensor += change_of_velocity(doppler, of_support.velocity_sensor, normal);
     }
   }
   return of_support.velocity_sensor;

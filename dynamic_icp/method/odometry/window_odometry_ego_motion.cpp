@@ -94,12 +94,19 @@ void WindowOdometry::separate_static_points() {
   const Scan& whole = memory_.whole;
   const bool is_relative = whole.doppler_kind() == DopplerKind::kRelative;
   memory_.patches.bound(whole, workers_);
-  ego_ = is_relative
-             ? ego_motion::estimate_velocity(rows_to_vote(), ego_prior(), config_.ego_motion.consensus, workers_)
-             : velocity_before();
-  if (is_relative) {
-    ego_.velocity_sensor =
-        ego_motion::support_velocity(memory_.rows, ego_, noise_for(ego_), filter_for(ego_).tau_0_mps);
+  const ego_motion::EgoPrior prior = ego_prior();
+  ego_ = is_relative ? ego_motion::estimate_velocity(rows_to_vote(), prior, config_.ego_motion.consensus, workers_)
+                     : velocity_before();
+  if (is_relative && support_) {
+    const Eigen::Vector3d of_support =
+        ego_motion::support_velocity(memory_.rows, ego_, support_->normal, noise_for(ego_), filter_for(ego_).tau_0_mps);
+    // Roofs of traffic may look like what carries the scene where hardly any of that is seen.
+    if (!prior.has_velocity || ego_motion::agrees(prior, of_support)) {
+      ego_.velocity_sensor = of_support;
+    } else {
+      support_.reset();
+      memory_.rows.on_support.clear();
+    }
   }
   if (lever_arm_omega_) {
     ego_.rotation = rig_rotation_;
