@@ -42,7 +42,7 @@ constexpr double kStump = 0.25;          // of the typical length or width
 constexpr double kVehicleWidth_m = 1.4;  // what is less wide may be short
 constexpr double kSizeScatter = 0.25;    // of what is seen of sizes about the typical ones, as a share
 constexpr double kFacing = 0.3;          // cosine of the line of sight to a face that looks at the sensor
-constexpr double kWorstLog = -10.0;
+constexpr double kWorstLog = -5.0;
 constexpr double kGroundSigma_m = 0.05;
 constexpr double kErrorAngle_rad = 0.1;  // within it points share errors of the Doppler, and across it these differ
 
@@ -203,6 +203,10 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
 void BoxFilter::correct_face(Face face, const EndView& end, double span_end, const Detection& detection,
                              const TrackConfig& config) {
   const std::size_t i = index_of(face);
+  if (is_known(face) && end.is_of_few) {  // which may be somebody else's
+    faces_[i] = FaceView::kHidden;
+    return;
+  }
   const Vector3d outward = side_of(face) * body_.axes().col(axis_of(face));
   // Where rays pass beside an end they miss it by less than their distance there; faces that look at them they meet.
   const bool is_beside = outward.dot((end.middle - detection.sensor).normalized()) > -kFacing;

@@ -130,6 +130,49 @@ TEST(BoxFilter, AnEndThatWasNoneSpeaksAgainstTheMotion) {
   EXPECT_LT(log_likelihood(1.5), log_likelihood(0.0) - 4.0);
 }
 
+TEST(BoxFilter, TwoPointsOfSomethingElseMoveNoFace) {
+  // Of a body whose right side was seen few points are left, and two, 2 m beside them, that another one has left.
+  const Vector3d velocity(10, 0, 0);
+  Vector3d centre(25, 6, 0);
+  const TrackConfig config;
+  BoxFilter filter(rear_and_side(centre, velocity, 1.0, 1), 0.0, {}, config);
+  for (std::uint64_t k = 2; k < 8; ++k) {
+    centre += 0.1 * velocity;
+    Detection detection = rear_and_side(centre, velocity, 1.0, k);
+    if (k == 7) {
+      detection.points.resize(60);
+      detection.points.emplace_back(centre + Vector3d(1.0, -3.3, 0.0));
+      detection.points.emplace_back(centre + Vector3d(1.0, -3.4, 0.0));
+      detection.directions.clear();
+      for (const Vector3d& point : detection.points) {
+        detection.directions.push_back(point.normalized());
+      }
+      detection.radial.resize(detection.points.size(), detection.directions.back().dot(velocity));
+      detection.times.resize(detection.points.size());
+    }
+    filter.predict(0.1, config);
+    filter.correct(detection, config);
+  }
+  EXPECT_NEAR(middle_of(filter.estimate().box, Face::kRight).y(), centre.y() - 0.5 * kLorrySize_m.y(), 0.1);
+}
+
+TEST(BoxFilter, TwoBodiesSideBySideDoNotSettleAHeading) {
+  // Rears of two lorries in one plane are as wide as no body is along the road, and as the side of one across it.
+  const Vector3d velocity(5, 0, 0);
+  Detection detection;
+  for (std::uint64_t i = 0; i < 100; ++i) {
+    const RandomSource one = RandomSource(1).fork(i);
+    detection.points.emplace_back(80.0 + 0.02 * one.normal(0), one.uniform(1, -2.8, 2.8), one.uniform(2, -1.0, 1.5));
+    detection.directions.push_back(detection.points.back().normalized());
+    detection.radial.push_back(detection.directions.back().dot(velocity) + 0.05 * one.normal(5));
+    detection.times.push_back(0.0);
+  }
+  const TrackConfig config;
+  const double along = BoxFilter(detection, 0.0, {}, config).log_likelihood();
+  const double across = BoxFilter(detection, 0.5 * std::numbers::pi, {}, config).log_likelihood();
+  EXPECT_GT(along, across - 3.0);
+}
+
 TEST(BoxFilter, WhatMovesBackwardsWasTakenTheWrongWayRound) {
   const Vector3d velocity(10, 0, 0);
   const TrackConfig config;

@@ -35,9 +35,12 @@ constexpr double kFlatFacing = 0.1;     // ... if it looks at the sensor but a l
 constexpr double kFewest = 3.0;         // points of an end
 constexpr double kUpperPart = 0.7;      // of the way up to the top: under a nearer body the lower part alone is seen
 constexpr double kCarHeight_m = 1.8;    // what is higher has no boot ...
-constexpr double kVanHeight_m = 2.8;    // ... and what is higher no hood
-constexpr double kVanHood_m = 1.2;      // vans' are at most so long
-constexpr double kHood_m = 0.6;         // below this height bodies reach as far as anywhere: hoods, bumpers
+constexpr double kVanHeight_m =
+    2.8;                            // ... and what is higher is a lorry, whose cabin may be lower than what it carries
+constexpr double kVanHood_m = 1.2;  // hoods of vans are at most so long ...
+constexpr double kCabin_m = 2.4;    // ... and such cabins
+constexpr double kHood_m = 0.6;     // below this height bodies reach as far as anywhere: hoods, bumpers ...
+constexpr double kCabinHeight_m = 2.0;  // ... and lorries below this one
 
 /// How far above and below an end, m, it is asked what comes next.
 struct LookBeside {
@@ -164,6 +167,7 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
       }
     }
     end.has_points_beyond = end.reach > kMaxGap_m;
+    end.is_of_few = end.count < kFewest;
     end.depth = std::sqrt(depths / end.count);
     const double mean = sum / end.count;
     end.width = std::sqrt(12.0 * std::max(0.0, squares / end.count - mean * mean));  // if evenly spread
@@ -209,7 +213,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
       detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
   const double height = views[2].seen.high - ground;
   const auto is_end = [&](EndView& end, const Vector3d& outward) {
-    if (end.has_points_beyond || end.count < kFewest) {
+    if (end.has_points_beyond || end.is_of_few) {
       return false;
     }
     const double facing = outward.dot((detection.sensor - end.middle).normalized());
@@ -228,8 +232,10 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     if (!is_end_down_to(views[2].seen.high)) {
       return false;
     }
-    const bool may_have_hood = height < kVanHeight_m && outward.dot(axes.col(0)) > 0.5;
-    end.hidden = may_have_hood && !is_end_down_to(ground + kHood_m) ? kVanHood_m : 0.0;
+    const bool is_front = outward.dot(axes.col(0)) > 0.5;
+    const bool is_lorry = height > kVanHeight_m;
+    const bool is_seen_below = !is_front || is_end_down_to(ground + (is_lorry ? kCabinHeight_m : kHood_m));
+    end.hidden = is_seen_below ? 0.0 : is_lorry ? kCabin_m : kVanHood_m;
     return true;
   };
   for (const int axis : {0, 1}) {

@@ -210,26 +210,35 @@ TEST(BoxView, AFewPointsBehindASideMakeNoFaceOfItsEnd) {
   }
 }
 
-TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButForTheHoodOfAVan) {
-  // The same as above, of what is higher than any car.
-  for (const double top : {0.9, 1.5}) {  // of a van and a lorry
-    const std::vector<Vector3d> upper = face_points({-4.0, -8.0, -0.5}, {4.0, -8.0, top});
+TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButForHoodsAndCabins) {
+  // The same as above, of what is higher than any car, 8 m away, over something 5 m away: of a van, of a lorry of which
+  // as much is hidden, and of one of which a cabin would be.
+  struct Case {
+    double top_m;
+    double hidden_below_m;
+    double may_reach_m;  // farther in front
+  };
+  constexpr double kGround_m = -1.5;
+  for (const auto& [top_m, hidden_below_m, may_reach_m] :
+       {Case{2.4, 0.7, 1.2}, Case{3.0, 0.7, 0.0}, Case{3.6, 2.4, 2.4}}) {
+    const std::vector<Vector3d> upper =
+        face_points({-4.0, -8.0, kGround_m + hidden_below_m}, {4.0, -8.0, kGround_m + top_m});
     RawScan raw;
     raw.points = upper;
     for (double x = -6.0; x <= 6.0; x += 0.02) {
       raw.points.emplace_back(2.0 * x, -20.0, 0.0);
-      for (double z = -1.5; z < -0.4; z += 0.02) {
+      for (double z = -1.5; z < 5.0 / 8.0 * (kGround_m + hidden_below_m); z += 0.02) {
         raw.points.emplace_back(x, -5.0, z);
       }
     }
     raw.doppler.assign(raw.points.size(), 0.0);
     const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
     Detection detection;
-    detection.ground.offset_m = -1.5;
+    detection.ground.offset_m = kGround_m;
     detection.view = &image;
     const AxisView along = views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, upper, {5.0, -5.0, 0.0}, detection)[0];
     EXPECT_TRUE(along.high.is_true);
-    EXPECT_EQ(along.high.hidden > 0.0, top < 1.0) << "the front";
+    EXPECT_EQ(along.high.hidden, may_reach_m) << "the front of what is " << top_m << " m high";
     EXPECT_TRUE(along.low.is_true);
     EXPECT_EQ(along.low.hidden, 0.0);
   }
