@@ -33,7 +33,7 @@ constexpr std::size_t kMinPlanePoints = 30;
 
 // The sensor is above what carries it. The upper edge of the field of view bounds the scene, too, and roofs of traffic
 // that reach it make a plane, which passes through the sensor.
-constexpr double kLeastHeight_m = 0.2;
+constexpr double kMinHeight_m = 0.2;
 
 // Both sides of a road and its embankments are up to so much steep against each other: cosine.
 constexpr double kSameUp = 0.8;
@@ -80,7 +80,7 @@ std::optional<SupportPlane> fitted(const SupportPlane& plane, const std::vector<
   result.normal = axes.eigenvectors().col(0);
   result.normal *= result.normal.dot(plane.normal) < 0.0 ? -1.0 : 1.0;
   result.offset_m = result.normal.dot(mean);
-  return result.height(Eigen::Vector3d::Zero()) > kLeastHeight_m ? std::optional(result) : std::nullopt;
+  return result.height(Eigen::Vector3d::Zero()) > kMinHeight_m ? std::optional(result) : std::nullopt;
 }
 
 std::vector<Eigen::Vector3d> thinned(const std::vector<Eigen::Vector3d>& points) {

@@ -22,7 +22,7 @@ struct RoadScene {
   Vector3d velocity;  // m/s, of the sensor
   EgoVelocity ego;    // as far as it is known
   DopplerRows rows;
-  Vector3d normal = Vector3d::UnitZ();  // of the road
+  Vector3d road_normal = Vector3d::UnitZ();
   std::mt19937 random{3};
 
   explicit RoadScene(const Vector3d& true_velocity = {5.0, 0.1, 0.05}) : velocity(true_velocity) {
@@ -63,7 +63,7 @@ struct RoadScene {
   }
 
   [[nodiscard]] Vector3d off() const {
-    return support_velocity(rows, ego, normal, kRoadNoise_mps, kOffRoad_mps) - velocity;
+    return support_velocity(rows, ego, road_normal, kRoadNoise_mps, kOffRoad_mps) - velocity;
   }
 };
 
@@ -107,7 +107,7 @@ TEST(SupportVelocity, LiesInTheRoad) {
 TEST(SupportVelocity, ForgivesThatTheNormalIsWrong) {
   RoadScene scene({30.0, 0.1, 0.05});
   scene.add_road();
-  scene.normal = Vector3d(0.1, 0.0, 1.0).normalized();
+  scene.road_normal = Vector3d(0.1, 0.0, 1.0).normalized();
   EXPECT_LT(scene.off().head<2>().norm(), 0.03);
   EXPECT_LT(std::abs(scene.off().z()), 0.1);
 }
@@ -127,15 +127,16 @@ TEST(SupportVelocity, IsTheOneKnownWhereNoRoadIsSeen) {
   scene.add_road();
   scene.ego.velocity_sensor << 1.0, 2.0, 3.0;
   scene.rows.on_support.clear();
-  EXPECT_EQ(support_velocity(scene.rows, scene.ego, scene.normal, kRoadNoise_mps, kOffRoad_mps),
+  EXPECT_EQ(support_velocity(scene.rows, scene.ego, scene.road_normal, kRoadNoise_mps, kOffRoad_mps),
             scene.ego.velocity_sensor);
   scene.rows.on_support.assign(scene.rows.cells(), 0);
   for (std::size_t cell = 0; cell < 19; ++cell) {
     scene.rows.on_support[cell] = 1;
   }
-  EXPECT_EQ(support_velocity(scene.rows, scene.ego, scene.normal, kRoadNoise_mps, kOffRoad_mps),
+  EXPECT_EQ(support_velocity(scene.rows, scene.ego, scene.road_normal, kRoadNoise_mps, kOffRoad_mps),
             scene.ego.velocity_sensor);
-  EXPECT_EQ(support_velocity({}, scene.ego, scene.normal, kRoadNoise_mps, kOffRoad_mps), scene.ego.velocity_sensor);
+  EXPECT_EQ(support_velocity({}, scene.ego, scene.road_normal, kRoadNoise_mps, kOffRoad_mps),
+            scene.ego.velocity_sensor);
 }
 
 }  // namespace

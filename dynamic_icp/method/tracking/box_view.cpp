@@ -32,14 +32,13 @@ constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a
 constexpr double kFlatDepth_m = 0.1;    // so is what is narrower, but not deeper than this ...
 constexpr double kFlatWidth = 2.5;      // ... and so many times wider than deep ...
 constexpr double kFlatFacing = 0.1;     // ... if it looks at the sensor but a little
-constexpr double kFewest = 3.0;         // points of an end
+constexpr double kMinEndPoints = 3.0;   // points of an end
 constexpr double kUpperPart = 0.7;      // of the way up to the top: under a nearer body the lower part alone is seen
 constexpr double kCarHeight_m = 1.8;    // what is higher has no boot ...
-constexpr double kVanHeight_m =
-    2.8;                            // ... and what is higher is a lorry, whose cabin may be lower than what it carries
-constexpr double kVanHood_m = 1.2;  // hoods of vans are at most so long ...
-constexpr double kCabin_m = 2.4;    // ... and such cabins
-constexpr double kHood_m = 0.6;     // below this height bodies reach as far as anywhere: hoods, bumpers ...
+constexpr double kVanHeight_m = 2.8;    // ... and what is higher is a lorry, with a cabin that may be lower
+constexpr double kVanHood_m = 1.2;      // hoods of vans are at most so long ...
+constexpr double kCabin_m = 2.4;        // ... and such cabins
+constexpr double kHood_m = 0.6;         // below this height bodies reach as far as anywhere: hoods, bumpers ...
 constexpr double kCabinHeight_m = 2.0;  // ... and lorries below this one
 
 /// How far above and below an end, m, it is asked what comes next.
@@ -167,7 +166,7 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
       }
     }
     end.has_points_beyond = end.reach > kMaxGap_m;
-    end.is_of_few = end.count < kFewest;
+    end.is_of_few = end.count < kMinEndPoints;
     end.depth = std::sqrt(depths / end.count);
     const double mean = sum / end.count;
     end.width = std::sqrt(12.0 * std::max(0.0, squares / end.count - mean * mean));  // if evenly spread
