@@ -118,9 +118,6 @@ void Track::add_headings_along(const BodySides& sides, const Detection& detectio
       one.credit(has_it(one) ? kLogAlongSides : 0.0);
     }
   }
-  if (sides.length_m > kVehicle_m) {
-    return;
-  }
   if (const std::optional<double> likeliest = likeliest_heading(detection);
       likeliest && !is_along(*likeliest, sides.yaw_rad, kQuarterTurn)) {
     hypotheses_.emplace_back(detection, *likeliest, along_sides, config);

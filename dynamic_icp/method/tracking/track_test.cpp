@@ -175,6 +175,35 @@ TEST(Track, OfWhatLittleIsSeenTheTrafficTellsTheHeading) {
       << "before its way shows the direction";
 }
 
+TEST(Track, WhatLooksLikeASideIsNotBelievedAgainstTheTrafficAndTheMotion) {
+  // The edge of what is seen of a roof runs aslant, as a nearer body cuts it off.
+  TrafficPrior traffic;
+  for (const double x : {10.0, 15.0, 20.0, 25.0, 30.0}) {
+    traffic.add({x, 3.0, 0.0}, Vector3d::UnitX(), 5.0);
+  }
+  const TrackConfig config;
+  const Vector3d velocity(5.0, 0.0, 0.0);
+  std::optional<Track> track;
+  for (int scan = 0; scan < 8; ++scan) {
+    Detection detection;
+    for (int i = 0; i < 30; ++i) {
+      const double along = i / 29.0;
+      const Vector3d on_edge(20.0 + 2.0 * along, -8.0 - 1.2 * along, 0.1 * (i % 3));
+      detection.points.emplace_back(on_edge + 0.1 * scan * velocity);
+      detection.directions.push_back(detection.points.back().normalized());
+      detection.radial.push_back(detection.directions.back().dot(velocity));
+      detection.times.push_back(0.0);
+    }
+    detection.traffic = &traffic;
+    if (track) {
+      track->correct(detection, 0.1 * scan, config);
+    } else {
+      track.emplace(detection, 0.0, config);
+    }
+  }
+  EXPECT_GT(track->estimate().box.axes.col(0).x(), 0.98);
+}
+
 TEST(Track, WhatCrossesTheTrafficDoesSo) {
   // Sides are believed against what others do.
   TrafficPrior traffic;
