@@ -26,8 +26,7 @@ OrientedBox BoxFilter::seen_box() const {
 }
 
 bool BoxFilter::is_whole_vehicle() const {
-  return has_heading_ && was_vehicle_ && is_whole(0) && is_whole(1) && is_whole(2) &&
-         std::ranges::all_of(hidden_, [](double below_m) { return below_m == 0.0; });
+  return has_heading_ && was_vehicle_ && is_whole(0) && is_whole(1) && is_whole(2);
 }
 
 bool BoxFilter::is_whole(int axis) const { return extent(axis).is_whole(); }
@@ -39,11 +38,15 @@ double BoxFilter::span(int axis) const { return extent(axis).length(); }
 SeenExtent BoxFilter::extent(int axis) const {
   const Face high = high_face(axis);
   const Face low = low_face(axis);
-  const auto likely_reach = [&](Face face) {
-    return reach(face) + (is_known(face) ? 0.5 * hidden_[index_of(face)] : 0.0);
+  // An end of the upper part tells where the body is, but not how large: of two, neither counts.
+  const bool is_one = is_known(high) != is_known(low);
+  const auto is_end = [&](Face face) {
+    return is_known(face) && (is_one || faces_[index_of(face)] != FaceView::kUnknown);
   };
-  return {likely_reach(high), likely_reach(low), is_known(high), is_known(low),
-          axis == 2 && top_is_cut_ && !is_known(high)};
+  const auto likely_reach = [&](Face face) {
+    return reach(face) + (is_end(face) ? 0.5 * hidden_[index_of(face)] : 0.0);
+  };
+  return {likely_reach(high), likely_reach(low), is_end(high), is_end(low), axis == 2 && top_is_cut_ && !is_end(high)};
 }
 
 BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {

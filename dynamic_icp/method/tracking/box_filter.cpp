@@ -188,7 +188,7 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
   }
   size_log_likelihood_ = size_log_likelihood(config);  // before what is too wide is cut off
   limit_width(config);
-  limit_length();
+  limit_length(face_sigma(body_.position(), detection, config));
   forget_stumps(detection);
   if (detection.ground.offset_m) {
     const Vector3d up = detection.ground.up();
@@ -203,8 +203,9 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
 void BoxFilter::correct_face(Face face, const EndView& end, double span_end, const Detection& detection,
                              const TrackConfig& config) {
   const std::size_t i = index_of(face);
+  const bool was_seen = faces_[i] != FaceView::kUnknown;
   if (is_known(face) && end.is_of_few) {  // which may be somebody else's
-    faces_[i] = FaceView::kHidden;
+    faces_[i] = was_seen ? FaceView::kHidden : FaceView::kUnknown;
     return;
   }
   const Vector3d outward = side_of(face) * body_.axes().col(axis_of(face));
@@ -217,25 +218,31 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   const Vector3d face_end = at_end + hidden_corner(face, at_end, detection) * outward;
   const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
   const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
-  // Where it was seen to reach farther it does not end, and what was seen to the end does not end above what is hidden.
-  const bool is_end =
-      end.is_true && (is_known(face) ? end.hidden == 0.0 || hidden_[i] > 0.0 : seen > least_[i] - kInside_m);
-  if (faces_[i] == FaceView::kUnknown && !is_known(face)) {
+  // Where it was seen to reach farther it does not end.
+  const bool is_possible = is_known(face) || seen > least_[i] - kInside_m;
+  const bool is_end = end.is_true && is_possible;
+  // Where its upper part ends it may not, but that shows the motion, too, until the end is seen.
+  const bool is_upper_end = end.hidden > 0.0 && is_possible && !was_seen;
+  if (!was_seen && !is_known(face)) {
     least_[i] = std::max(least_[i], seen);
   } else {
     least_[i] += kGrowth * std::max(0.0, seen - least_[i]);
   }
-  if (is_known(face) && body_.beyond(face, at_end) > kFalseEnd_m + kFalseEndSigmas * known_sigma) {
+  if (is_known(face) && !was_seen && is_end) {
+    body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);  // only its upper part ended there
+  } else if (is_known(face) && body_.beyond(face, at_end) > kFalseEnd_m + kFalseEndSigmas * known_sigma) {
     body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);  // it was no end
-    log_likelihood_ -= 0.5 * kFalseEndSigmas * kFalseEndSigmas;
+    log_likelihood_ -= was_seen ? 0.5 * kFalseEndSigmas * kFalseEndSigmas : 0.0;
     least_[i] = seen;
   }
   const bool was_known = is_known(face);  // else it could be anywhere, and no place surprises
   if (is_end) {
     faces_[i] = FaceView::kSeen;
+    hidden_[i] = 0.0;
+  } else if (is_upper_end) {
     hidden_[i] = end.hidden;
   } else {
-    faces_[i] = faces_[i] == FaceView::kUnknown ? FaceView::kUnknown : FaceView::kHidden;
+    faces_[i] = was_seen ? FaceView::kHidden : FaceView::kUnknown;
     if (!was_known || body_.beyond(face, at_end) < known_sigma) {
       return;
     }
@@ -273,15 +280,26 @@ void BoxFilter::limit_width(const TrackConfig& config) {
   }
 }
 
-/// Of a body without an end that was seen it is not known which of its points was seen when: where the parts add up to
-/// more than a body, the velocity was wrong, and only what is seen now counts.
-void BoxFilter::limit_length() {
-  if (!has_heading_ || is_known(Face::kFront) || is_known(Face::kRear) ||
-      span(0) <= longest_length(likely_width(), span(2))) {
+/// No body is longer than the longest: where the parts of one add up to more, and neither end was seen, it has not gone
+/// as far as its velocity said.
+void BoxFilter::limit_length(double sigma_m) {
+  if (!has_heading_ || is_known(Face::kFront) || is_known(Face::kRear)) {
     return;
   }
-  least_[index_of(Face::kFront)] = last_seen_[0]->high;
-  least_[index_of(Face::kRear)] = -last_seen_[0]->low;
+  const double longest = longest_length(likely_width(), span(2));
+  const double excess = span(0) - longest;
+  if (excess <= 0.0) {
+    return;
+  }
+  Interval& seen = *last_seen_[0];
+  const bool is_at_front = reach(Face::kFront) - seen.high < seen.low + reach(Face::kRear);
+  const Vector3d along = body_.axes().col(0);
+  const Vector3d before = body_.position();
+  log_likelihood_ += body_.correct_position(0, before + (is_at_front ? excess : -excess) * along, sigma_m * sigma_m);
+  const double moved = along.dot(body_.position() - before);
+  seen = {seen.low - moved, seen.high - moved};
+  least_[index_of(Face::kFront)] = is_at_front ? seen.high : std::max(seen.high, longest + seen.low);
+  least_[index_of(Face::kRear)] = is_at_front ? std::max(-seen.low, longest - seen.high) : -seen.low;
 }
 
 /// What is a small part of the body that its other sides speak of did not end where it seemed to, away from the sensor.

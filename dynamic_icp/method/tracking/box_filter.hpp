@@ -104,7 +104,7 @@ class BoxFilter {
   [[nodiscard]] double hidden_corner(Face face, const Eigen::Vector3d& at_end, const Detection& detection) const;
   void correct_middle(int axis, const AxisView& view);
   void limit_width(const TrackConfig& config);
-  void limit_length();
+  void limit_length(double sigma_m);
   void forget_stumps(const Detection& detection);
   [[nodiscard]] double size_log_likelihood(const TrackConfig& config) const;
   [[nodiscard]] bool is_fast_for_sure() const;
@@ -122,7 +122,7 @@ class BoxFilter {
   bool top_is_cut_ = false;                             ///< by the edge of the field of view, at last
   std::array<double, kFaces.size()> least_{};           ///< m from the reference: points were seen so far out
   std::array<FaceView, kFaces.size()> faces_{};         ///< by Face
-  std::array<double, kFaces.size()> hidden_{};          ///< m: so much farther a face may be below where it was seen
+  std::array<double, kFaces.size()> hidden_{};          ///< m: so much farther than its upper part a body may reach
   std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last
   double log_likelihood_ = 0.0;                         ///< of the motion
   double size_log_likelihood_ = 0.0;                    ///< of the sizes

@@ -30,13 +30,14 @@ constexpr double kMaxGap_m = 0.5;
 constexpr double kFaceWidth_m = 0.8;    // what is seen so wide at an end that looks at the sensor is a face
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
 constexpr double kFlatDepth_m = 0.1;    // so is what is narrower, but not deeper than this ...
-constexpr double kFlatWidth = 2.5;      // ... and so many times wider than deep ...
+constexpr double kFlatWidth = 2.5;      // ... and so many times wider, as the sensor sees it, than deep ...
 constexpr double kFlatFacing = 0.1;     // ... if it looks at the sensor but a little
 constexpr double kMinEndPoints = 3.0;   // points of an end
 constexpr double kUpperPart = 0.7;      // of the way up to the top: under a nearer body the lower part alone is seen
 constexpr double kCarHeight_m = 1.8;    // what is higher has no boot ...
 constexpr double kVanHeight_m = 2.8;    // ... and what is higher is a lorry, with a cabin that may be lower
-constexpr double kVanHood_m = 1.2;      // hoods of vans are at most so long ...
+constexpr double kVanHood_m = 1.2;      // hoods and boots are at most so long ...
+constexpr double kSlope_m = 0.2;        // ... sides lean so much ...
 constexpr double kCabin_m = 2.4;        // ... and such cabins
 constexpr double kHood_m = 0.6;         // below this height bodies reach as far as anywhere: hoods, bumpers ...
 constexpr double kCabinHeight_m = 2.0;  // ... and lorries below this one
@@ -216,7 +217,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
       return false;
     }
     const double facing = outward.dot((detection.sensor - end.middle).normalized());
-    const bool is_flat = end.depth < kFlatDepth_m && end.width > kFlatWidth * end.depth;
+    const bool is_flat = end.depth < kFlatDepth_m && facing * end.width > kFlatWidth * end.depth;
     if ((is_flat && facing > kFlatFacing) || (end.width > kFaceWidth_m && facing > kLooksAtSensor)) {
       return true;
     }
@@ -225,17 +226,19 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
       return is_true_end(end, outward, {at - height_m, kUpperPart * (views[2].seen.high - at)}, end.width > kEndDepth_m,
                          W, detection);
     };
-    if (height < kCarHeight_m) {
-      return is_end_down_to(ground + kHood_m);
-    }
     if (!is_end_down_to(views[2].seen.high)) {
       return false;
     }
-    const bool is_front = outward.dot(axes.col(0)) > 0.5;
+    const bool is_along = std::abs(outward.dot(axes.col(0))) > 0.5;
+    const bool is_car = height < kCarHeight_m;
     const bool is_lorry = height > kVanHeight_m;
-    const bool is_seen_below = !is_front || is_end_down_to(ground + (is_lorry ? kCabinHeight_m : kHood_m));
-    end.hidden = is_seen_below ? 0.0 : is_lorry ? kCabin_m : kVanHood_m;
-    return true;
+    // Vans and lorries are boxes but for their fronts.
+    const bool is_box = !is_car && outward.dot(axes.col(0)) < 0.5;
+    if (is_box || is_end_down_to(ground + (is_lorry ? kCabinHeight_m : kHood_m))) {
+      return true;
+    }
+    end.hidden = is_lorry ? kCabin_m : is_along ? kVanHood_m : kSlope_m;
+    return false;
   };
   for (const int axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);

@@ -121,8 +121,10 @@ TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
     detection.view = &image;
     const auto [along, left, up] =
         views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, cabin, {5.0, -5.0, 0.0}, detection);
-    EXPECT_NE(along.high.is_true, is_hidden);
-    EXPECT_NE(along.low.is_true, is_hidden);
+    for (const EndView& end : {along.high, along.low}) {
+      EXPECT_NE(end.is_true, is_hidden);
+      EXPECT_EQ(end.hidden, is_hidden ? 1.2 : 0.0) << "a hood or a boot";
+    }
     EXPECT_TRUE(left.high.is_true) << "the side is seen";
   }
 }
@@ -210,7 +212,7 @@ TEST(BoxView, AFewPointsBehindASideMakeNoFaceOfItsEnd) {
   }
 }
 
-TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButForHoodsAndCabins) {
+TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButInFront) {
   // The same as above, of what is higher than any car, 8 m away, over something 5 m away: of a van, of a lorry of which
   // as much is hidden, and of one of which a cabin would be.
   struct Case {
@@ -237,7 +239,7 @@ TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButForHoodsAndCabi
     detection.ground.offset_m = kGround_m;
     detection.view = &image;
     const AxisView along = views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, upper, {5.0, -5.0, 0.0}, detection)[0];
-    EXPECT_TRUE(along.high.is_true);
+    EXPECT_EQ(along.high.is_true, may_reach_m == 0.0);
     EXPECT_EQ(along.high.hidden, may_reach_m) << "the front of what is " << top_m << " m high";
     EXPECT_TRUE(along.low.is_true);
     EXPECT_EQ(along.low.hidden, 0.0);
@@ -269,6 +271,16 @@ TEST(BoxView, AFaceIsAnEndThoughSomethingHidesWhatIsBesideIt) {
   EXPECT_TRUE(views_of(side)[1].low.is_true) << "the side itself, of which no end is seen";
   EXPECT_TRUE(views_of(strip)[0].low.is_true) << "narrow, but flat";
   EXPECT_FALSE(views_of(block)[0].low.is_true);
+  // Seen at a small angle, a side is all the flatter; a strip of a level or slanted surface is not.
+  const std::vector<Vector3d> oblique_side = face_points({20.0, -3.2, 0.0}, {22.0, -3.2, 0.5});
+  std::vector<Vector3d> boot;
+  for (double x = 20.0; x < 20.7; x += 0.05) {
+    for (double y = -3.35; y < -3.2; y += 0.05) {
+      boot.emplace_back(x, y, 0.5 * (x - 20.0));
+    }
+  }
+  EXPECT_TRUE(views_of(oblique_side)[1].high.is_true);
+  EXPECT_FALSE(views_of(boot)[1].high.is_true);
 }
 
 TEST(BoxView, APointFarFromAllOthersIsNoEnd) {
