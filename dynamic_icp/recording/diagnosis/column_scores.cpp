@@ -142,23 +142,40 @@ std::vector<SphericalColumns> spherical_hypotheses(const std::vector<RawScan>& s
   return possible;
 }
 
+/// The columns of azimuth, elevation and range, in this order; the angles times `scale`.
+std::vector<Eigen::Vector3d> angles_of(const RawScan& scan, const SphericalColumns& spherical, double scale) {
+  std::vector<Eigen::Vector3d> angles;
+  for (const Eigen::Vector3d& point : scan.points) {
+    angles.emplace_back(scale * point[spherical.columns[0]], scale * point[spherical.columns[1]],
+                        point[spherical.columns[2]]);
+  }
+  return angles;
+}
+
 /// Whether the columns are angles that see surfaces. Coordinates within 2 pi may be metres as well: they are no
 /// degrees, and radians only where metres they cannot be.
 bool are_surfaces(const std::vector<RawScan>& scans, const SphericalColumns& spherical) {
   const bool in_degrees = spherical.coordinates == datasets::Coordinates::kSphericalDegrees;
-  const auto& [azimuth, elevation, range] = spherical.columns;
   double widest = 0.0;
   for (const RawScan& scan : scans) {
-    std::vector<Eigen::Vector3d> points;
-    for (const Eigen::Vector3d& point : scan.points) {
-      points.emplace_back(point[azimuth], point[elevation], point[range]);
-      widest = std::max(widest, std::abs(point[azimuth]));  // false for NaN
+    const std::vector<Eigen::Vector3d> angles = angles_of(scan, spherical, 1.0);
+    for (const Eigen::Vector3d& point : angles) {
+      widest = std::max(widest, std::abs(point.x()));  // false for NaN
     }
-    if (in_degrees ? !shows_surfaces(points) : !are_radians_with_ranges(points, scan.points)) {
+    if (in_degrees ? !shows_surfaces(angles) : !are_radians_with_ranges(angles, scan.points)) {
       return false;
     }
   }
   return !in_degrees || widest > 2.0 * std::numbers::pi;
+}
+
+/// Whether neighbours are so unequally far that the columns are no angles: in traffic a velocity may explain the
+/// Doppler better with them than with x, y, z.
+bool contradict_surfaces(const std::vector<RawScan>& scans, const SphericalColumns& spherical) {
+  const bool in_degrees = spherical.coordinates == datasets::Coordinates::kSphericalDegrees;
+  const double degrees = in_degrees ? 1.0 : 180.0 / std::numbers::pi;
+  return std::ranges::any_of(
+      scans, [&](const RawScan& scan) { return contradicts_surfaces(angles_of(scan, spherical, degrees)); });
 }
 
 /// The spherical coordinates that explain the Doppler best, where there may be any, and those that see surfaces.
@@ -171,6 +188,9 @@ void find_spherical(std::span<const RawScan> scans, const Workers& workers, Colu
   }
   std::optional<SphericalColumns>& best = scores.likely_spherical;
   for (SphericalColumns& spherical : few.empty() ? std::vector<SphericalColumns>() : spherical_hypotheses(few)) {
+    if (contradict_surfaces(few, spherical)) {
+      continue;
+    }
     std::vector<double> residuals;
     for (const RawScan& scan : few) {
       const RawScan cartesian = from_spherical(scan, spherical);

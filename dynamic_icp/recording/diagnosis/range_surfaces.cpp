@@ -26,6 +26,7 @@ constexpr double kSurfaceQuantile = 0.8;  // of the points; the others lie on ed
 // How far ranges scatter about the median of their cell, as a logarithm. In simulated scenes of all kinds and sensors
 // it is at most 0.05 of spherical coordinates, and at least 0.22 of x, y, z.
 constexpr double kSurface = 0.1;
+constexpr double kContrary = 0.15;
 
 // The same of radians taken for x, y, z: of simulated scans of LiDARs 0.05 to 0.21 and 2.7 to 15 times as much as of
 // the angles; of x, y, z where they may be angles at all at most 0.05, and less than of these angles.
@@ -72,6 +73,10 @@ Eigen::Vector3d direction_of(const Eigen::Vector3d& point) {
 
 bool shows_surfaces(std::span<const Eigen::Vector3d> azimuth_elevation_range) {
   return range_scatter(azimuth_elevation_range).value_or(kSurface) < kSurface;
+}
+
+bool contradicts_surfaces(std::span<const Eigen::Vector3d> azimuth_elevation_range) {
+  return range_scatter(azimuth_elevation_range).value_or(0.0) > kContrary;
 }
 
 bool are_radians_with_ranges(std::span<const Eigen::Vector3d> azimuth_elevation_range,

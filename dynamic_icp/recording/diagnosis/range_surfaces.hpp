@@ -14,6 +14,9 @@ namespace dynamic_icp::diagnosis {
 /// that it does not show.
 bool shows_surfaces(std::span<const Eigen::Vector3d> azimuth_elevation_range);
 
+/// Whether they are none beyond doubt: points that are less than a degree apart are at many ranges.
+bool contradicts_surfaces(std::span<const Eigen::Vector3d> azimuth_elevation_range);
+
 /// Whether columns that may be azimuths and elevations in radians, with ranges, are such ones and not coordinates in
 /// metres: taken for angles they show surfaces, taken for x, y, z (`as_stored`) they show none, and they reach farther
 /// than 20. What a sensor sees from one place has about one range in each direction, whatever there is to be seen:

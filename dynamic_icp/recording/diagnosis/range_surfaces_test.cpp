@@ -56,6 +56,9 @@ TEST(RangeSurfaces, AnglesShowThemAndCoordinatesDoNot) {
   EXPECT_TRUE(shows_surfaces(to_angles(street, 180.0 / std::numbers::pi)));
   EXPECT_FALSE(shows_surfaces(in_turn(street)));
   EXPECT_FALSE(shows_surfaces({})) << "no points tell nothing";
+  EXPECT_FALSE(contradicts_surfaces(to_angles(street, 180.0 / std::numbers::pi)));
+  EXPECT_TRUE(contradicts_surfaces(in_turn(street)));
+  EXPECT_FALSE(contradicts_surfaces({}));
 }
 
 TEST(RangeSurfaces, RadiansAreToldFromMetres) {
