@@ -91,10 +91,15 @@ void Track::add_headings(const Detection& detection, const BoxHistory& history, 
     add_headings_along(*sides, detection, along_sides, config);
   } else if (has_heading()) {
     return;
-  } else if (const std::optional<double> heading = heading_of_motion()) {
-    hypotheses_.emplace_back(detection, *heading, along_sides, config);
-  } else if (const std::optional<double> likeliest = likeliest_heading(detection)) {
-    hypotheses_.emplace_back(detection, *likeliest, history, config);
+  } else {
+    const std::optional<double> heading = heading_of_motion();
+    const std::optional<double> likeliest = likeliest_heading(detection);
+    if (heading) {
+      hypotheses_.emplace_back(detection, *heading, along_sides, config);
+    }
+    if (likeliest && !(heading && is_along(*likeliest, *heading, std::numbers::pi))) {
+      hypotheses_.emplace_back(detection, *likeliest, heading ? along_sides : history, config);
+    }
   }
 }
 

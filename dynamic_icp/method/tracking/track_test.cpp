@@ -175,6 +175,35 @@ TEST(Track, OfWhatLittleIsSeenTheTrafficTellsTheHeading) {
       << "before its way shows the direction";
 }
 
+TEST(Track, AFastMotionOfWhatLittleIsSeenIsNotBelievedAgainstTheTraffic) {
+  // The first points of a car that comes into view; their Doppler errs by 0.3 m/s from one end to the other, as if it
+  // crossed the line of sight at 25 m/s.
+  TrafficPrior traffic;
+  for (const double x : {10.0, 15.0, 20.0, 25.0, 30.0}) {
+    traffic.add({x, 3.0, 0.0}, Vector3d::UnitX(), 2.0);
+  }
+  const TrackConfig config;
+  const Vector3d velocity(2.0, 0.0, 0.0);
+  std::optional<Track> track;
+  for (int scan = 0; scan < 4; ++scan) {
+    Detection detection;
+    for (int i = 0; i < 16; ++i) {
+      const double across = (i % 4 - 1.5) / 3.0;
+      detection.points.emplace_back(16.0 + 0.2 * scan, 10.0 + 0.2 * (1 + scan) * across, 0.1 * (i / 4));
+      detection.directions.push_back(detection.points.back().normalized());
+      detection.radial.push_back(detection.directions.back().dot(velocity) + (scan == 0 ? 0.3 * across : 0.0));
+      detection.times.push_back(0.0);
+    }
+    detection.traffic = &traffic;
+    if (track) {
+      track->correct(detection, 0.1 * scan, config);
+    } else {
+      track.emplace(detection, 0.0, config);
+    }
+  }
+  EXPECT_GT(std::abs(track->estimate().box.axes.col(0).x()), 0.95);
+}
+
 TEST(Track, WhatLooksLikeASideIsNotBelievedAgainstTheTrafficAndTheMotion) {
   // The edge of what is seen of a roof runs aslant, as a nearer body cuts it off.
   TrafficPrior traffic;
