@@ -220,7 +220,10 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
   // Where it was seen to reach farther it does not end.
   const bool is_possible = is_known(face) || seen > least_[i] - kInside_m;
-  const bool is_end = end.is_true && is_possible;
+  // Hoods are lower than roofs that were seen before.
+  const bool is_lower =
+      face == Face::kTop && is_known(face) && body_.beyond(face, at_end) < -kFalseEnd_m - kFalseEndSigmas * known_sigma;
+  const bool is_end = end.is_true && is_possible && !is_lower;
   // Where its upper part ends it may not, but that shows the motion, too, until the end is seen.
   const bool is_upper_end = end.hidden > 0.0 && is_possible && !was_seen;
   if (!was_seen && !is_known(face)) {

@@ -130,6 +130,30 @@ TEST(BoxFilter, AnEndThatWasNoneSpeaksAgainstTheMotion) {
   EXPECT_LT(log_likelihood(1.5), log_likelihood(0.0) - 4.0);
 }
 
+TEST(BoxFilter, AHoodDoesNotLowerARoofThatWasSeen) {
+  // The side of a car and its roof; then the front part of it alone, which is 0.6 m lower.
+  const Vector3d velocity(3, 0, 0);
+  const TrackConfig config;
+  std::optional<BoxFilter> filter;
+  for (int k = 0; k < 8; ++k) {
+    const double moved = 0.1 * k * velocity.x();
+    const bool is_hood = k >= 4;
+    Detection detection;
+    detection.ground.offset_m = -1.9;
+    for (double x = is_hood ? 9.0 : 6.0; x <= (is_hood ? 10.0 : 9.0); x += 0.1) {
+      for (double z = -1.6; z <= (is_hood ? -1.0 : -0.4); z += 0.1) {
+        detection.points.emplace_back(x + moved, -5.0, z);
+        detection.directions.push_back(detection.points.back().normalized());
+        detection.radial.push_back(detection.directions.back().dot(velocity));
+        detection.times.push_back(0.0);
+      }
+    }
+    take_in(filter, detection, 0.0, config);
+    EXPECT_NEAR(filter->estimate().box.size.z(), 1.5, 0.15) << "scan " << k;
+    EXPECT_NEAR(filter->body().velocity().z(), 0.0, 0.2) << "scan " << k;
+  }
+}
+
 TEST(BoxFilter, TwoPointsOfSomethingElseMoveNoFace) {
   // Of a body whose right side was seen few points are left, and two, 2 m beside them, that another one has left.
   const Vector3d velocity(10, 0, 0);

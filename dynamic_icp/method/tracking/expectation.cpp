@@ -23,7 +23,7 @@ constexpr double kUnseenRatio = 0.9;        // of points where the body is likel
 }  // namespace
 
 Expectation::Expectation(const Track& predicted, const BoxEstimate& estimate, const SensorMotion& sensor,
-                         const TrackerConfig& config)
+                         const TrackerConfig& config, bool is_hidden)
     : box(predicted.best().seen_box()), whole(estimate.box), velocity(estimate.velocity) {
   const Vector3d eye = sensor.T_world_sensor.translation();
   W = predicted.body().doppler_velocity(eye);
@@ -32,6 +32,13 @@ Expectation::Expectation(const Track& predicted, const BoxEstimate& estimate, co
   gate_m = std::min(kMaxGate_m, config.gate_m + kGateSigmas * position);
   max_width_m = config.track.largest_width_m + kWidthSlack_m + kGateSigmas * position;
   gate_mps = config.gate_mps;
+  if (is_hidden) {  // of what comes into view again other parts may be seen than before
+    for (const int axis : {0, 1}) {
+      const Vector3d along = whole.axes.col(axis);
+      const double sigma = std::sqrt(along.dot(estimate.centre_covariance * along));
+      whole.size[axis] += 2.0 * std::min(kMaxGate_m, kGateSigmas * sigma);
+    }
+  }
 }
 
 double Expectation::outside(const Vector3d& point_world, double time_s) const {

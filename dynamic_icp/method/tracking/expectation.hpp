@@ -32,9 +32,9 @@ struct Expectation {
   double max_width_m = 0.0;      ///< of what was seen and what is added to it, as far as its place is known
   double gate_mps = 0.0;         ///< difference of their radial velocities, beyond the uncertainty of W
 
-  /// `predicted` is the track at the stamp, `estimate` what it says.
+  /// `predicted` is the track at the stamp, `estimate` what it says; `is_hidden`: it was not seen at last.
   Expectation(const Track& predicted, const BoxEstimate& estimate, const SensorMotion& sensor,
-              const TrackerConfig& config);
+              const TrackerConfig& config, bool is_hidden = false);
 
   /// Distance from the box of a point measured `time_s` after the stamp.
   [[nodiscard]] double outside(const Eigen::Vector3d& point_world, double time_s) const;

@@ -33,6 +33,21 @@ TEST(Expectation, ItsOwnPointsAreInsideAndHaveItsRadialVelocity) {
               expected.gate_ratio(sight, sight.dot(expected.W) - 1.0), 1e-9);
 }
 
+TEST(Expectation, OfWhatWasHiddenOtherPartsMayAppear) {
+  const Track track = track_of_car({20.0, 5.0, 0.0}, {8.0, 0.0, 0.0});
+  BoxEstimate estimate = track.estimate();
+  estimate.centre_covariance.diagonal() = Vector3d(0.64, 0.01, 0.01);
+  const Expectation seen(track, estimate, SensorMotion{}, {});
+  const Expectation hidden(track, estimate, SensorMotion{}, {}, true);
+  const auto ratio = [&](const Expectation& expected, double beyond_m) {
+    const OrientedBox& box = estimate.box;
+    return expected.distance_ratio(box.centre + (0.5 * box.size.x() + beyond_m) * box.axes.col(0), 0.0);
+  };
+  ASSERT_GT(ratio(seen, 1.5), 1.0);
+  EXPECT_LT(ratio(hidden, 1.5), 1.0) << "within twice 0.8 m";
+  EXPECT_GT(ratio(hidden, 1.7), 1.0);
+}
+
 TEST(Expectation, OnlyWhatCrossesTheLineOfSightMayAppearStatic) {
   const Vector3d eye = Vector3d::Zero();
   EXPECT_TRUE(expectation_of({20.0, 0.0, 0.0}, {0.0, 8.0, 0.0}).may_appear_static(eye, 1.0));

@@ -179,7 +179,7 @@ void ObjectTracker::expect(double stamp_s, const SensorMotion& sensor, const Cho
   for (TrackRecord& entry : living()) {
     if (choice(entry)) {
       entry.predict(stamp_s, sizes_, config_.track);
-      expected_.emplace_back(entry.predicted, entry.now, sensor, config_);
+      expected_.emplace_back(entry.predicted, entry.now, sensor, config_, entry.missed > 0);
     }
   }
 }
