@@ -28,6 +28,8 @@ constexpr double kFalseEndSigmas = 3.0;   // ... and its noise shows that the bo
 constexpr double kGrowth = 0.3;           // of a bound, towards what is seen beyond it: noise must not move it
 constexpr double kYawSearch_rad = 0.35;   // about the heading
 constexpr double kOnePointYaw_rad = 0.8;  // standard deviation of directions fitted to n points, times the root of n
+constexpr double kNarrow_m = 1.2;         // strips are not so wide ...
+constexpr double kAlongSight = 0.998;     // ... and so much along the line of sight (cosine)
 constexpr double kFirstYawSigma_rad = 0.1;
 constexpr double kSideslip_rad = 0.03;   // between heading and motion of the middle of a body ...
 constexpr double kSideslip_mps = 0.1;    // ... and whatever the speed ...
@@ -74,6 +76,14 @@ double sight_yaw(const Vector3d& point, const Detection& detection) {
 }
 
 }  // namespace
+
+bool is_strip_along_sight(std::span<const Vector3d> points, const Matrix3d& axes, const Vector3d& sensor) {
+  const double length = span_along(points, sensor, axes.col(0), kViewTrim).length();
+  const double width = span_along(points, sensor, axes.col(1), kViewTrim).length();
+  const Vector3d sight = axes.transpose() * (points.front() - sensor);
+  return std::min(length, width) < kNarrow_m &&
+         std::abs(length < width ? sight.y() : sight.x()) > kAlongSight * sight.head<2>().norm();
+}
 
 BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const BoxHistory& history,
                      const TrackConfig& config)
@@ -142,7 +152,7 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
     const Matrix3d axes = body_.level() * upright_axes(*fitted);
     const double side = std::max(span_along(points, body_.position(), axes.col(0), kViewTrim).length(),
                                  span_along(points, body_.position(), axes.col(1), kViewTrim).length());
-    if (side >= kShortestSide_m) {
+    if (side >= kShortestSide_m && !is_strip_along_sight(points, axes, detection.sensor)) {
       const double sigma = std::hypot(config.yaw_sigma_rad, face_sigma(body_.position(), detection, config) / side,
                                       kOnePointYaw_rad / std::sqrt(static_cast<double>(points.size())));
       log_likelihood_ += body_.correct_yaw(*fitted, sigma * sigma);

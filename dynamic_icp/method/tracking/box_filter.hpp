@@ -41,6 +41,11 @@ constexpr double kUniform = 0.29;
 /// Sides shorter than this have no direction, m.
 constexpr double kShortestSide_m = 1.0;
 
+/// Whether what is seen of a body lies along the line of sight and is narrower than a vehicle: nearer things cut it out
+/// of a roof, or of the ground, and its direction is that of the sight.
+bool is_strip_along_sight(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& axes,
+                          const Eigen::Vector3d& sensor);
+
 /// One hypothesis about a moving body: an upright box that moves where it points, or one that moves without turning,
 /// anywhere.
 ///

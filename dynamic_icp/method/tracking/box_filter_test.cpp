@@ -130,6 +130,37 @@ TEST(BoxFilter, AnEndThatWasNoneSpeaksAgainstTheMotion) {
   EXPECT_LT(log_likelihood(1.5), log_likelihood(0.0) - 4.0);
 }
 
+TEST(BoxFilter, AStripAlongTheLineOfSightHasNoDirection) {
+  // What a slit between nearer bodies shows of a roof, 60 degrees to the left; the body drives ahead.
+  const Eigen::Matrix3d along_sight = upright_axes(std::numbers::pi / 3.0);
+  const Vector3d velocity(5, 0, 0);
+  const auto seen = [&](double width) {
+    Detection detection;
+    for (double r = 6.0; r <= 8.0; r += 0.1) {
+      for (double y = -0.5 * width; y <= 0.5 * width + 1e-9; y += 0.05) {
+        detection.points.emplace_back(along_sight * Vector3d(r, y, -0.4));
+        detection.directions.push_back(detection.points.back().normalized());
+        detection.radial.push_back(detection.directions.back().dot(velocity));
+        detection.times.push_back(0.0);
+      }
+    }
+    return detection;
+  };
+  EXPECT_TRUE(is_strip_along_sight(seen(0.3).points, along_sight, Vector3d::Zero()));
+  EXPECT_FALSE(is_strip_along_sight(seen(1.8).points, along_sight, Vector3d::Zero())) << "a body that drives away";
+  EXPECT_FALSE(is_strip_along_sight(seen(0.3).points, along_sight, {3.0, 0.0, 0.0})) << "a side";
+  const TrackConfig config;
+  const auto yaw_after = [&](double width) {
+    std::optional<BoxFilter> filter;
+    for (int k = 0; k < 3; ++k) {
+      take_in(filter, seen(width), std::numbers::pi / 3.0 - 0.2, config);
+    }
+    return filter->body().yaw();
+  };
+  EXPECT_LT(yaw_after(0.3), std::numbers::pi / 3.0 - 0.08) << "little but where its ends are";
+  EXPECT_GT(yaw_after(1.8), std::numbers::pi / 3.0 - 0.06);
+}
+
 TEST(BoxFilter, AHoodDoesNotLowerARoofThatWasSeen) {
   // The side of a car and its roof; then the front part of it alone, which is 0.6 m lower.
   const Vector3d velocity(3, 0, 0);

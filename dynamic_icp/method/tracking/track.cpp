@@ -41,7 +41,9 @@ std::optional<BodySides> sides_of(const Detection& detection, const Eigen::Vecto
   const Eigen::Matrix3d axes = level * upright_axes(*yaw);
   const double length = std::max(span_along(points, points.front(), axes.col(0), 0.0).length(),
                                  span_along(points, points.front(), axes.col(1), 0.0).length());
-  return length < kShortestSide_m ? std::nullopt : std::optional(BodySides{*yaw, length});
+  return length < kShortestSide_m
+             ? std::nullopt
+             : std::optional(BodySides{*yaw, length, is_strip_along_sight(points, axes, detection.sensor)});
 }
 
 /// That of most others near by.
@@ -103,10 +105,10 @@ void Track::add_headings(const Detection& detection, const BoxHistory& history, 
   }
 }
 
-/// Hypotheses that agree with the sides have explained these, too; one of others near by may where sides are short.
+/// Hypotheses that agree with the sides have explained these, too; and what looks like sides may be none.
 void Track::add_headings_along(const BodySides& sides, const Detection& detection, const BoxHistory& along_sides,
                                const TrackConfig& config) {
-  if (sides.length_m > kVehicle_m) {
+  if (sides.length_m > kVehicle_m && !sides.is_strip) {
     std::erase_if(hypotheses_, [&](const BoxFilter& one) {
       return !one.has_heading() || !is_along(one.body().yaw(), sides.yaw_rad, kQuarterTurn);
     });

@@ -20,6 +20,7 @@ namespace dynamic_icp::tracking {
 struct BodySides {
   double yaw_rad = 0.0;   ///< level axes, of one of them
   double length_m = 0.0;  ///< of the longer one
+  bool is_strip = false;  ///< along the line of sight: it may be no side
 };
 
 /// One object over time.
