@@ -26,7 +26,7 @@ constexpr double kSurfaceQuantile = 0.8;  // of the points; the others lie on ed
 // How far ranges scatter about the median of their cell, as a logarithm. In simulated scenes of all kinds and sensors
 // it is at most 0.05 of spherical coordinates, and at least 0.22 of x, y, z.
 constexpr double kSurface = 0.1;
-constexpr double kContrary = 0.15;
+constexpr double kContrary = 0.15;  // beyond doubt
 
 // The same of radians taken for x, y, z: of simulated scans of LiDARs 0.05 to 0.21 and 2.7 to 15 times as much as of
 // the angles; of x, y, z where they may be angles at all at most 0.05, and less than of these angles.
