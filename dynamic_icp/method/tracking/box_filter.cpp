@@ -78,11 +78,15 @@ double sight_yaw(const Vector3d& point, const Detection& detection) {
 }  // namespace
 
 bool is_strip_along_sight(std::span<const Vector3d> points, const Matrix3d& axes, const Vector3d& sensor) {
+  const Vector3d sight = axes.transpose() * (points.front() - sensor);
+  const double least = kAlongSight * sight.head<2>().norm();
+  const bool is_along_first = std::abs(sight.x()) > least;
+  if (!is_along_first && !(std::abs(sight.y()) > least)) {
+    return false;  // as most: before the spans, which take time
+  }
   const double length = span_along(points, sensor, axes.col(0), kViewTrim).length();
   const double width = span_along(points, sensor, axes.col(1), kViewTrim).length();
-  const Vector3d sight = axes.transpose() * (points.front() - sensor);
-  return std::min(length, width) < kNarrow_m &&
-         std::abs(length < width ? sight.y() : sight.x()) > kAlongSight * sight.head<2>().norm();
+  return std::min(length, width) < kNarrow_m && (length < width) != is_along_first;
 }
 
 BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, const BoxHistory& history,
