@@ -17,7 +17,7 @@ namespace dynamic_icp::tracking {
 /// Position (m), velocity (m/s), yaw (rad), yaw rate (rad/s), and the faces of some car.
 inline BodyFilter::Vector state_of(const Eigen::Vector3d& p, const Eigen::Vector3d& v, double yaw, double yaw_rate) {
   BodyFilter::Vector x;
-  x << p, v, yaw, yaw_rate, 2.4, 2.0, 0.8, 1.0, 1.1, 0.4;
+  x << p, v, yaw, yaw_rate, 0.0, 2.4, 2.0, 0.8, 1.0, 1.1, 0.4;
   return x;
 }
 
@@ -30,7 +30,8 @@ inline BodyFilter body_with(const Eigen::Vector3d& p, const Eigen::Vector3d& v, 
 inline BodyFilter any_body(std::uint64_t seed) {
   std::mt19937 random(static_cast<std::mt19937::result_type>(seed));
   const BodyFilter::Matrix root = dense::random_matrix(random, BodyFilter::kStates, BodyFilter::kStates);
-  const BodyFilter::Vector x = state_of({30, 8, 1}, {4, 9, 0.3}, 1.1, 0.4) + 0.1 * root.col(0);
+  BodyFilter::Vector x = state_of({30, 8, 1}, {4, 9, 0.3}, 1.1, 0.4) + 0.1 * root.col(0);
+  x[BodyFilter::kAcceleration] = 1.2;
   return {x, 0.02 * root * root.transpose(), exp_so3({0.1, -0.15, 0.3})};
 }
 

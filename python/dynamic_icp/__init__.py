@@ -15,7 +15,7 @@ into target. docs/python.md is the guide.
 
 from ._core import DataError, UsageError
 from ._core import version as __version__
-from ._frame import Box, EgoVelocity, Frame, MovingObject, Prediction
+from ._frame import Box, EgoVelocity, Frame, Motion, MovingObject, Prediction
 from ._odometry import Odometry, register
 from ._recording import Finding, Findings, Recording, Scans, diagnose, open
 from ._run import Map, Run, report, run
@@ -37,6 +37,7 @@ __all__ = [
     "Frame",
     "HDBSCAN",
     "Map",
+    "Motion",
     "MovingObject",
     "Odometry",
     "Prediction",

@@ -71,7 +71,7 @@ class Box:
 
 @dataclasses.dataclass(eq=False)
 class Prediction:
-    """Where an object will be if it goes on as it does; axes of the sensor frame at the stamp."""
+    """Where an object will be, by the models of its motion; axes of the sensor frame at the stamp."""
 
     after_s: float
     center: FloatArray
@@ -80,6 +80,15 @@ class Prediction:
     """(3, 3), m^2."""
     velocity: FloatArray
     """(3,), m/s."""
+
+
+@dataclasses.dataclass(eq=False)
+class Motion:
+    """How an object moves: the probability of each model."""
+
+    standing: float
+    straight: float
+    turning: float
 
 
 @dataclasses.dataclass(eq=False)
@@ -104,6 +113,9 @@ class MovingObject:
     """Whether the velocity across the line of sight was measured; where not, use the part along it only."""
     yaw_rate: float = 0.0
     """rad/s about the normal of the ground."""
+    acceleration: float = 0.0
+    """m/s^2, in the direction of the box."""
+    motion: Optional[Motion] = None
     status: str = ""
     """confirmed (seen in this scan) or coasting (without points in it)."""
     age_scans: int = 0
@@ -114,6 +126,8 @@ class MovingObject:
             self.box = Box(**self.box)
         if isinstance(self.prediction, dict):
             self.prediction = Prediction(**self.prediction)
+        if isinstance(self.motion, dict):
+            self.motion = Motion(**self.motion)
 
     @property
     def speed(self) -> float:

@@ -34,6 +34,14 @@ py::dict prediction_members(const tracking::ObjectPrediction& prediction) {
   return members;
 }
 
+py::dict motion_members(const tracking::MotionProbabilities& motion) {
+  py::dict members;
+  members["standing"] = motion.standing;
+  members["straight"] = motion.straight;
+  members["turning"] = motion.turning;
+  return members;
+}
+
 py::dict object_members(const tracking::TrackedObject& object) {
   py::dict members;
   members["id"] = object.id;
@@ -46,6 +54,8 @@ py::dict object_members(const tracking::TrackedObject& object) {
   members["prediction"] = prediction_members(object.prediction);
   members["tangential_observed"] = object.tangential_observed;
   members["yaw_rate"] = object.yaw_rate_rps;
+  members["acceleration"] = object.acceleration_mps2;
+  members["motion"] = motion_members(object.motion);
   members["status"] = std::string(to_string(object.status));
   members["age_scans"] = object.age_scans;
   members["scans_seen"] = object.scans_seen;

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 
@@ -23,28 +24,48 @@ constexpr double kLargestInnovation = 3.0;
 constexpr double kWorstSquare = 16.0;     // of a normalised residual, for the likelihood: all may happen
 constexpr double kMinInformation = 1e-4;  // (s/m)^2: a standard deviation of 100 m/s
 constexpr double kClimb_s = 1.0;          // how long vertical velocities last
+constexpr double kAcceleration_s = 2.0;   // how long accelerations last
 constexpr double kFaceWalk_m = 0.02;      // per square root of a second: bodies are no boxes
 
 /// Covariance of the velocity's random walk over one second, in the ground: along and across the motion.
-Matrix3d velocity_noise(const Vector3d& velocity, const Matrix3d& level, const MotionNoise& noise) {
+Matrix3d velocity_noise(const Vector3d& velocity, const Matrix3d& level, double along_mps, double across_mps) {
   const Vector3d up = level.col(2);
   const Vector3d horizontal = velocity - up.dot(velocity) * up;
   const double speed = horizontal.norm();
   const Vector3d along = speed > 0.0 ? Vector3d(horizontal / speed) : Vector3d(level.col(0));
   const Vector3d across = up.cross(along);
-  return noise.along_mps * noise.along_mps * along * along.transpose() +
-         noise.across_mps * noise.across_mps * across * across.transpose();
+  return along_mps * along_mps * along * along.transpose() + across_mps * across_mps * across * across.transpose();
+}
+
+/// What accelerations that last tau add over t to the covariance of way, speed and acceleration, per (m/s^2)^2 of their
+/// variance: 2 / tau int_0^t h h' ds, with h = (tau s - tau g, g, exp(-s / tau)) and g = tau (1 - exp(-s / tau)).
+Matrix3d singer_noise(double t_s) {
+  constexpr double tau = kAcceleration_s;
+  const double u = t_s / tau;
+  const double k = std::exp(-u);
+  const double speed = tau * (1.0 - k);
+  const double way = tau * (t_s - speed);
+  const double ways = 2.0 * tau * tau * tau * tau * (u * u * u / 3.0 - u * u + u - 2.0 * u * k + 0.5 * (1.0 - k * k));
+  const double speeds = tau * tau * (2.0 * u - 3.0 + 4.0 * k - k * k);
+  const double way_and_rate = tau * tau * (1.0 - k * k - 2.0 * u * k);
+  return Matrix3d{{ways, way * way / tau, way_and_rate},
+                  {way * way / tau, speeds, speed * speed / tau},
+                  {way_and_rate, speed * speed / tau, 1.0 - k * k}};
 }
 
 }  // namespace
 
 ConfigFields fields(MotionNoise& noise) {
   return {
-      {"along_mps", &noise.along_mps, 0.01, 100.0, "m/s/sqrt(s)", "random walk of an object's speed along its motion"},
+      {"along_mps", &noise.along_mps, 0.01, 100.0, "m/s/sqrt(s)",
+       "random walk of the speed of an object without heading, along its motion"},
       {"across_mps", &noise.across_mps, 0.01, 100.0, "m/s/sqrt(s)",
-       "random walk of its velocity across the motion, beyond what its yaw rate explains"},
+       "random walk of its velocity, beyond what yaw rate and acceleration explain"},
       {"vertical_mps", &noise.vertical_mps, 0.01, 100.0, "m/s", "typical vertical velocity, which lasts a second"},
       {"yaw_rate_rps", &noise.yaw_rate_rps, 0.001, 100.0, "rad/s/sqrt(s)", "random walk of its yaw rate"},
+      {"acceleration_mps2", &noise.acceleration_mps2, 0.0, 100.0, "m/s^2",
+       "typical acceleration of an object with heading, which lasts two seconds"},
+      {"slope", &noise.slope, 0.0, 1.0, "m/m", "slopes of roads: so much of its speed may be vertical, too"},
   };
 }
 
@@ -52,7 +73,27 @@ double BodyFilter::yaw_sigma() const { return std::sqrt(P_(kYaw, kYaw)); }
 
 Matrix3d BodyFilter::axes() const { return level_ * upright_axes(yaw()); }
 
+/// Of a body that brakes; no time else. Nothing brakes beyond it.
+double BodyFilter::time_to_stop_s() const {
+  const double speed = axes().col(0).dot(velocity());
+  constexpr double kNever = std::numeric_limits<double>::infinity();
+  if (!(speed * acceleration() < 0.0)) {
+    return kNever;
+  }
+  const double left = 1.0 - std::abs(speed / acceleration()) / kAcceleration_s;
+  return left > 0.0 ? -kAcceleration_s * std::log(left) : kNever;
+}
+
 void BodyFilter::predict(double dt_s, const MotionNoise& noise) {
+  if (const double stop_s = time_to_stop_s(); stop_s < dt_s) {
+    move(stop_s, noise);
+    x_[kAcceleration] = 0.0;
+    dt_s -= stop_s;
+  }
+  move(dt_s, noise);
+}
+
+void BodyFilter::move(double dt_s, const MotionNoise& noise) {
   const double t = std::abs(dt_s);
   const double sign = dt_s < 0.0 ? -1.0 : 1.0;
   const Vector3d v = velocity();
@@ -64,31 +105,51 @@ void BodyFilter::predict(double dt_s, const MotionNoise& noise) {
   const double climbing_s = kClimb_s * (1.0 - kept);  // the way for each m/s
   const Matrix3d velocity_after = turn - (1.0 - kept) * vertical;
   const Matrix3d way = dt_s * half_turn + (sign * climbing_s - dt_s) * vertical;
+  // So do accelerations: speed and way for each m/s^2.
+  const double lasting = std::exp(-t / kAcceleration_s);
+  const double accelerating_s = kAcceleration_s * (1.0 - lasting);
+  const double speed_gain = sign * accelerating_s;
+  const double way_gain = kAcceleration_s * (t - accelerating_s);
+  const Vector3d ahead = half_turn * axes().col(0);
+  const Vector3d left = up().cross(ahead);
   Eigen::Matrix<double, kFirstFace, kFirstFace> F = Eigen::Matrix<double, kFirstFace, kFirstFace>::Identity();
   F.block<3, 3>(0, kVelocity) = way;
-  F.block<3, 1>(0, kYawRate) = 0.5 * dt_s * dt_s * up().cross(half_turn * v);
+  F.block<3, 1>(0, kYaw) = way_gain * acceleration() * left;
+  F.block<3, 1>(0, kYawRate) = 0.5 * dt_s * (dt_s * up().cross(half_turn * v) + way_gain * acceleration() * left);
+  F.block<3, 1>(0, kAcceleration) = way_gain * ahead;
   F.block<3, 3>(kVelocity, kVelocity) = velocity_after;
-  F.block<3, 1>(kVelocity, kYawRate) = dt_s * up().cross(turn * v);
+  F.block<3, 1>(kVelocity, kYaw) = speed_gain * acceleration() * left;
+  F.block<3, 1>(kVelocity, kYawRate) = dt_s * (up().cross(turn * v) + 0.5 * speed_gain * acceleration() * left);
+  F.block<3, 1>(kVelocity, kAcceleration) = speed_gain * ahead;
   F(kYaw, kYawRate) = dt_s;
-  x_.head<3>() += way * v;
-  x_.segment<3>(kVelocity) = velocity_after * v;
+  F(kAcceleration, kAcceleration) = lasting;
+  x_.head<3>() += way * v + way_gain * acceleration() * ahead;
+  x_.segment<3>(kVelocity) = velocity_after * v + speed_gain * acceleration() * ahead;
   x_[kYaw] += dt_s * yaw_rate();
+  x_[kAcceleration] *= lasting;
   P_.topRows<kFirstFace>() = F.lazyProduct(P_.topRows<kFirstFace>()).eval();
   P_.leftCols<kFirstFace>() = P_.leftCols<kFirstFace>().lazyProduct(F.transpose()).eval();
   // White noise of the accelerations over t.
-  const Matrix3d q = velocity_noise(v, level_, noise);
-  const Matrix3d climb = noise.vertical_mps * noise.vertical_mps * vertical;
+  const Matrix3d q = velocity_noise(v, level_, has_heading() ? noise.across_mps : noise.along_mps, noise.across_mps);
+  const Matrix3d climb =
+      (noise.vertical_mps * noise.vertical_mps + noise.slope * noise.slope * v.squaredNorm()) * vertical;
   const Matrix3d shared = sign * (t * t / 2.0 * q + climbing_s * climbing_s / kClimb_s * climb);
   P_.block<3, 3>(0, 0) += t * t * t / 3.0 * q + (2.0 * kClimb_s * (t - climbing_s) - climbing_s * climbing_s) * climb;
   P_.block<3, 3>(0, kVelocity) += shared;
   P_.block<3, 3>(kVelocity, 0) += shared;
   P_.block<3, 3>(kVelocity, kVelocity) += t * q + (1.0 - kept * kept) * climb;
-  if (P_(kYaw, kYaw) > 0.0) {  // else a body without heading
+  if (has_heading()) {
     const double turning = noise.yaw_rate_rps * noise.yaw_rate_rps;
     P_(kYaw, kYaw) += t * t * t / 3.0 * turning;
     P_(kYaw, kYawRate) += sign * t * t / 2.0 * turning;
     P_(kYawRate, kYaw) += sign * t * t / 2.0 * turning;
     P_(kYawRate, kYawRate) += t * turning;
+    Eigen::Matrix<double, kFirstFace, 3> moved = Eigen::Matrix<double, kFirstFace, 3>::Zero();
+    moved.block<3, 1>(0, 0) = ahead;
+    moved.block<3, 1>(kVelocity, 1) = sign * ahead;
+    moved(kAcceleration, 2) = 1.0;
+    P_.topLeftCorner<kFirstFace, kFirstFace>() +=
+        moved * (noise.acceleration_mps2 * noise.acceleration_mps2 * singer_noise(t)) * moved.transpose();
   }
   P_.diagonal().tail<kStates - kFirstFace>().array() += t * kFaceWalk_m * kFaceWalk_m;
 }
@@ -160,6 +221,17 @@ double BodyFilter::correct_yaw_rate(double yaw_rate_rps, double variance) {
   return correct(H, yaw_rate_rps - yaw_rate(), variance);
 }
 
+void BodyFilter::stop(double variance) {
+  Row H = Row::Zero();
+  for (const int axis : {0, 1}) {
+    H.segment<3>(kVelocity) = level_.col(axis).transpose();
+    correct(H, -level_.col(axis).dot(velocity()), variance);
+  }
+  x_[kAcceleration] = 0.0;
+  P_.row(kAcceleration).setZero();
+  P_.col(kAcceleration).setZero();
+}
+
 double BodyFilter::correct_sideslip(double variance) {
   const Matrix3d box = axes();
   const double ahead = 0.5 * (distance(Face::kFront) - distance(Face::kRear));
@@ -223,6 +295,9 @@ double BodyFilter::correct_doppler(const ClusterVelocity& measured, const Vector
 
 void BodyFilter::turn_around() {
   x_[kYaw] += std::numbers::pi;
+  x_[kAcceleration] = -x_[kAcceleration];
+  P_.row(kAcceleration) = -P_.row(kAcceleration);
+  P_.col(kAcceleration) = -P_.col(kAcceleration);
   for (const Face face : {Face::kFront, Face::kLeft}) {
     const int i = index(face);
     std::swap(x_[i], x_[i + 1]);

@@ -14,27 +14,34 @@ class StateArchive;
 
 namespace dynamic_icp::tracking {
 
-/// How motions change between scans: random walks of velocity and yaw rate, in units per square root of a second, but
-/// for the vertical velocity: what stands on the ground follows it.
+/// How motions change between scans: random walks of velocity and yaw rate, in units per square root of a second, and
+/// what comes back to zero: accelerations, and vertical velocities, as what stands on the ground follows it.
 struct MotionNoise {
-  double along_mps = 1.5;      ///< of the velocity, along the motion
-  double across_mps = 0.5;     ///< across it, beyond what the yaw rate explains
+  double along_mps = 1.5;      ///< of the velocity of a body without heading, along the motion
+  double across_mps = 0.5;     ///< of any velocity, beyond what yaw rate and acceleration explain
   double vertical_mps = 0.25;  ///< m/s: standard deviation of the vertical velocity, which lasts a second
   double yaw_rate_rps = 0.3;   ///< of the yaw rate
+  double acceleration_mps2 =
+      1.5;              ///< m/s^2: standard deviation of that of a body with heading, which lasts two seconds
+  double slope = 0.02;  ///< of roads: so much of the speed is in the vertical velocity, too
 };
 
 ConfigFields fields(MotionNoise& noise);
 
-/// Extended Kalman filter of an upright box that moves with nearly constant speed and yaw rate:
-///   x = [p; v; yaw; omega; d],  p' = v,  v' = omega z x v - z (z . v) / 1 s,  yaw' = omega,  omega' = 0,  d' = 0,
-/// each plus noise,
+/// Extended Kalman filter of an upright box that moves with nearly constant acceleration and yaw rate:
+///   x = [p; v; yaw; omega; a; d],  p' = v,  v' = omega z x v + a h - z (z . v) / 1 s,
+///   yaw' = omega,  omega' = 0,  a' = -a / 2 s,  d' = 0,
+/// each plus noise (of a: Singer's model),
 /// with a point p of the body, its velocity v, and d_f, how far each face lies from p. z is the third of the `level`
-/// axes, which are those of the ground in the world. That the point is no special one, and that faces never seen are
-/// unknown, makes parts that come into view no motion: d changes, and not p.
+/// axes, which are those of the ground in the world, and h the direction in which the box points. What brakes stands
+/// at last. A body without heading, whose yaw is known for sure, does not turn or accelerate: noise moves it. That the
+/// point is no special one, and that faces never seen are unknown, makes parts that come into view no motion: d
+/// changes, and not p.
 class BodyFilter {
  public:
-  static constexpr int kStates = 14;
-  static constexpr int kVelocity = 3, kYaw = 6, kYawRate = 7, kFirstFace = 8;  // where the parts of the state begin
+  static constexpr int kStates = 15;
+  // Where the parts of the state begin
+  static constexpr int kVelocity = 3, kYaw = 6, kYawRate = 7, kAcceleration = 8, kFirstFace = 9;
   using Vector = Eigen::Matrix<double, kStates, 1>;
   using Matrix = Eigen::Matrix<double, kStates, kStates>;
 
@@ -45,6 +52,7 @@ class BodyFilter {
   [[nodiscard]] Eigen::Vector3d velocity() const { return x_.segment<3>(kVelocity); }  ///< v: m/s, world
   [[nodiscard]] double yaw() const { return x_[kYaw]; }                                ///< rad, in the level axes
   [[nodiscard]] double yaw_rate() const { return x_[kYawRate]; }                       ///< rad/s
+  [[nodiscard]] double acceleration() const { return x_[kAcceleration]; }              ///< m/s^2, ahead
   [[nodiscard]] double yaw_sigma() const;                                              ///< rad
   [[nodiscard]] double distance(Face face) const { return x_[index(face)]; }           ///< m, from p outwards
   [[nodiscard]] double variance(Face face) const { return P_(index(face), index(face)); }
@@ -85,6 +93,9 @@ class BodyFilter {
   double correct_yaw(double yaw_rad, double variance);
   double correct_yaw_rate(double yaw_rate_rps, double variance);
 
+  /// The body stands, but for this variance of the velocity, (m/s)^2.
+  void stop(double variance);
+
   /// The middle of the body moves where the box points: no velocity to the left.
   double correct_sideslip(double variance);
 
@@ -106,6 +117,9 @@ class BodyFilter {
 
   static constexpr int index(Face face) { return kFirstFace + static_cast<int>(face); }
   [[nodiscard]] Eigen::Vector3d up() const { return level_.col(2); }
+  void move(double dt_s, const MotionNoise& noise);
+  [[nodiscard]] double time_to_stop_s() const;
+  [[nodiscard]] bool has_heading() const { return P_(kYaw, kYaw) > 0.0; }
   [[nodiscard]] Row face_jacobian(Face face, const Eigen::Vector3d& seen) const;
   [[nodiscard]] Eigen::Matrix<double, 3, kStates> doppler_jacobian(const Eigen::Vector3d& sensor_world) const;
   double correct(const Row& H, double residual, double variance);

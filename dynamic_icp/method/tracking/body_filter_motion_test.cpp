@@ -18,7 +18,7 @@ using Eigen::Vector3d;
 using State = BodyFilter::Vector;
 using Covariance = BodyFilter::Matrix;
 
-const MotionNoise kNoNoise{0.0, 0.0, 0.0, 0.0};
+const MotionNoise kNoNoise{0.0, 0.0, 0.0, 0.0, 0.0, 0.0};
 
 TEST(BodyFilterMotion, FollowsACircle) {
   // With speed s and yaw rate w the radius is s / w; small steps keep the second order of the motion exact enough.
@@ -68,12 +68,11 @@ TEST(BodyFilterMotion, PropagatesTheCovarianceByTheDerivativesOfTheMotion) {
 }
 
 TEST(BodyFilterMotion, NoiseOfTwoHalfStepsIsThatOfAWholeOne) {
-  // Straight motion, where the equations are linear. What the noise of the yaw rate does to the velocity is left out.
+  // Straight motion of a body without heading, where the equations are linear.
   const State x = state_of({3, 4, 0}, {6, 8, 0}, 0.9, 0.0);
-  const Covariance nothing = 1e-12 * Covariance::Identity();
-  BodyFilter once(x, nothing, Matrix3d::Identity());
+  BodyFilter once(x, Covariance::Zero(), Matrix3d::Identity());
   BodyFilter twice = once;
-  const MotionNoise noise{2.0, 0.7, 0.3, 0.0};
+  const MotionNoise noise{2.0, 0.7, 0.3, 0.0, 5.0, 0.0};
   once.predict(0.4, noise);
   twice.predict(0.2, noise);
   twice.predict(0.2, noise);
@@ -90,11 +89,73 @@ TEST(BodyFilterMotion, NoiseOfTwoHalfStepsIsThatOfAWholeOne) {
   EXPECT_NEAR(velocity(2, 2), 0.09 * (1.0 - std::exp(-0.8)), 1e-9);
 }
 
+TEST(BodyFilterMotion, AccelerationsAreAnOrnsteinUhlenbeckProcessAhead) {
+  const double yaw = std::atan2(0.8, 0.6);
+  const State x = state_of({3, 4, 0}, {6, 8, 0}, yaw, 0.0);
+  BodyFilter once(x, 1e-14 * Covariance::Identity(), Matrix3d::Identity());
+  BodyFilter twice = once;
+  BodyFilter often = once;
+  const MotionNoise noise{9.0, 0.0, 0.0, 0.0, 1.5, 0.0};
+  once.predict(0.8, noise);
+  twice.predict(0.4, noise);
+  twice.predict(0.4, noise);
+  EXPECT_LT((once.covariance() - twice.covariance()).cwiseAbs().maxCoeff(), 1e-9);
+  // The way, the speed and the acceleration ahead, by the sum over short steps of noise that is white in each.
+  constexpr int kSteps = 8000;
+  const double dt = 0.8 / kSteps;
+  Matrix3d P = Matrix3d::Zero();
+  const Matrix3d F{{1.0, dt, 0.0}, {0.0, 1.0, dt}, {0.0, 0.0, 1.0 - dt / 2.0}};
+  for (int i = 0; i < kSteps; ++i) {
+    P = (F * P * F.transpose()).eval();
+    P(2, 2) += 2.0 * 1.5 * 1.5 / 2.0 * dt;
+  }
+  Eigen::Matrix<double, 3, BodyFilter::kStates> ahead = Eigen::Matrix<double, 3, BodyFilter::kStates>::Zero();
+  ahead.block<1, 2>(0, 0) << 0.6, 0.8;
+  ahead.block<1, 2>(1, 3) << 0.6, 0.8;
+  ahead(2, BodyFilter::kAcceleration) = 1.0;
+  const Matrix3d along = ahead * once.covariance() * ahead.transpose();
+  EXPECT_LT((along - P).cwiseQuotient(P).cwiseAbs().maxCoeff(), 2e-3) << along << "\n" << P;
+  EXPECT_NEAR(once.covariance()(2, 2), 0.0, 1e-9) << "nothing up";
+}
+
+TEST(BodyFilterMotion, AnAccelerationIsSpeedAndWayUntilItFades) {
+  // a(t) = a exp(-t / 2 s), summed up in short steps.
+  State x = state_of({0, 0, 0}, {3, 0, 0}, 0.0, 0.0);
+  x[BodyFilter::kAcceleration] = 2.0;
+  BodyFilter body = with_state(body_with({}, {}, 0.0), x);
+  body.predict(1.5, kNoNoise);
+  double way = 0.0;
+  double speed = 3.0;
+  constexpr double kStep_s = 1e-5;
+  for (int i = 0; i < 150000; ++i) {
+    way += kStep_s * speed;
+    speed += kStep_s * 2.0 * std::exp(-i * kStep_s / 2.0);
+  }
+  EXPECT_NEAR(body.position().x(), way, 1e-4);
+  EXPECT_NEAR(body.velocity().x(), speed, 1e-4);
+  EXPECT_NEAR(body.acceleration(), 2.0 * std::exp(-0.75), 1e-12);
+}
+
+TEST(BodyFilterMotion, WhatBrakesStandsAtLast) {
+  for (const double yaw : {0.0, 3.14159265358979}) {  // ahead and backwards
+    State x = state_of({0, 0, 0}, {4, 0, 0}, yaw, 0.0);
+    x[BodyFilter::kAcceleration] = yaw > 0.0 ? 5.0 : -5.0;
+    BodyFilter body = with_state(body_with({}, {}, 0.0), x);
+    body.predict(3.0, kNoNoise);
+    EXPECT_NEAR(body.velocity().norm(), 0.0, 1e-9);
+    EXPECT_EQ(body.acceleration(), 0.0);
+    // It stands when 4 = 5 * 2 (1 - exp(-t / 2)); the way is the integral of the speed until then.
+    const double stop_s = -2.0 * std::log(1.0 - 4.0 / 10.0);
+    EXPECT_NEAR(body.position().x(), 4.0 * stop_s - 5.0 * 2.0 * (stop_s - 0.4 * 2.0), 1e-9);
+  }
+}
+
 TEST(BodyFilter, WhatLeavesTheGroundComesBackToIt) {
   // With tau = 1 s it climbs v tau in all, and in the long run only its typical velocity is known.
   BodyFilter body = body_with({0, 0, 0}, {5, 0, 2}, 0.0);
   MotionNoise noise;
   noise.vertical_mps = 0.3;
+  noise.slope = 0.0;
   for (int i = 0; i < 200; ++i) {
     body.predict(0.1, noise);
   }
@@ -104,8 +165,17 @@ TEST(BodyFilter, WhatLeavesTheGroundComesBackToIt) {
   EXPECT_NEAR(body.position().x(), 100.0, 1e-9);
 }
 
+TEST(BodyFilterMotion, WhatIsFastClimbsFaster) {
+  MotionNoise noise;
+  noise.vertical_mps = 0.3;
+  noise.slope = 0.02;
+  BodyFilter body = body_with({0, 0, 0}, {20, 0, 0}, 0.0, 1e-4);
+  body.predict(20.0, noise);
+  EXPECT_NEAR(body.covariance()(5, 5), 0.09 + 0.16, 1e-6);
+}
+
 TEST(BodyFilterMotion, NoiseOfTheYawRateAddsUpInTheYaw) {
-  const MotionNoise noise{0.0, 0.0, 0.0, 0.5};
+  const MotionNoise noise{0.0, 0.0, 0.0, 0.5, 0.0, 0.0};
   BodyFilter once = body_with({3, 4, 0}, {0, 0, 0}, 0.0);
   BodyFilter twice = once;
   once.predict(0.4, noise);

@@ -73,7 +73,7 @@ TEST(BodyFilter, AFaceMeasuredMakesItsPlaneBetterKnown) {
   // From the outside, without the equations: the measured plane goes through the point when it is exact.
   BodyFilter body = any_body(7);
   const Vector3d seen = body.position() + body.axes() * Vector3d(2.6, 0.4, 0.2);
-  for (int i = 0; i < 5; ++i) {
+  for (int i = 0; i < 10; ++i) {
     body.correct_face(Face::kFront, seen, 1e-8);
   }
   EXPECT_NEAR(body.axes().col(0).dot(seen - body.position()), body.distance(Face::kFront), 1e-4);
@@ -133,7 +133,7 @@ TEST(BodyFilter, DopplerAloneDoesNotTellTurningFromMovingAcross) {
   State x = State::Zero();
   x.x() = 30.0;
   State sigma = State::Ones();
-  sigma.head<8>() << 1e-3, 1e-3, 1e-3, 10.0, 10.0, 10.0, 1.0, 1.0;
+  sigma.head<9>() << 1e-3, 1e-3, 1e-3, 10.0, 10.0, 10.0, 1.0, 1.0, 1.0;
   BodyFilter body(x, sigma.cwiseAbs2().asDiagonal(), Matrix3d::Identity());
   ClusterVelocity measured;
   measured.W = {5, 7, 0};
@@ -193,6 +193,7 @@ TEST(BodyFilter, TurnedAroundTheBoxIsWhereItWas) {
   EXPECT_EQ(after.position(), before.position());
   EXPECT_EQ(after.velocity(), before.velocity());
   EXPECT_EQ(after.yaw_rate(), before.yaw_rate());
+  EXPECT_EQ(after.acceleration(), -before.acceleration());
   for (const Face face : kFaces) {
     // The face of the turned box that looks in the same direction.
     const Vector3d outward = side_of(face) * before.axes().col(axis_of(face));
@@ -206,8 +207,10 @@ TEST(BodyFilter, TurnedAroundTheBoxIsWhereItWas) {
       EXPECT_NEAR(after.variance(other), before.variance(face), 1e-12);
       const int i = kFace + static_cast<int>(face);
       const int k = kFace + static_cast<int>(other);
-      EXPECT_TRUE((after.covariance().block<kFace, 1>(0, k).isApprox(before.covariance().block<kFace, 1>(0, i))));
-      EXPECT_TRUE((after.covariance().block<1, kFace>(k, 0).isApprox(before.covariance().block<1, kFace>(i, 0))));
+      State column = before.covariance().col(i);
+      column[BodyFilter::kAcceleration] *= -1.0;  // ahead is the other way
+      EXPECT_TRUE((after.covariance().block<kFace, 1>(0, k).isApprox(column.head<kFace>())));
+      EXPECT_TRUE((after.covariance().block<1, kFace>(k, 0).transpose().isApprox(column.head<kFace>())));
     }
     EXPECT_EQ(found, 1);
   }
@@ -269,7 +272,7 @@ TEST(BodyFilter, IsConsistentInALinearCase) {
   // position and velocity has the mean 6 over many runs.
   constexpr int kRuns = 150;
   constexpr double kSigma = 0.1;
-  const MotionNoise noise{1.0, 1.0, 1.0, 1e-6};
+  const MotionNoise noise{1.0, 1.0, 1.0, 1e-6, 0.0, 0.0};
   double sum = 0.0;
   for (std::uint64_t run = 0; run < kRuns; ++run) {
     const RandomSource random = RandomSource(17).fork(run);
@@ -304,6 +307,41 @@ TEST(BodyFilter, IsConsistentInALinearCase) {
   }
   // Of a chi-squared variable with 900 degrees of freedom over 150: 6 +- 4 * 0.28.
   EXPECT_NEAR(sum / kRuns, 6.0, 1.13);
+}
+
+TEST(BodyFilter, SpeedsThatGrowShowAnAcceleration) {
+  BodyFilter body = body_with({30, 0, 0}, {5, 0, 0}, 0.0, 1.0);
+  ClusterVelocity measured;
+  measured.information = 400.0 * Matrix3d::Identity();
+  for (int i = 1; i <= 15; ++i) {
+    body.predict(0.1, {});
+    measured.W = {5.0 + 0.1 * i * 2.0, 0, 0};
+    body.correct_yaw(0.0, 1e-4);
+    body.correct_yaw_rate(0.0, 1e-4);
+    body.correct_doppler(measured, {0, 0, 0}, Matrix3d::Zero());
+  }
+  EXPECT_NEAR(body.acceleration(), 2.0, 0.4);
+  const double sigma = std::sqrt(body.covariance()(BodyFilter::kAcceleration, BodyFilter::kAcceleration));
+  EXPECT_LT(sigma, 1.0) << "1.5 before";
+  body.stop(0.01);
+  EXPECT_EQ(body.acceleration(), 0.0);
+  EXPECT_LT(body.velocity().norm(), 8.0);
+}
+
+TEST(BodyFilter, FollowsWhatBrakesAsHardAsItCan) {
+  BodyFilter body = body_with({30, 0, 0}, {15, 0, 0}, 0.0, 1.0);
+  ClusterVelocity measured;
+  measured.information = 400.0 * Matrix3d::Identity();
+  double speed = 15.0;
+  for (int i = 0; i < 50; ++i) {
+    body.predict(0.1, {});
+    speed = i < 20 ? 15.0 : std::max(0.0, speed - 0.1 * 8.0);
+    measured.W = {speed, 0, 0};
+    body.correct_yaw(0.0, 1e-4);
+    body.correct_yaw_rate(0.0, 1e-4);
+    body.correct_doppler(measured, {0, 0, 0}, 0.0016 * Matrix3d::Identity());
+    EXPECT_LT(std::abs(body.velocity().x() - speed), 0.35) << "in scan " << i;
+  }
 }
 
 TEST(BodyFilter, CovarianceStaysSymmetricAndPositive) {

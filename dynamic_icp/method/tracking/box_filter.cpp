@@ -57,6 +57,8 @@ BodyFilter prior(const Vector3d& position, std::optional<double> yaw_rad, double
   variances.head<3>().setConstant(kReference_m * kReference_m);
   variances[BodyFilter::kYaw] = yaw_sigma_rad * yaw_sigma_rad;
   variances[BodyFilter::kYawRate] = yaw_sigma_rad > 0.0 ? config.prior_yaw_rate_rps * config.prior_yaw_rate_rps : 0.0;
+  variances[BodyFilter::kAcceleration] =
+      yaw_sigma_rad > 0.0 ? config.motion.acceleration_mps2 * config.motion.acceleration_mps2 : 0.0;
   variances.tail<kFaces.size()>().setConstant(kUnknownFace_m * kUnknownFace_m);
   BodyFilter::Matrix covariance = variances.asDiagonal();
   const Vector3d speeds(config.prior_speed_mps, config.prior_speed_mps, config.motion.vertical_mps);
@@ -102,10 +104,14 @@ BoxFilter::BoxFilter(const Detection& detection, std::optional<double> yaw_rad, 
   correct(detection, config);
 }
 
-void BoxFilter::predict(double dt_s, const TrackConfig& config) { body_.predict(dt_s, config.motion); }
+void BoxFilter::predict(double dt_s, const TrackConfig& config) {
+  body_.predict(dt_s, config.motion);
+  models_.predict(dt_s);
+}
 
 void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
   body_.set_level(detection.ground.level);
+  const BodyFilter before = body_;
   correct_doppler(detection, config);
   if (has_heading_) {
     DetectionMemory memory;
@@ -116,6 +122,7 @@ void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
   DetectionMemory memory;
   correct_faces(points_at_mean_time(detection, body_.velocity(), memory), detection, config);
   was_vehicle_ = was_vehicle_ || is_fast_for_sure();
+  models_.correct(before, body_);
 }
 
 /// Whether no person moves as fast, beyond doubt.
@@ -382,7 +389,7 @@ BoxFilter BoxFilter::blank() {
 }
 
 void BoxFilter::state(StateArchive& archive) {
-  archive(body_, has_heading_, was_vehicle_, top_is_cut_, least_, faces_, hidden_, log_likelihood_,
+  archive(body_, models_, has_heading_, was_vehicle_, top_is_cut_, least_, faces_, hidden_, log_likelihood_,
           size_log_likelihood_, log_prior_, spread_mps_, signal_mps_);
   for (std::optional<Interval>& seen : last_seen_) {
     bool is_known = seen.has_value();

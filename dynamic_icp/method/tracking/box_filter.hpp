@@ -12,6 +12,7 @@
 #include "dynamic_icp/method/tracking/box_view.hpp"
 #include "dynamic_icp/method/tracking/detection.hpp"
 #include "dynamic_icp/method/tracking/likely_extent.hpp"
+#include "dynamic_icp/method/tracking/motion_models.hpp"
 #include "dynamic_icp/method/tracking/tracker_config.hpp"
 
 namespace dynamic_icp {
@@ -68,10 +69,14 @@ class BoxFilter {
   /// Takes in another detection; the state must be that of its mean time.
   void correct(const Detection& detection, const TrackConfig& config);
 
+  /// Lets the body follow one of the models of motion.
+  void suppose(MotionModel model) { constrain(model, body_); }
+
   /// Something else speaks for the hypothesis, by this logarithm of a likelihood.
   void credit(double log_likelihood) { log_likelihood_ += log_likelihood; }
 
   [[nodiscard]] const BodyFilter& body() const { return body_; }
+  [[nodiscard]] const MotionProbabilities& motion() const { return models_.probabilities(); }
   [[nodiscard]] bool has_heading() const { return has_heading_; }
   [[nodiscard]] bool was_vehicle() const { return was_vehicle_; }
   /// `sizes`: those of other vehicles.
@@ -122,6 +127,7 @@ class BoxFilter {
   [[nodiscard]] SeenExtent extent(int axis) const;
 
   BodyFilter body_;
+  MotionModels models_;
   bool has_heading_;
   bool was_vehicle_ = false;                            ///< faster than any person, at any time
   bool top_is_cut_ = false;                             ///< by the edge of the field of view, at last

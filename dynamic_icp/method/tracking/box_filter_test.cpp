@@ -286,6 +286,7 @@ TEST(BoxFilter, CovarianceOfTheCentreIsThatOfItsErrors) {
     const RandomSource random = RandomSource(41).fork(run);
     double yaw = 0.3;
     double speed = 9.0;
+    double acceleration = config.motion.acceleration_mps2 * random.normal(901);
     MovingBox body = moving_body(20, 5, yaw, speed, {4.5, 1.8, 1.5});
     body.yaw_rate = 0.1 * random.normal(900);
     std::optional<BoxFilter> filter;
@@ -295,7 +296,8 @@ TEST(BoxFilter, CovarianceOfTheCentreIsThatOfItsErrors) {
         const double dt = kScanPeriod_s / kSteps;
         for (std::uint64_t i = 0; i < kSteps; ++i) {
           const RandomSource one = random.fork(1000 + 100 * k + i);
-          speed += config.motion.along_mps * std::sqrt(dt) * one.normal(0);
+          speed += dt * acceleration + config.motion.across_mps * std::sqrt(dt) * one.normal(0);
+          acceleration += -dt / 2.0 * acceleration + config.motion.acceleration_mps2 * std::sqrt(dt) * one.normal(2);
           body.yaw_rate += config.motion.yaw_rate_rps * std::sqrt(dt) * one.normal(1);
           yaw += dt * body.yaw_rate;
           body.box.axes = upright_axes(yaw);

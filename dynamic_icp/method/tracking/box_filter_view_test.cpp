@@ -222,7 +222,7 @@ TEST(BoxFilterView, ErrorsOfTheDopplerDoNotTurnWhatIsTooSlowToTurn) {
     take_in(filter, detection, 0.0, config);
   }
   EXPECT_LT(std::abs(filter->body().yaw()), 0.04);
-  EXPECT_LT(std::abs(filter->body().yaw_rate()), 0.1);
+  EXPECT_LT(std::abs(filter->body().yaw_rate()), 0.12);
 }
 
 TEST(BoxFilterView, WhereABodyWasSeenToReachFartherItDoesNotEnd) {

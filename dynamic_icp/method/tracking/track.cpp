@@ -138,6 +138,12 @@ void Track::predict(double time_s, const TrackConfig& config) {
   time_s_ = time_s;
 }
 
+void Track::suppose(MotionModel model) {
+  for (BoxFilter& hypothesis : hypotheses_) {
+    hypothesis.suppose(model);
+  }
+}
+
 void Track::correct(const Detection& detection, double stamp_s, const TrackConfig& config) {
   predict(stamp_s + detection.mean_time_s, config);
   for (BoxFilter& hypothesis : hypotheses_) {

@@ -44,6 +44,9 @@ class Track {
   /// Moves the state to `time_s`.
   void predict(double time_s, const TrackConfig& config);
 
+  /// Lets the body follow one of the models of motion from now on.
+  void suppose(MotionModel model);
+
   /// Takes in another detection; the state is then that of its mean time.
   void correct(const Detection& detection, double stamp_s, const TrackConfig& config);
 

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstddef>
 #include <span>
+#include <utility>
 
 #include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
@@ -17,6 +18,7 @@ using Eigen::Vector3d;
 constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
 constexpr int kSureScans = 5;             // sizes are known after so many
 constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
+constexpr double kNegligible = 0.02;      // a model of motion less likely than that
 constexpr int kMaxScans = 1 << 30;        // no drive has so many
 
 }  // namespace
@@ -84,6 +86,39 @@ void TrackRecord::take_name_of(const TrackRecord& older) {
   has_moved = older.has_moved || has_moved;
 }
 
+/// By each model as likely as that is, weighted mean and covariance.
+BoxEstimate TrackRecord::forecast(double after_s, const VehicleSizes& sizes, const TrackConfig& config) {
+  const auto& [standing, straight, turning] = predicted.best().motion();
+  BoxEstimate result;
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  Vector3d offset = Vector3d::Zero();  // of the centre from now: small numbers
+  double weights = 0.0;
+  for (const auto& [model, weight] :
+       {std::pair{MotionModel::kStanding, standing}, std::pair{MotionModel::kStraight, straight},
+        std::pair{MotionModel::kTurning, turning}}) {
+    if (weight < kNegligible) {
+      continue;
+    }
+    TrackConfig supposed = config;
+    supposed.motion = noise_under(model, config.motion);
+    Track& later = other;
+    later = predicted;
+    later.suppose(model);
+    later.predict(later.time_s() + after_s, supposed);
+    const BoxEstimate then = later.estimate(sizes);
+    const Vector3d moved = then.box.centre - now.box.centre;
+    weights += weight;
+    offset += weight * moved;
+    squares += weight * (then.centre_covariance + moved * moved.transpose());
+    result.velocity += weight * then.velocity;
+  }
+  offset /= weights;
+  result.box.centre = now.box.centre + offset;
+  result.centre_covariance = squares / weights - offset * offset.transpose();
+  result.velocity /= weights;
+  return result;
+}
+
 void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::Matrix3d& ego_covariance,
                          const Vector3d& up, const VehicleSizes& sizes, const TrackerConfig& config,
                          TrackedObject& object) {
@@ -95,6 +130,8 @@ void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::M
   object.velocity_sensor = R * now.velocity;
   object.covariance = R * now.velocity_covariance * R.transpose() + ego_covariance;
   object.yaw_rate_rps = body.yaw_rate();
+  object.acceleration_mps2 = body.acceleration();
+  object.motion = predicted.best().motion();
   object.yaw_rate_variance = body.covariance()(BodyFilter::kYawRate, BodyFilter::kYawRate);
   object.box = now.box;
   object.box.centre = T_sensor_world * object.box.centre;
@@ -107,10 +144,7 @@ void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::M
   const Vector3d across = (R * up).cross(object.centroid);
   const double sigma_mps = config.tangential_sigma_mps;
   object.tangential_observed = across.dot(object.covariance * across) < sigma_mps * sigma_mps * across.squaredNorm();
-  Track& later = other;
-  later = predicted;
-  later.predict(later.time_s() + object.prediction.after_s, config.track);
-  const BoxEstimate then = later.estimate(sizes);
+  const BoxEstimate then = forecast(object.prediction.after_s, sizes, config.track);
   object.prediction.centre = T_sensor_world * then.box.centre;
   const double after_s = object.prediction.after_s;
   object.prediction.centre_covariance = R * then.centre_covariance * R.transpose() + after_s * after_s * ego_covariance;

@@ -73,6 +73,9 @@ struct TrackRecord {
   void report(const Eigen::Isometry3d& T_world_sensor, const Eigen::Matrix3d& ego_covariance, const Eigen::Vector3d& up,
               const VehicleSizes& sizes, const TrackerConfig& config, TrackedObject& object);
 
+  /// Where it will be `after_s` after the present scan, world; of the covariance of the velocity nothing is said.
+  [[nodiscard]] BoxEstimate forecast(double after_s, const VehicleSizes& sizes, const TrackConfig& config);
+
   [[nodiscard]] SeenTrack seen_track() const { return {predicted, now, members.size()}; }
 
   /// What is known between two scans.

@@ -23,7 +23,16 @@ constexpr TrackStatus last_of(TrackStatus /*any*/) { return TrackStatus::kCoasti
 std::string_view to_string(TrackStatus status);
 std::string_view to_string(FaceView view);
 
-/// Where an object will be if it goes on as it does; axes of the sensor frame at the stamp.
+enum class MotionModel { kStanding, kStraight, kTurning };
+
+/// How likely each is.
+struct MotionProbabilities {
+  double standing = 1.0 / 3.0;
+  double straight = 1.0 / 3.0;  ///< without turning
+  double turning = 1.0 / 3.0;
+};
+
+/// Where an object will be, by all that it may do, as likely as that is; axes of the sensor frame at the stamp.
 struct ObjectPrediction {
   double after_s = 1.0;                                         ///< since the stamp
   Eigen::Vector3d centre = Eigen::Vector3d::Zero();             ///< m
@@ -41,6 +50,8 @@ struct TrackedObject {
   Eigen::Matrix3d covariance = Eigen::Matrix3d::Zero();  ///< of the velocity, (m/s)^2
   double yaw_rate_rps = 0.0;                             ///< about the normal of the ground
   double yaw_rate_variance = 0.0;                        ///< (rad/s)^2
+  double acceleration_mps2 = 0.0;                        ///< ahead, of an object with heading
+  MotionProbabilities motion;
   /// Whether the velocity across the line of sight is known to TrackerConfig::tangential_sigma_mps. Where it is
   /// not, only the part of the velocity along the line of sight should be used.
   bool tangential_observed = false;
