@@ -20,6 +20,8 @@ constexpr double kBandwidth_hz = 6.0;
 // What may be learned. The springs of a body that leans alone make 1 rad/s^3. Who drives changes an acceleration by
 // 0.6 m/s^2 in a second, as often up as down: 5 m/s^3 in each knot interval. With less, one that went on evenly for
 // long is believed to go on for ever. Without a resonator all that shakes is jerk: wheels hop with 300.
+// A turn that nothing measures would go on to any speed if its acceleration did not fade.
+constexpr double kAcceleration_s = 2.0;
 constexpr double kPriorJerks = 1.0;
 constexpr double kMinJerk_rad_s3 = 1.0;
 constexpr double kMinJerk_mps3 = 5.0;
@@ -54,7 +56,7 @@ struct Row {
 };
 
 Row jerk_row(const SplineTrajectory& trajectory, std::size_t k, const Layout& layout) {
-  const std::array<double, 4> w = trajectory.jerk_weights();
+  const std::array<double, 4> w = jerk_weights(trajectory.knot_spacing());
   Row row;
   for (std::size_t i = 0; i < w.size(); ++i) {
     row.add(layout.coefficient(k + i), w[i], trajectory.coefficients()[k + i]);
@@ -124,6 +126,12 @@ struct Evidence {
 };
 
 }  // namespace
+
+std::array<double, 4> jerk_weights(double knot_spacing_s) {
+  const double kept = std::exp(-knot_spacing_s / kAcceleration_s);
+  const double scale = 1.0 / (knot_spacing_s * knot_spacing_s * knot_spacing_s);
+  return {-kept * scale, (1.0 + 2.0 * kept) * scale, -(2.0 + kept) * scale, scale};
+}
 
 MotionPrior::MotionPrior(const WindowConfig& config) {
   const double radius = std::exp(-std::numbers::pi * kBandwidth_hz * config.knot_spacing_s);

@@ -20,8 +20,12 @@ class StateArchive;
 
 namespace dynamic_icp::window {
 
+/// Weights of s_k to s_{k+3} in the jerk that is noise, 1/s^3.
+std::array<double, 4> jerk_weights(double knot_spacing_s);
+
 /// What is known of the motion before anything is measured. The coefficients of the trajectory are the sum c = s + v of
-///   a smooth motion s: white noise on jerk, (s_{k+3} - 3 s_{k+2} + 3 s_{k+1} - s_k) / h^3 ~ N(0, q),
+///   a smooth motion s: white noise on jerk and accelerations that last two seconds (Singer),
+///     a_k = (s_{k+2} - 2 s_{k+1} + s_k) / h^2, (a_{k+1} - exp(-h / 2 s) a_k) / h ~ N(0, q),
 ///   a vibration v: a damped resonator driven by white noise, v_k - a_1 v_{k-1} - a_2 v_{k-2} ~ N(0, r),
 /// each axis with its own variances, learned scan by scan. The vibration is an unknown of the window
 /// like the coefficients; nothing but this prior knows of it.

@@ -85,11 +85,14 @@ TEST(MotionPrior, SmoothMotionIsWhiteNoiseOnTheJerkOfWhatIsNotVibration) {
   EXPECT_LT((a - b).norm(), 1e-9 * a.norm());
   // And that gradient is J^T j / q.
   VectorXd expected = VectorXd::Zero(a.size());
-  const std::array<double, 4> w = without.trajectory.jerk_weights();
+  const std::array<double, 4> w = jerk_weights(kKnot_s);
   for (std::size_t k = 0; k + 3 < without.count(); ++k) {
+    const auto c = [&](std::size_t i) { return without.trajectory.coefficients()[k + i]; };
+    const Vector6d before = (c(2) - 2.0 * c(1) + c(0)) / (kKnot_s * kKnot_s);
+    const Vector6d after = (c(3) - 2.0 * c(2) + c(1)) / (kKnot_s * kKnot_s);
+    const Vector6d jerk = (after - std::exp(-kKnot_s / 2.0) * before) / kKnot_s;
     for (std::size_t i = 0; i < 4; ++i) {
-      expected.segment<6>(6 * static_cast<Index>(k + i)) +=
-          w[i] * without.trajectory.jerk(k).cwiseQuotient(prior.jerk_variance());
+      expected.segment<6>(6 * static_cast<Index>(k + i)) += w[i] * jerk.cwiseQuotient(prior.jerk_variance());
     }
   }
   EXPECT_LT((a - expected).norm(), 1e-9 * expected.norm());
@@ -196,6 +199,30 @@ TEST(MotionPrior, MoreUnknownsOnlyWhereItVibrates) {
   const PriorSums sums = sums_of(prior, motion);
   EXPECT_EQ(sums.H.rows(), Layout::kBefore + 6 * motion.layout.coefficients);
   EXPECT_GT(sums.H.norm(), 0.0);
+}
+
+// Else a turn that nothing measures, as over a flat road between vehicles, goes on to any speed.
+TEST(MotionPrior, AccelerationsFadeWhereNothingIsMeasured) {
+  const MotionPrior prior{WindowConfig{}};
+  const double acceleration = 0.8;  // rad/s^2, about z
+  Motion motion(4.0, false);
+  const Index n = motion.layout.size();
+  PriorSums sums = sums_of(prior, motion);
+  sums.H.diagonal().head(Layout::kBefore).array() += 1.0;
+  for (std::size_t k = 0; k < 3; ++k) {  // the beginning of a turn is known
+    const double t = kKnot_s * static_cast<double>(k);
+    const Index at = motion.layout.coefficient(k);
+    sums.H.diagonal().segment(at, 6).array() += 1e18;
+    sums.g[at + 2] -= 1e18 * 0.5 * acceleration * t * t;
+  }
+  const VectorXd step = Eigen::LDLT<MatrixXd>(sums.H).solve(-sums.g);
+  ASSERT_EQ(step.size(), n);
+  const auto yaw = [&](std::size_t k) { return step[motion.layout.coefficient(k) + 2]; };
+  for (const std::size_t k : {std::size_t{80}, std::size_t{160}, motion.count() - 2}) {
+    const double rate = (yaw(k + 1) - yaw(k)) / kKnot_s;
+    const double t = kKnot_s * (static_cast<double>(k) + 0.5);
+    EXPECT_NEAR(rate, acceleration * 2.0 * (1.0 - std::exp(-t / 2.0)), 0.05) << t;
+  }
 }
 
 // Else the acceleration of a vehicle that was even for some seconds is believed to stay when it brakes.

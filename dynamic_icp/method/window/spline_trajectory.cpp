@@ -139,16 +139,6 @@ Eigen::Isometry3d SplineTrajectory::pose(double time_s) const {
   return T_map_reference_ * T;
 }
 
-std::array<double, 4> SplineTrajectory::jerk_weights() const {
-  const double scale = 1.0 / (h_ * h_ * h_);
-  return {-scale, 3.0 * scale, -3.0 * scale, scale};
-}
-
-Vector6d SplineTrajectory::jerk(std::size_t interval) const {
-  const std::array<double, 4> w = jerk_weights();
-  return w[0] * c_[interval] + w[1] * c_[interval + 1] + w[2] * c_[interval + 2] + w[3] * c_[interval + 3];
-}
-
 Eigen::Vector3d TrajectoryPoint::place(const Eigen::Vector3d& x, double step_s) const {
   return R * (x + step_s * (omega.cross(x) + velocity)) + p;
 }

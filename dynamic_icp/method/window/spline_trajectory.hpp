@@ -78,11 +78,6 @@ class SplineTrajectory {
   [[nodiscard]] std::size_t interval(double time_s) const;
   [[nodiscard]] double interval_begin(std::size_t interval) const;
 
-  /// Third derivative within an interval, [rad/s^3; m/s^3].
-  [[nodiscard]] Vector6d jerk(std::size_t interval) const;
-  /// d jerk / d c_{interval + k}, 1/s^3.
-  [[nodiscard]] std::array<double, 4> jerk_weights() const;
-
   void state(StateArchive& archive);
 
   /// Whether it holds these times, but for the error of stamps.

@@ -124,30 +124,6 @@ TEST(SplineTrajectory, SlopesAreThoseOfTheWeights) {
   }
 }
 
-TEST(SplineTrajectory, JerkIsTheThirdDifferenceOfTheMotion) {
-  // Exact for a cubic, whatever the step.
-  const SplineTrajectory trajectory = rough_trajectory();
-  const double step = 0.3 * kH;
-  for (const std::size_t interval : {0U, 4U, 11U}) {
-    const double t = trajectory.interval_begin(interval) + 0.05 * kH;
-    const Vector6d third = value_at(trajectory, t + 3.0 * step) - 3.0 * value_at(trajectory, t + 2.0 * step) +
-                           3.0 * value_at(trajectory, t + step) - value_at(trajectory, t);
-    const Vector6d expected = third / (step * step * step);
-    EXPECT_LT((trajectory.jerk(interval) - expected).norm(), 1e-6 * expected.norm());
-  }
-}
-
-TEST(SplineTrajectory, JerkWeightsAreItsDerivatives) {
-  SplineTrajectory trajectory = rough_trajectory();
-  const Vector6d before = trajectory.jerk(3);
-  const std::array<double, 4> weights = trajectory.jerk_weights();
-  for (std::size_t k = 0; k < 4; ++k) {
-    trajectory.coefficients()[3 + k][4] += 0.5;
-    EXPECT_NEAR(trajectory.jerk(3)[4] - before[4], 0.5 * weights[k], 1e-7 * std::abs(weights[k]));
-    trajectory.coefficients()[3 + k][4] -= 0.5;
-  }
-}
-
 void expect_velocities_of_the_pose(const SplineTrajectory& trajectory, double tolerance) {
   constexpr double kStep = 1e-5;
   for (double t = kBegin_s + 0.0013; t < kUntil_s - 0.001; t += 0.0031) {
