@@ -170,7 +170,10 @@ Ground GroundHeights::below(const Eigen::Vector3d& lowest, bool is_hidden_below)
     }
   }
   const double height = ground_.up().dot(lowest) - *ground_.offset_m;
-  if (!(height > -kDeepest_m && height < (is_hidden_below ? kHighestHidden_m : kHighest_m))) {
+  const double above_m = height - (is_hidden_below ? kHighestHidden_m : kHighest_m);
+  if (is_hidden_below && above_m >= 0.0 && above_m < farthest_m) {
+    *result.offset_m += above_m;  // a slope, with a roof above it
+  } else if (!(height > -kDeepest_m && above_m < 0.0)) {
     result.offset_m.reset();
   }
   return result;
