@@ -225,7 +225,7 @@ TEST(BodyFilter, TurnedAroundTheBoxIsWhereItWas) {
 BodyFilter after_some_scans(const Matrix3d& R) {
   State x = state_of(R * Vector3d(30, 8, 1), R * Vector3d(4, 9, 0.3), 1.1, 0.4);
   Covariance P = Covariance::Identity();
-  P.diagonal() << 0.1, 0.2, 0.3, 4.0, 9.0, 1.0, 0.1, 0.2, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0;
+  P.diagonal() << 0.1, 0.2, 0.3, 4.0, 9.0, 1.0, 0.1, 0.2, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0;
   P.topLeftCorner<3, 3>() = R * P.topLeftCorner<3, 3>() * R.transpose();
   P.block<3, 3>(3, 3) = R * P.block<3, 3>(3, 3) * R.transpose();
   BodyFilter body(x, P, R);

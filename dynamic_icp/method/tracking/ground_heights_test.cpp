@@ -179,7 +179,11 @@ TEST(GroundHeights, BelowWhatIsHiddenFromBelowThePlaneMayBeFarther) {
   const GroundHeights heights({Matrix3d::Identity(), -1.8});
   EXPECT_EQ(heights.below({100, 0, 0.5}, true).offset_m, -1.8);
   EXPECT_FALSE(heights.below({100, 0, 0.5}, false).offset_m);
-  EXPECT_FALSE(heights.below({100, 0, 1.5}, true).offset_m) << "more than 3 m above: on a hill";
+  const auto on_slope = heights.below({100, 0, 1.5}, true).offset_m;
+  ASSERT_TRUE(on_slope);
+  EXPECT_NEAR(*on_slope, -1.5, 1e-12) << "3 m below what is seen: the road rises";
+  EXPECT_FALSE(heights.below({100, 0, 3.5}, true).offset_m) << "but not by 2.3 m in 100";
+  EXPECT_FALSE(heights.below({10, 0, 1.7}, true).offset_m) << "nor by 0.5 m in 10";
 }
 
 TEST(GroundHeights, NearTheSensorWhatIsAboveThePlaneIsNotTheGround) {

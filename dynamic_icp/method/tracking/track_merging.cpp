@@ -65,6 +65,11 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
   if (!large.predicted.best().has_heading() || together.y() > config.track.largest_width_m + width_sigma_m) {
     return false;
   }
+  // No two bodies are in one place.
+  if (distance_outside(large.now.box, small.now.box.centre) <= 0.0 &&
+      distance_outside(small.now.box, large.now.box.centre) <= 0.0) {
+    return true;
+  }
   // Sides of one body, seen apart; what is seen through a gap parts two.
   const double usual_m = config.grouping.link_distance_m + config.grouping.link_growth * range_m;
   const double link_m = is_splinter ? std::max(usual_m, config.growth_m) : usual_m;

@@ -76,6 +76,29 @@ TEST(TrackMerging, WhatIsSeenThroughAGapPartsTwoBodies) {
   EXPECT_FALSE(are_same(rear, 300, side_of_body(11, 15, 6, 2.0), 250, 4.0)) << "too far apart";
 }
 
+TEST(TrackMerging, NoTwoBodiesAreInOnePlace) {
+  // Two parts of the side of a lorry, of which each is taken for all of it: each box holds the centre of the other.
+  const Track rear = side_of_body(0, 4, 6, 2.0);
+  const Track front = side_of_body(4.5, 8.0, 6, 2.0);
+  BoxEstimate of_rear = rear.estimate();
+  BoxEstimate of_front = front.estimate();
+  const RangeImage view = wall_at(60.0);
+  const auto are_one = [&] {
+    return are_same_object({rear, of_rear, 300}, {front, of_front, 250}, view, Eigen::Isometry3d::Identity(), {});
+  };
+  for (BoxEstimate* one : {&of_rear, &of_front}) {
+    one->box.size.x() = 8.0;
+  }
+  of_rear.box.centre = Vector3d(3.0, 9.0, 0.5);
+  of_front.box.centre = Vector3d(5.0, 9.2, 0.5);
+  EXPECT_TRUE(are_one()) << "though the gap is seen through";
+  of_front.box.centre.x() = 8.0;
+  EXPECT_FALSE(are_one()) << "one behind the other";
+  of_front.box.centre.x() = 5.0;
+  of_front.velocity.x() += 8.0;
+  EXPECT_FALSE(are_one()) << "faster";
+}
+
 TEST(TrackMerging, BodiesThatWouldBeLongerThanAnyOrHaveOtherTopsAreTwo) {
   // One behind the other in a lane, with the same speed, and something nearer hides the gap.
   EXPECT_FALSE(are_same(side_of_body(0, 4, 6), 300, side_of_body(4.5, 8.0, 6), 250, 4.0)) << "of a height of 1.5 m";

@@ -17,11 +17,12 @@ namespace {
 constexpr double kFrequency_hz = 11.0;
 constexpr double kBandwidth_hz = 6.0;
 
+// A turn that nothing measures would go on to any speed if its acceleration did not fade.
+constexpr double kAcceleration_s = 2.0;
+
 // What may be learned. The springs of a body that leans alone make 1 rad/s^3. Who drives changes an acceleration by
 // 0.6 m/s^2 in a second, as often up as down: 5 m/s^3 in each knot interval. With less, one that went on evenly for
 // long is believed to go on for ever. Without a resonator all that shakes is jerk: wheels hop with 300.
-// A turn that nothing measures would go on to any speed if its acceleration did not fade.
-constexpr double kAcceleration_s = 2.0;
 constexpr double kPriorJerks = 1.0;
 constexpr double kMinJerk_rad_s3 = 1.0;
 constexpr double kMinJerk_mps3 = 5.0;
