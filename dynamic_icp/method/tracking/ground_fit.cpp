@@ -5,20 +5,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <memory_resource>
-#include <vector>
 
 #include <Eigen/Cholesky>
 
+#include "dynamic_icp/method/base/lanes.hpp"
 #include "dynamic_icp/method/base/random_source.hpp"
-#include "dynamic_icp/method/tracking/memory.hpp"
+#include "dynamic_icp/method/base/simd.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
+using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
 constexpr std::size_t kLookedAt = 2048;      // of a scan are looked at: more would not make the plane better
+constexpr std::size_t kLookedAhead = 16;     // of them are asked for in time, as they lie far apart in memory
 constexpr std::size_t kFewestOnGround = 30;  // on the ground
 constexpr double kFlat_m = 40.0;             // roads are flat so far
 constexpr double kOnGround_m = 0.05;         // what is so near to the plane is on it
@@ -35,29 +36,57 @@ constexpr std::array kWidths_m = {0.15, 0.1, 0.07, 0.05, 0.05};
 // heights of 0.05 m.
 constexpr double kSlopeWeight_m2 = 2.8;
 
-bool is_on_ground(const ego_motion::SupportPlane& plane, const Vector3d& point) {
-  return std::abs(plane.height(point)) < kOnGround_m;
+/// Some points as columns of numbers, on the stack.
+template <std::size_t kMost>
+struct Columns {
+  std::array<double, kMost> x;
+  std::array<double, kMost> y;
+  std::array<double, kMost> z;
+  std::size_t size = 0;
+
+  void set(std::size_t i, const Vector3d& point) {
+    x[i] = point.x();
+    y[i] = point.y();
+    z[i] = point.z();
+  }
+  [[nodiscard]] Vector3d operator[](std::size_t i) const { return {x[i], y[i], z[i]}; }
+};
+
+using NearPoints = Columns<kLookedAt>;
+using Jury = Columns<2 * kGroundJury>;
+
+/// How many are on a plane.
+std::size_t votes(const ego_motion::SupportPlane& plane, const Jury& jury) {
+  std::size_t count = 0;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    const std::size_t n = jury.size;
+    const Vector3d normal = plane.normal;
+    const double offset = plane.offset_m;
+    std::size_t on_plane = 0;
+    for (std::size_t i = 0; i < n; ++i) {
+      const double height = normal.x() * jury.x[i] + normal.y() * jury.y[i] + normal.z() * jury.z[i] - offset;
+      on_plane += std::abs(height) < kOnGround_m ? 1 : 0;
+    }
+    count = on_plane;
+  });
+  return count;
 }
 
 /// The plane with most points on it: the start, or one through three points. Least squares from the start alone may
 /// end on one that leans on the road and on what is beside it.
-ego_motion::SupportPlane with_most_points(const ego_motion::SupportPlane& start, std::span<const Vector3d> points) {
-  const std::size_t step = std::max<std::size_t>(1, points.size() / kGroundJury);
-  const auto votes = [&](const ego_motion::SupportPlane& plane) {
-    std::size_t count = 0;
-    for (std::size_t i = 0; i < points.size(); i += step) {
-      count += is_on_ground(plane, points[i]) ? 1 : 0;
-    }
-    return count;
-  };
+ego_motion::SupportPlane with_most_points(const ego_motion::SupportPlane& start, const NearPoints& points) {
+  Jury jury;
+  for (std::size_t i = 0; i < points.size; i += std::max<std::size_t>(1, points.size / kGroundJury)) {
+    jury.set(jury.size++, points[i]);
+  }
   const RandomSource random(0);
   ego_motion::SupportPlane best = start;
-  std::size_t most = votes(start);
+  std::size_t most = votes(start, jury);
   for (std::uint64_t k = 0; k < kGroundPlanes; ++k) {
-    const auto draw = [&](std::uint64_t which) -> const Vector3d& {
-      return points[(random.bits(3 * k + which) >> 32) * points.size() >> 32];
+    const auto draw = [&](std::uint64_t which) {
+      return points[(random.bits(3 * k + which) >> 32) * points.size >> 32];
     };
-    const Vector3d& x = draw(0);
+    const Vector3d x = draw(0);
     Vector3d normal = (draw(1) - x).cross(draw(2) - x);
     normal *= normal.dot(start.normal) < 0.0 ? -1.0 : 1.0;
     if (!(normal.dot(start.normal) > kSameGroundUp * normal.norm() && normal.norm() > 1.0)) {
@@ -65,7 +94,7 @@ ego_motion::SupportPlane with_most_points(const ego_motion::SupportPlane& start,
     }
     normal.normalize();
     const ego_motion::SupportPlane plane{normal, normal.dot(x)};
-    if (const std::size_t count = votes(plane); count > most) {
+    if (const std::size_t count = votes(plane, jury); count > most) {
       best = plane;
       most = count;
     }
@@ -73,47 +102,101 @@ ego_motion::SupportPlane with_most_points(const ego_motion::SupportPlane& start,
   return best;
 }
 
+/// The points that may be on the ground, and behind them such as are on no plane, up to a multiple of the lanes.
+void gather_near(const ego_motion::SupportPlane& start, std::span<const Vector3d> points,
+                 std::span<const std::uint8_t> is_moving, NearPoints& near) {
+  static_assert(kLookedAt % simd::kLanes == 0);
+  const std::size_t step = std::max<std::size_t>(1, (points.size() + kLookedAt - 1) / kLookedAt);
+  for (std::size_t row = 0; row < points.size(); row += step) {
+    if (row + kLookedAhead * step < points.size()) {
+      __builtin_prefetch(&points[row + kLookedAhead * step]);
+    }
+    const Vector3d& point = points[row];
+    const double off = std::abs(start.height(point));
+    const double squared_range = point.squaredNorm();
+    const bool counts = (is_moving[row] == 0) & (off < kGroundSearch_m) & (squared_range < kFlat_m * kFlat_m);
+    near.set(near.size, point);  // the next takes its place if it does not count: a jump would be hard to foresee
+    near.size += counts ? 1 : 0;
+  }
+  for (std::size_t i = near.size; i % simd::kLanes != 0; ++i) {
+    near.set(i, 2.0 * kFlat_m * start.normal);
+  }
+}
+
+/// Sums over the points near to a plane: of the least squares of their heights h = a . (1, u, v).
+struct HeightSums {
+  Matrix3d information;
+  Vector3d gradient;
+  std::size_t on_plane = 0;  // points
+};
+
+/// `axes`: the normal of the plane, and those of u and v.
+HeightSums sum_heights(const Matrix3d& axes, double offset_m, double width_m, const NearPoints& points) {
+  HeightSums sums;
+  simd::run([&]() DYNAMIC_ICP_KERNEL {
+    using simd::Lanes;
+    using simd::sum;
+    const std::size_t n = points.size;
+    const Matrix3d R = axes;
+    const double offset = offset_m;
+    const double per_width2 = 1.0 / (width_m * width_m);
+    Lanes w{}, wu{}, wv{}, wuu{}, wuv{}, wvv{}, wh{}, whu{}, whv{};
+    simd::LaneMask on_plane{};
+    for (std::size_t i = 0; i < n; i += simd::kLanes) {
+      Lanes x, y, z;
+      simd::load(x, &points.x[i]);
+      simd::load(y, &points.y[i]);
+      simd::load(z, &points.z[i]);
+      const Lanes h = x * R(0, 0) + y * R(1, 0) + z * R(2, 0) - offset;
+      const Lanes u = x * R(0, 1) + y * R(1, 1) + z * R(2, 1);
+      const Lanes v = x * R(0, 2) + y * R(1, 2) + z * R(2, 2);
+      on_plane -= (h < kOnGround_m) & (h > -kOnGround_m);
+      Lanes root = 1.0 - h * h * per_width2;
+      simd::keep_larger(root, Lanes{});
+      const Lanes weight = root * root;
+      const Lanes weight_u = weight * u;
+      const Lanes weight_v = weight * v;
+      w += weight;
+      wu += weight_u;
+      wv += weight_v;
+      wuu += weight_u * u;
+      wuv += weight_u * v;
+      wvv += weight_v * v;
+      wh += weight * h;
+      whu += weight_u * h;
+      whv += weight_v * h;
+    }
+    sums.information << sum(w), sum(wu), sum(wv), sum(wu), sum(wuu), sum(wuv), sum(wv), sum(wuv), sum(wvv);
+    sums.gradient << sum(wh), sum(whu), sum(whv);
+    sums.on_plane = static_cast<std::size_t>(on_plane[0] + on_plane[1] + on_plane[2] + on_plane[3]);
+  });
+  return sums;
+}
+
 }  // namespace
 
 std::optional<GroundFit> fit_ground(const ego_motion::SupportPlane& start, std::span<const Vector3d> points,
                                     std::span<const std::uint8_t> is_moving) {
-  StackMemory<kLookedAt * sizeof(Vector3d)> memory;  // no more is asked for
-  std::pmr::vector<Vector3d> near(memory.resource());
-  near.reserve(kLookedAt);
-  const std::size_t step = (points.size() + kLookedAt - 1) / kLookedAt;
-  for (std::size_t row = 0; row < points.size(); row += std::max<std::size_t>(1, step)) {
-    if (is_moving[row] == 0 && std::abs(start.height(points[row])) < kGroundSearch_m &&
-        points[row].squaredNorm() < kFlat_m * kFlat_m) {
-      near.push_back(points[row]);
-    }
-  }
-  if (near.size() < kFewestOnGround) {
+  NearPoints near;
+  gather_near(start, points, is_moving, near);
+  if (near.size < kFewestOnGround) {
     return std::nullopt;
   }
   GroundFit fit{with_most_points(start, near)};
   for (const double width_m : kWidths_m) {
-    // Height and slopes of the ground over the plane: h = a . (1, u, v).
-    const Vector3d u = fit.plane.normal.unitOrthogonal();
-    const Vector3d v = fit.plane.normal.cross(u);
-    Eigen::Matrix3d information = Vector3d(0.0, kSlopeWeight_m2, kSlopeWeight_m2).asDiagonal();
-    Vector3d gradient = -kSlopeWeight_m2 * Vector3d(0.0, u.dot(start.normal), v.dot(start.normal));
-    fit.points = 0;
-    for (const Vector3d& point : near) {
-      const double height = fit.plane.height(point);
-      fit.points += is_on_ground(fit.plane, point) ? 1 : 0;
-      const double off = height / width_m;
-      if (std::abs(off) < 1.0) {
-        const double root = 1.0 - off * off;
-        const Vector3d row(1.0, u.dot(point), v.dot(point));
-        information += root * root * row * row.transpose();
-        gradient += root * root * height * row;
-      }
-    }
+    Matrix3d axes;
+    axes.col(0) = fit.plane.normal;
+    axes.col(1) = fit.plane.normal.unitOrthogonal();
+    axes.col(2) = fit.plane.normal.cross(axes.col(1));
+    HeightSums sums = sum_heights(axes, fit.plane.offset_m, width_m, near);
+    fit.points = sums.on_plane;
     if (fit.points < kFewestOnGround) {
       return std::nullopt;
     }
-    const Vector3d a = information.ldlt().solve(gradient);
-    const Vector3d turned = fit.plane.normal - a[1] * u - a[2] * v;
+    sums.information.diagonal().tail<2>().array() += kSlopeWeight_m2;
+    sums.gradient.tail<2>() -= kSlopeWeight_m2 * axes.rightCols<2>().transpose() * start.normal;
+    const Vector3d a = sums.information.ldlt().solve(sums.gradient);
+    const Vector3d turned = axes * Vector3d(1.0, -a[1], -a[2]);
     fit.plane = {turned.normalized(), (fit.plane.offset_m + a[0]) / turned.norm()};
   }
   return fit;

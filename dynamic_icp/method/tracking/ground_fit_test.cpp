@@ -99,6 +99,21 @@ TEST(FitGround, FewPointsShowNone) {
   EXPECT_FALSE(fit_ground(street.road, {}, {}));
 }
 
+TEST(FitGround, CountsAllPointsHoweverManyFillTheLanes) {
+  Street street;
+  street.add(30, 11.0, 35.0, -7.0, 7.0, kFlat);
+  for (; street.points.size() < 50; street.add(1, 11.0, 35.0, -7.0, 7.0, kFlat)) {
+    for (Vector3d& point : street.points) {  // without noise
+      point -= street.road.height(point) * street.road.normal;
+    }
+    const auto fit = fit_ground(street.road, street.points, street.is_moving);
+    ASSERT_TRUE(fit);
+    EXPECT_EQ(fit->points, street.points.size());
+    EXPECT_LT(angle_of(fit->plane.normal, street.road.normal), 1e-12);
+    EXPECT_NEAR(fit->plane.offset_m, street.road.offset_m, 1e-12);
+  }
+}
+
 TEST(LikelierGround, IsTheNearerOneUnlessItHasFarFewerPoints) {
   const GroundFit road{{Vector3d::UnitZ(), -1.8}, 400};
   const GroundFit embankment{{exp_so3(Vector3d(0.2, 0.0, 0.0)).col(2), -4.0}, 700};
