@@ -157,8 +157,10 @@ void unite_neighbours(double reach_m, const GroupingConfig& config, GroupingMemo
       const std::size_t from = are_swapped ? other : cube;
       const std::size_t to = are_swapped ? cube : other;
       const bool is_one_set = memory.is_one_set[to] != 0;
-      for (std::uint32_t a = cubes.first[from]; a < cubes.first[from + 1]; ++a) {
-        bool is_done = is_one_set && sets.find(sorted[a].number) == set_of(to);
+      const bool are_sets = is_one_set && memory.is_one_set[from] != 0;
+      bool is_done = false;
+      for (std::uint32_t a = cubes.first[from]; a < cubes.first[from + 1] && !(are_sets && is_done); ++a) {
+        is_done = is_one_set && sets.find(sorted[a].number) == set_of(to);
         for (std::uint32_t b = cubes.first[to]; b < cubes.first[to + 1] && !is_done; ++b) {
           is_done = unite(sorted[a], sorted[b]) && is_one_set;
         }
