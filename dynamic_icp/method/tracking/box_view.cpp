@@ -141,7 +141,8 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
                     std::span<const Vector3d> points) {
   AxisView view;
   view.seen = seen_span(along);
-  const auto look_at = [&](EndView& end, auto&& inwards) {  // how far inwards of the end a point lies
+  const auto look_at = [&](auto&& inwards) {  // how far inwards of the end a point lies
+    EndView end;
     double sum = 0.0;
     double squares = 0.0;
     double depths = 0.0;
@@ -189,9 +190,10 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
     if (end.width > kFaceWidth_m) {  // a side with a few points behind it is not wide
       end.width = std::min(end.width, 4.0 * deviations / end.count);
     }
+    return end;
   };
-  look_at(view.low, [&](double q) { return q - view.seen.low; });
-  look_at(view.high, [&](double q) { return view.seen.high - q; });
+  view.low = look_at([low = view.seen.low](double q) { return q - low; });
+  view.high = look_at([high = view.seen.high](double q) { return high - q; });
   return view;
 }
 
