@@ -7,7 +7,7 @@ cd "$(dirname "$0")/.."
 drives=$(mktemp -d)
 trap 'rm -rf "$drives"' EXIT
 mkdir -p docs/scenes
-for scene in street city highway tunnel curved-walls bridge traffic-jam roundabout parking off-road stationary; do
+for scene in street city highway tunnel curved-walls bridge traffic-jam roundabout freight parking off-road stationary; do
   build/dynamic-icp simulate "$scene" --quiet --output "$drives/$scene"
   cp "$drives/$scene/overview.svg" "docs/scenes/$scene.svg"
 done

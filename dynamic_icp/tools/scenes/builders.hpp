@@ -15,6 +15,7 @@ Scene build_curved_walls(const SceneRequest& request);
 Scene build_bridge(const SceneRequest& request);
 Scene build_jam(const SceneRequest& request);
 Scene build_roundabout(const SceneRequest& request);
+Scene build_freight(const SceneRequest& request);
 Scene build_car_park(const SceneRequest& request);
 Scene build_off_road(const SceneRequest& request);
 

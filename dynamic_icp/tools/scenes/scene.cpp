@@ -23,6 +23,7 @@ const std::vector<SceneKind>& scene_kinds() {
       {"bridge", "equal posts and portals at equal distances", 16.0, build_bridge},
       {"traffic-jam", "seven lanes of stop and go: almost all that is seen moves", 3.0, build_jam, "jam"},
       {"roundabout", "round and round at 0.6 rad/s behind other cars", 7.8, build_roundabout},
+      {"freight", "articulated lorries turn into a yard and out of it", 5.0, build_freight},
       {"parking", "slow turns between parked cars, no dynamic objects", 3.5, build_car_park, "car-park"},
       {"off-road", "winding over rough ground between trees: pitching and rolling", 6.0, build_off_road},
       {"stationary", "stationary vehicle in the street while traffic passes", 0.0, build_street, "standing"},

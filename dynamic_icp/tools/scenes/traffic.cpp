@@ -13,8 +13,25 @@ RoadUserShapes add_road_user_shapes(world::World& world) {
   shapes.car = add_shape(world, world::make_car());
   shapes.van = add_shape(world, world::make_van());
   shapes.truck = add_shape(world, world::make_truck());
+  shapes.tractor = add_shape(world, world::make_tractor());
+  shapes.semitrailer = add_shape(world, world::make_semitrailer());
+  shapes.trailer = add_shape(world, world::make_trailer());
   shapes.pedestrian = add_shape(world, world::make_pedestrian());
   return shapes;
+}
+
+void add_tractor_with_semitrailer(world::World& world, const RoadUserShapes& shapes, const world::Trajectory& tractor,
+                                  double end_s) {
+  const std::int32_t id = world::add_body(world, "tractor", shapes.tractor, tractor);
+  world::add_body(world, "semitrailer", shapes.semitrailer, world::tow(tractor, world::kSemitrailerHitch, end_s));
+  world.bodies.back().towed_by = id;
+}
+
+void add_truck_with_trailer(world::World& world, const RoadUserShapes& shapes, const world::Trajectory& truck,
+                            double end_s) {
+  const std::int32_t id = world::add_body(world, "truck", shapes.truck, truck);
+  world::add_body(world, "trailer", shapes.trailer, world::tow(truck, world::kTrailerHitch, end_s));
+  world.bodies.back().towed_by = id;
 }
 
 void add_lane(world::World& world, const RoadUserShapes& shapes, const std::shared_ptr<const world::Route>& route,

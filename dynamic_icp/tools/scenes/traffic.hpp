@@ -18,6 +18,9 @@ struct RoadUserShapes {
   std::size_t car = 0;
   std::size_t van = 0;
   std::size_t truck = 0;
+  std::size_t tractor = 0;
+  std::size_t semitrailer = 0;
+  std::size_t trailer = 0;
   std::size_t pedestrian = 0;
 };
 
@@ -34,6 +37,12 @@ struct Lane {
   int count = 0;
   double truck_share = 0.0;  ///< of the vehicles; a fifth of the others are vans
 };
+
+/// Two bodies: one that drives like this, and one behind it until `end_s`.
+void add_tractor_with_semitrailer(world::World& world, const RoadUserShapes& shapes, const world::Trajectory& tractor,
+                                  double end_s);
+void add_truck_with_trailer(world::World& world, const RoadUserShapes& shapes, const world::Trajectory& truck,
+                            double end_s);
 
 void add_lane(world::World& world, const RoadUserShapes& shapes, const std::shared_ptr<const world::Route>& route,
               const Lane& lane, const world::SpeedProfile& speed, const RandomSource& random);

@@ -65,6 +65,29 @@ TriangleMesh make_truck() {
   return truck;
 }
 
+TriangleMesh make_tractor() {
+  TriangleMesh tractor;
+  add_box(tractor, {1.9, 0.0, 2.05}, {2.2, 2.5, 3.1});
+  add_box(tractor, {-1.1, 0.0, 0.8}, {3.8, 1.2, 0.4});
+  add_wheels(tractor, {1.6, -1.9}, 2.2, 0.5, 0.3);
+  return tractor;
+}
+
+TriangleMesh make_semitrailer() {
+  TriangleMesh trailer;
+  add_box(trailer, {0.0, 0.0, 2.6}, {13.6, 2.5, 2.8});
+  add_box(trailer, {-2.5, 0.0, 1.0}, {8.0, 1.2, 0.4});
+  add_wheels(trailer, {-2.5, -3.7, -4.9}, 2.2, 0.5, 0.3);
+  return trailer;
+}
+
+TriangleMesh make_trailer() {
+  TriangleMesh trailer;
+  add_box(trailer, {0.0, 0.0, 2.3}, {7.4, 2.5, 2.6});
+  add_wheels(trailer, {0.65, -0.65}, 2.2, 0.5, 0.3);
+  return trailer;
+}
+
 TriangleMesh make_pedestrian() {
   TriangleMesh pedestrian;
   append(pedestrian, make_cylinder(0.1, 0.85, 10), Eigen::Isometry3d(Eigen::Translation3d(0.15, 0.11, 0.0)));

@@ -22,10 +22,11 @@ struct Shape {
 
 /// A body with a motion of its own.
 struct MovingBody {
-  std::int32_t id = 0;    ///< > 0, unique in the world; the label of its points
-  std::string name;       ///< what it is, e.g. "car"
-  std::size_t shape = 0;  ///< index into World::shapes
-  Trajectory trajectory;  ///< of the frame its shape is given in
+  std::int32_t id = 0;        ///< > 0, unique in the world; the label of its points
+  std::string name;           ///< what it is, e.g. "car"
+  std::size_t shape = 0;      ///< index into World::shapes
+  Trajectory trajectory;      ///< of the frame its shape is given in
+  std::int32_t towed_by = 0;  ///< id of the body it hangs on; 0: none
 };
 
 /// Everything a ray can meet: one surface that never moves, in the world frame, and bodies that do. Bodies of the
