@@ -116,6 +116,8 @@ class MovingObject:
     acceleration: float = 0.0
     """m/s^2, in the direction of the box."""
     motion: Optional[Motion] = None
+    divided_from: Optional[int] = None
+    """The id of the object it was taken for a part of until it moved otherwise, as trailers do."""
     status: str = ""
     """confirmed (seen in this scan) or coasting (without points in it)."""
     age_scans: int = 0

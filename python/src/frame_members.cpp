@@ -56,6 +56,9 @@ py::dict object_members(const tracking::TrackedObject& object) {
   members["yaw_rate"] = object.yaw_rate_rps;
   members["acceleration"] = object.acceleration_mps2;
   members["motion"] = motion_members(object.motion);
+  if (object.divided_from > 0) {
+    members["divided_from"] = object.divided_from;
+  }
   members["status"] = std::string(to_string(object.status));
   members["age_scans"] = object.age_scans;
   members["scans_seen"] = object.scans_seen;

@@ -16,6 +16,9 @@ double huber_weight(double e, double k);
 /// Tukey: rho = k^2/6 (1 - (1 - (e/k)^2)^3) for |e| <= k, k^2/6 beyond: residuals beyond k have no pull at all.
 double tukey_loss(double e, double k);
 
+/// k over the standard deviation of normal errors: then 95 % as efficient as least squares.
+inline constexpr double kTukeyTuning = 4.685;
+
 /// w = (1 - (e/k)^2)^2 for |e| <= k, 0 beyond.
 inline double tukey_weight(double e, double k) {
   const double inside = 1.0 - (e / k) * (e / k);

@@ -41,9 +41,9 @@ std::string bytes_of(Frame frame) {
     all(one.verdict, one.velocity_sensor, one.covariance, one.members, one.centroid, one.extent);
   });
   all.each(frame.tracked, [&](tracking::TrackedObject& one) {
-    all(one.id, one.status, one.velocity_sensor, one.covariance, one.yaw_rate_rps, one.yaw_rate_variance,
-        one.tangential_observed, one.centroid, one.extent, one.box.centre, one.box.axes, one.box.size,
-        one.centre_covariance, one.faces, one.prediction.centre, one.prediction.centre_covariance,
+    all(one.id, one.divided_from, one.status, one.velocity_sensor, one.covariance, one.yaw_rate_rps,
+        one.yaw_rate_variance, one.tangential_observed, one.centroid, one.extent, one.box.centre, one.box.axes,
+        one.box.size, one.centre_covariance, one.faces, one.prediction.centre, one.prediction.centre_covariance,
         one.prediction.velocity_sensor, one.age_scans, one.scans_seen, one.members);
   });
   all(frame.dynamic_candidates, frame.dynamic_clustered, frame.dynamic_refined, frame.points, frame.points_used,

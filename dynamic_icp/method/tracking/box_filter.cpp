@@ -20,6 +20,7 @@ constexpr double kReference_m = 0.01;  // the reference is a point of the body b
 constexpr double kLoose_m =
     1.5;  // standard deviation of the middle of what is seen of a body, if as much: others slide before it
 constexpr double kUnknownFace_m = 10.0;   // standard deviation
+constexpr double kJoint_m = 0.4;          // standard deviation of where parts of a body meet
 constexpr double kCorner_m = 0.5;         // radius between the sides of vehicles and their fronts and rears
 constexpr double kKnownFace_m = 0.5;      // a face known better than this was seen
 constexpr double kInside_m = 1.0;         // an end so far within what was seen before is none
@@ -123,6 +124,17 @@ void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
   correct_faces(points_at_mean_time(detection, body_.velocity(), memory), detection, config);
   was_vehicle_ = was_vehicle_ || is_fast_for_sure();
   models_.correct(before, body_);
+}
+
+void BoxFilter::end_at(const Vector3d& along, double place_m) {
+  const double cosine = along.dot(body_.axes().col(0));
+  if (has_heading_ && std::abs(cosine) > std::numbers::sqrt2 / 2.0) {
+    const Vector3d end = body_.position() + (place_m - along.dot(body_.position())) * along;
+    const Face face = cosine > 0.0 ? Face::kFront : Face::kRear;
+    body_.correct_face(face, end, kJoint_m * kJoint_m);
+    faces_[index_of(face)] = FaceView::kHidden;
+    is_part_ = true;
+  }
 }
 
 /// Whether no person moves as fast, beyond doubt.
@@ -328,7 +340,7 @@ void BoxFilter::limit_length(double sigma_m) {
 
 /// What is a small part of the body that its other sides speak of did not end where it seemed to, away from the sensor.
 void BoxFilter::forget_stumps(const Detection& detection) {
-  if (!has_heading_ || may_be_person()) {
+  if (!has_heading_ || is_part_ || may_be_person()) {
     return;
   }
   const double height = span(2);
@@ -389,7 +401,7 @@ BoxFilter BoxFilter::blank() {
 }
 
 void BoxFilter::state(StateArchive& archive) {
-  archive(body_, models_, has_heading_, was_vehicle_, top_is_cut_, least_, faces_, hidden_, log_likelihood_,
+  archive(body_, models_, has_heading_, was_vehicle_, is_part_, top_is_cut_, least_, faces_, hidden_, log_likelihood_,
           size_log_likelihood_, log_prior_, spread_mps_, signal_mps_);
   for (std::optional<Interval>& seen : last_seen_) {
     bool is_known = seen.has_value();

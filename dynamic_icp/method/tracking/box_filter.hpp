@@ -72,6 +72,9 @@ class BoxFilter {
   /// Lets the body follow one of the models of motion.
   void suppose(MotionModel model) { constrain(model, body_); }
 
+  /// Says that the body ends about at along . x = place_m in the direction `along` (unit, world), if it is along it.
+  void end_at(const Eigen::Vector3d& along, double place_m);
+
   /// Something else speaks for the hypothesis, by this logarithm of a likelihood.
   void credit(double log_likelihood) { log_likelihood_ += log_likelihood; }
 
@@ -130,6 +133,7 @@ class BoxFilter {
   MotionModels models_;
   bool has_heading_;
   bool was_vehicle_ = false;                            ///< faster than any person, at any time
+  bool is_part_ = false;                                ///< of a body that bends: as short as a cab
   bool top_is_cut_ = false;                             ///< by the edge of the field of view, at last
   std::array<double, kFaces.size()> least_{};           ///< m from the reference: points were seen so far out
   std::array<FaceView, kFaces.size()> faces_{};         ///< by Face

@@ -18,7 +18,6 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr int kIterations = 8;
-constexpr double kTukeyTuning = 4.685;  // 95 % efficiency for normal errors
 constexpr double kConvergence_mps = 1e-3;
 // Of the information sum u u^T, which is 1 per point along the line of sight: below this a direction counts as open.
 constexpr double kOpenInformation = 1e-5;
@@ -61,7 +60,7 @@ ClusterVelocity fit_cluster_velocity(std::span<const Eigen::Vector3d> directions
     double xx = 0.0, yx = 0.0, yy = 0.0, zx = 0.0, zy = 0.0, zz = 0.0;
     double bx = 0.0, by = 0.0, bz = 0.0;
     for (std::size_t i = 0; i < radial.size(); ++i) {
-      const double w = estimation::tukey_weight(magnitudes[i], kTukeyTuning * scale);
+      const double w = estimation::tukey_weight(magnitudes[i], estimation::kTukeyTuning * scale);
       const Eigen::Vector3d& u = directions[i];
       const double wy = w * u.y();
       const double wz = w * u.z();

@@ -65,6 +65,12 @@ double Expectation::gate_ratio(const Vector3d& direction_world, double radial_mp
   return std::abs(radial_mps - direction_world.dot(W)) / gate;
 }
 
+bool Expectation::excludes(const Vector3d& direction_world, double radial_mps, double same_velocity_mps) const {
+  const double expected_mps = W.dot(direction_world);
+  return std::abs(expected_mps) > same_velocity_mps &&
+         std::abs(radial_mps - expected_mps) > same_velocity_mps + radial_sigma(direction_world);
+}
+
 bool Expectation::may_appear_static(const Vector3d& sensor_world, double slow_mps) const {
   const Vector3d to_object = box.centre - sensor_world;
   const double range = std::max(1.0, to_object.norm());

@@ -51,6 +51,10 @@ struct Expectation {
   /// Deviation of a radial velocity from the expected one as a share of what is allowed.
   [[nodiscard]] double gate_ratio(const Eigen::Vector3d& direction_world, double radial_mps) const;
 
+  /// Whether a point that stands cannot be part of the body: it should move, by more than so much, and does not.
+  [[nodiscard]] bool excludes(const Eigen::Vector3d& direction_world, double radial_mps,
+                              double same_velocity_mps) const;
+
   /// The box without its lowest part, where the ground may be.
   [[nodiscard]] OrientedBox box_above_ground() const;
 

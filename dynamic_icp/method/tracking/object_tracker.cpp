@@ -12,6 +12,7 @@
 
 #include "dynamic_icp/method/base/selection.hpp"
 #include "dynamic_icp/method/base/state_archive.hpp"
+#include "dynamic_icp/method/tracking/articulation.hpp"
 #include "dynamic_icp/method/tracking/expected_rows.hpp"
 #include "dynamic_icp/method/tracking/ground_fit.hpp"
 #include "dynamic_icp/method/tracking/memory.hpp"
@@ -22,19 +23,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMax = 2.0;           // new objects are not wider than so many vehicles
-constexpr double kMinSignal = 2.0;     // of the radial velocities of a new object over their spread
 constexpr double kMinHeight_m = 0.25;  // of what is no ground
 constexpr int kMany = 1 << 30;         // no drive has so many objects
-constexpr std::size_t kMinPoints = 3;  // of a detection: a velocity has three unknowns
-
-/// Whether a point that stands cannot be part of a body that makes it expect a radial velocity.
-bool contradicts(const Expectation& expected, const Vector3d& direction, double radial_mps,
-                 const TrackerConfig& config) {
-  const double expected_mps = expected.W.dot(direction);
-  return std::abs(expected_mps) > config.same_velocity_mps &&
-         std::abs(radial_mps - expected_mps) > config.same_velocity_mps + expected.radial_sigma(direction);
-}
 
 /// Whether all of it lies flat on the ground, which seems to move where the velocity of the sensor is wrong.
 bool is_ground(const Detection& detection) {
@@ -93,6 +83,7 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
   gather_traffic(sensor);
   associate(input, expected_, config_.growth_m, owners_);
   collect_members(input, workers);
+  divide_tracks(input);
   initiate_tracks(input, workers);
   delete_tracks(input);
   for (const TrackRecord& entry : living()) {
@@ -224,7 +215,7 @@ void ObjectTracker::gather_static(const TrackingInput& input, const Expectation&
   std::size_t contradictions = 0;
   std::erase_if(entry.static_rows, [&](std::uint32_t row) {
     const Vector3d direction = input.direction_world(row);
-    const bool is_contrary = contradicts(expected, direction, input.radial[row], config_);
+    const bool is_contrary = expected.excludes(direction, input.radial[row], config_.same_velocity_mps);
     contradictions += is_contrary ? 1 : 0;
     return is_contrary || !(expected.gate_ratio(direction, input.radial[row]) < 1.0);
   });
@@ -271,10 +262,11 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
     ++entry.missed;
     entry.members.clear();
   };
+  entry.joint.reset();
   gather_static(input, expected, entry);
   ++entry.age;
   input.view.remove_mirrored(entry.members, entry.merged);
-  if (entry.members.size() < kMinPoints) {
+  if (entry.members.size() < kLeastDetectionPoints) {
     return miss();
   }
   Track& corrected = entry.other;
@@ -295,92 +287,11 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
       entry.seen >= config_.confirm_scans || entry.members.size() >= static_cast<std::size_t>(config_.confirm_points);
   entry.confirmed = entry.confirmed || (seen_often && entry.is_credible(ego_error_, config_));
   entry.note_motion(input.stamp_s, config_);
-}
-
-/// Groups nobody owns become tracks.
-void ObjectTracker::initiate_tracks(const TrackingInput& input, const Workers& workers) {
-  // Groups among the unowned cells are parts of those among all: where these have too few points, so have the parts.
-  refill(unowned_points_, owners_.owner.size(), std::size_t{0});
-  for (std::size_t cell = 0; cell < owners_.owner.size(); ++cell) {
-    unowned_points_[groups_[cell]] += owners_.owner[cell] == kNobody ? moving_.cells[cell].count : 0;
-  }
-  unowned_.clear();
-  for (std::uint32_t cell = 0; cell < owners_.owner.size(); ++cell) {
-    if (owners_.owner[cell] == kNobody && std::cmp_greater_equal(unowned_points_[groups_[cell]], config_.min_points)) {
-      unowned_.push_back(cell);
-    }
-  }
-  vehicle_groups(input.moving, unowned_, config_.track.largest_width_m, config_.min_points, config_.grouping, grouping_,
-                 unowned_groups_);
-  const std::size_t groups = unowned_groups_.size();
-  entries_.resize(std::max(entries_.size(), living_ + groups));
-  const std::size_t first = living_;
-  workers.for_each(groups, 1, [&](std::size_t i) { begin(input, unowned_groups_.rows_of(i), entries_[first + i]); });
-  for (std::size_t i = first; i < first + groups; ++i) {
-    if (entries_[i].seen > 0) {
-      entries_[i].id = next_id_++;
-      keep(entries_[i]);
-    }
-  }
-}
-
-/// Makes a new track of these rows of the scan. It was never seen if they are no object.
-void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint32_t> rows, TrackRecord& entry) const {
-  entry.seen = 0;
-  refill(entry.members, rows);
-  input.view.remove_mirrored(entry.members, entry.merged);
-  if (entry.members.size() < kMinPoints || !detect(input, entry.members, entry.detection)) {
-    return;
-  }
-  entry.track.begin(entry.detection, input.stamp_s, config_.track);
-  // Errors around zero have more spread than signal.
-  const BoxFilter& best = entry.track.best();
-  const bool is_plausible = best.seen_box().size.y() <= kMax * config_.track.largest_width_m &&
-                            best.spread_mps() <= config_.max_spread_mps &&
-                            best.signal_mps() >= kMinSignal * best.spread_mps();
-  if (!is_plausible) {
-    return;
-  }
-  entry.predicted_s.reset();
-  entry.predict(input.stamp_s, sizes_, config_.track);
-  // Where many points are static, some that seem to move are errors of measurement.
-  const Expectation expected(entry.predicted, entry.now, input.sensor, config_);
-  find_static_rows(input, expected, entry.static_rows);
-  const auto contradictions = std::count_if(entry.static_rows.begin(), entry.static_rows.end(), [&](std::uint32_t row) {
-    return contradicts(expected, input.direction_world(row), input.radial[row], config_);
-  });
-  if (std::cmp_greater(contradictions, entry.members.size())) {
-    return;
-  }
-  entry.age = 1;
-  entry.seen = 1;
-  entry.missed = 0;
-  entry.has_moved = false;
-  entry.moved_s = 0.0;
-  const bool seen_often =
-      entry.members.size() >= static_cast<std::size_t>(config_.confirm_points) || config_.confirm_scans <= 1;
-  entry.confirmed = seen_often && entry.is_credible(ego_error_, config_);
-  entry.note_motion(input.stamp_s, config_);
-}
-
-/// Ends tracks of which nothing is to be expected any more, and makes one of those that share a place.
-void ObjectTracker::delete_tracks(const TrackingInput& input) {
-  const std::span<TrackRecord> all = living();
-  living_ = 0;
-  for (TrackRecord& entry : all) {
-    if (entry.is_over(input.stamp_s, config_)) {
-      continue;
-    }
-    const std::span<TrackRecord> kept = living();
-    const auto same = std::find_if(kept.begin(), kept.end(), [&](const TrackRecord& older) {
-      return are_same_object(older.seen_track(), entry.seen_track(), input.view, input.sensor.T_world_sensor, config_);
-    });
-    if (same == kept.end()) {
-      keep(entry);
-    } else if (entry.members.size() > same->members.size()) {
-      entry.take_name_of(*same);
-      std::swap(*same, entry);
-    }
+  if (const BoxFilter& best = entry.track.best(); best.has_heading()) {
+    const double yaw_rate = best.body().yaw_rate();
+    const double sigma_mps = config_.track.doppler_sigma_mps;
+    entry.joint = find_joint(entry.detection, entry.now.box.axes.col(0),
+                             motion_of(entry.detection, yaw_rate, sigma_mps), yaw_rate, sigma_mps);
   }
 }
 

@@ -96,6 +96,8 @@ class ObjectTracker {
   void correct(const TrackingInput& input, const Expectation& expected, TrackRecord& entry) const;
   void initiate_tracks(const TrackingInput& input, const Workers& workers);
   void begin(const TrackingInput& input, std::span<const std::uint32_t> rows, TrackRecord& entry) const;
+  void divide_tracks(const TrackingInput& input);
+  void divide(const TrackingInput& input, double joint_m, TrackRecord& body, TrackRecord& larger, TrackRecord& smaller);
   void delete_tracks(const TrackingInput& input);
 
   TrackerConfig config_;

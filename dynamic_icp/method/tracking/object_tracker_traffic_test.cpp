@@ -250,5 +250,57 @@ TEST(ObjectTrackerTraffic, APredictionOfACarOnACircleLiesWithinItsStatedUncertai
   }
 }
 
+/// A lorry that comes at 6 m/s and turns aside after a second, and its trailer, whose axle does not slip.
+std::vector<MovingBox> lorry_with_trailer(double t) {
+  constexpr double kSpeed_mps = 6.0;
+  constexpr double kJointBehind_m = 4.0;
+  constexpr double kAxleBehind_m = 4.5;  // the joint, and there is the middle of the trailer
+  constexpr double kStep_s = 1e-3;
+  Vector3d middle(38.0, 4.0, 0.1);
+  double yaw = std::numbers::pi;
+  double trailer_yaw = yaw;
+  double trailer_rate = 0.0;
+  double rate = 0.0;
+  const auto joint_velocity = [&] {
+    const Eigen::Matrix3d axes = upright_axes(yaw);
+    return Vector3d(kSpeed_mps * axes.col(0) - rate * kJointBehind_m * axes.col(1));
+  };
+  for (double now = 0.0; now < t; now += kStep_s) {
+    rate = -0.4 * std::clamp(now - 1.0, 0.0, 1.0);
+    trailer_rate = joint_velocity().dot(upright_axes(trailer_yaw).col(1)) / kAxleBehind_m;
+    middle += kStep_s * kSpeed_mps * upright_axes(yaw).col(0);
+    yaw += kStep_s * rate;
+    trailer_yaw += kStep_s * trailer_rate;
+  }
+  const Eigen::Matrix3d axes = upright_axes(yaw);
+  const Eigen::Matrix3d trailer_axes = upright_axes(trailer_yaw);
+  const Vector3d trailer_middle = middle - kJointBehind_m * axes.col(0) - kAxleBehind_m * trailer_axes.col(0);
+  const Vector3d trailer_velocity = joint_velocity() - trailer_rate * kAxleBehind_m * trailer_axes.col(1);
+  return {{{middle, axes, {7.2, 2.4, 3.2}}, kSpeed_mps * axes.col(0), rate},
+          {{trailer_middle, trailer_axes, {8.0, 2.4, 3.2}}, trailer_velocity, trailer_rate}};
+}
+
+TEST(ObjectTrackerTraffic, ALorryAndItsTrailerAreTwoWhenTheyBend) {
+  ObjectTracker tracker{TrackerConfig{}};
+  for (int k = 0; k < 40; ++k) {
+    const double t = k * kScanPeriod_s;
+    const Objects objects = confirmed(step(tracker, view_of(lorry_with_trailer(t), t)));
+    if (k < 20) {
+      continue;
+    }
+    ASSERT_EQ(objects.size(), 2u) << "scan " << k;
+    for (const MovingBox& truth : lorry_with_trailer(t)) {
+      const TrackedObject& object = nearest(objects, truth.box.centre);
+      EXPECT_LT((object.velocity_sensor - truth.velocity).norm(), 0.6) << "scan " << k;
+      EXPECT_NEAR(object.yaw_rate_rps, truth.yaw_rate, 0.15) << "scan " << k;
+      // Its length is a guess until its rear is seen.
+      EXPECT_LT(dense::normalised_squared(object.box.centre - truth.box.centre, object.centre_covariance), 9.0)
+          << "scan " << k;
+    }
+    EXPECT_EQ(objects[0].id, 1);
+    EXPECT_EQ(objects[1].divided_from, 1);
+  }
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

@@ -144,6 +144,12 @@ void Track::suppose(MotionModel model) {
   }
 }
 
+void Track::end_at(const Eigen::Vector3d& along, double place_m) {
+  for (BoxFilter& hypothesis : hypotheses_) {
+    hypothesis.end_at(along, place_m);
+  }
+}
+
 void Track::correct(const Detection& detection, double stamp_s, const TrackConfig& config) {
   predict(stamp_s + detection.mean_time_s, config);
   for (BoxFilter& hypothesis : hypotheses_) {

@@ -47,6 +47,9 @@ class Track {
   /// Lets the body follow one of the models of motion from now on.
   void suppose(MotionModel model);
 
+  /// Says that the body, whose heading is along the direction (unit, world), ends in it about at along . x = place_m.
+  void end_at(const Eigen::Vector3d& along, double place_m);
+
   /// Takes in another detection; the state is then that of its mean time.
   void correct(const Detection& detection, double stamp_s, const TrackConfig& config);
 

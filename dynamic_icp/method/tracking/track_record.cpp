@@ -80,10 +80,12 @@ void TrackRecord::note_size(VehicleSizes& sizes) const {
 
 void TrackRecord::take_name_of(const TrackRecord& older) {
   id = older.id;
+  divided_from = older.divided_from > 0 ? older.divided_from : divided_from;
   age = older.age;
   seen = older.seen;
   confirmed = older.confirmed || confirmed;
   has_moved = older.has_moved || has_moved;
+  moved_s = std::max(older.moved_s, moved_s);
 }
 
 /// By each model as likely as that is, weighted mean and covariance.
@@ -126,6 +128,7 @@ void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::M
   const Eigen::Matrix3d R = T_sensor_world.linear();
   const BodyFilter& body = predicted.body();
   object.id = id;
+  object.divided_from = divided_from;
   object.status = !confirmed ? TrackStatus::kTentative : missed > 0 ? TrackStatus::kCoasting : TrackStatus::kConfirmed;
   object.velocity_sensor = R * now.velocity;
   object.covariance = R * now.velocity_covariance * R.transpose() + ego_covariance;
@@ -156,9 +159,9 @@ void TrackRecord::report(const Eigen::Isometry3d& T_world_sensor, const Eigen::M
 }
 
 void TrackRecord::state(StateArchive& archive) {
-  archive(id, track, confirmed, has_moved, moved_s, age, seen, missed);
+  archive(id, divided_from, track, confirmed, has_moved, moved_s, age, seen, missed);
   const auto is_count = [](int count) { return count >= 0 && count < kMaxScans; };
-  archive.require(id > 0 && is_count(age) && is_count(seen) && is_count(missed), "an object");
+  archive.require(id > 0 && divided_from >= 0 && is_count(age) && is_count(seen) && is_count(missed), "an object");
 }
 
 }  // namespace dynamic_icp::tracking

@@ -35,6 +35,7 @@ struct TrackRecord {
   Track predicted;                         ///< at the stamp of the present scan, with what that scan shows
   BoxEstimate now = {};                    ///< of the latter
   std::optional<double> predicted_s = {};  ///< that stamp
+  std::int64_t divided_from = 0;           ///< id of the track that it was part of; 0: none
   bool confirmed = false;
   bool has_moved = false;  ///< beyond doubt
   double moved_s = 0.0;    ///< when it moved last
@@ -42,6 +43,7 @@ struct TrackRecord {
   int seen = 0;
   int missed = 0;
   std::vector<std::uint32_t> members = {};  ///< rows of the present scan
+  std::optional<double> joint = {};         ///< find_joint along the box, of these
 
   // For their memory
   Track other;
@@ -75,6 +77,12 @@ struct TrackRecord {
 
   /// Where it will be `after_s` after the present scan, world; of the covariance of the velocity nothing is said.
   [[nodiscard]] BoxEstimate forecast(double after_s, const VehicleSizes& sizes, const TrackConfig& config);
+
+  [[nodiscard]]  /// Whether they are known to be two bodies.
+  [[nodiscard]] bool
+  was_divided_from(const TrackRecord& another) const {
+    return divided_from == another.id || another.divided_from == id;
+  }
 
   [[nodiscard]] SeenTrack seen_track() const { return {predicted, now, members.size()}; }
 

@@ -43,7 +43,8 @@ struct ObjectPrediction {
 /// One moving thing at the stamp of a scan, from all scans in which it was seen. Vectors are in the axes of the sensor
 /// frame of that scan.
 struct TrackedObject {
-  std::int64_t id = 0;  ///< 1, 2, ... in the order of birth; never used again
+  std::int64_t id = 0;            ///< 1, 2, ... in the order of birth; never used again
+  std::int64_t divided_from = 0;  ///< id of the object it was taken for a part of, as trailers are; 0: none
   TrackStatus status = TrackStatus::kTentative;
   /// m/s over ground, of the centre of the box: a turning body has another velocity elsewhere.
   Eigen::Vector3d velocity_sensor = Eigen::Vector3d::Zero();

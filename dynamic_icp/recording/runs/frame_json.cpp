@@ -114,6 +114,7 @@ Json prediction_json(const tracking::ObjectPrediction& prediction) {
 
 Json tracked_json(const tracking::TrackedObject& object) {
   return {{"id", object.id},
+          {"divided_from", object.divided_from > 0 ? Json(object.divided_from) : Json(nullptr)},
           {"velocity", vector_json(object.velocity_sensor)},
           {"velocity_covariance", matrix_json(object.covariance)},
           {"tangential_observed", object.tangential_observed},

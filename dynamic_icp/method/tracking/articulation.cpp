@@ -1,0 +1,121 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/articulation.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstddef>
+
+#include <Eigen/Cholesky>
+
+#include "dynamic_icp/method/estimation/robust_kernel.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kShortest_m = 5.0;       // cars have no joints
+constexpr double kShortestPart_m = 1.5;   // of a body: a cab
+constexpr double kStep_m = 0.5;           // between the places that are tried
+constexpr double kLeastPoints = 20.0;     // of a part
+constexpr double kPrior_mps = 30.0;       // standard deviation of what the motion of a part differs from that of all
+constexpr double kEvidence = 40.0;        // F of two bodies
+constexpr double kByDirection_mps = 0.3;  // so much errors of the Doppler change over a radian: root mean square
+constexpr double kGross_mps = 1.5;        // parts differ by less than such errors
+constexpr std::size_t kMostSteps = 64;
+
+/// The normal equations of what a part of the body moves otherwise than the whole: A dW = b.
+struct PartSums {
+  Eigen::Matrix3d A = Eigen::Matrix3d::Zero();
+  Vector3d b = Vector3d::Zero();
+  double squares = 0.0;  ///< of the residuals to the whole
+  double weights = 0.0;
+
+  void add(const Vector3d& direction, double residual, double weight) {
+    A += weight * direction * direction.transpose();
+    b += weight * residual * direction;
+    squares += weight * residual * residual;
+    weights += weight;
+  }
+  PartSums& operator+=(const PartSums& other) {
+    A += other.A;
+    b += other.b;
+    squares += other.squares;
+    weights += other.weights;
+    return *this;
+  }
+  PartSums& operator-=(const PartSums& other) {
+    A -= other.A;
+    b -= other.b;
+    squares -= other.squares;
+    weights -= other.weights;
+    return *this;
+  }
+
+  /// What remains of the squares when the part moves as it fits best.
+  [[nodiscard]] double least_squares(double sigma_mps) const {
+    const double ridge = sigma_mps * sigma_mps / (kPrior_mps * kPrior_mps);
+    return squares - b.dot((A + ridge * Eigen::Matrix3d::Identity()).ldlt().solve(b));
+  }
+};
+
+}  // namespace
+
+std::optional<double> find_joint(const Detection& detection, const Vector3d& along, const ClusterVelocity& whole,
+                                 double yaw_rate_rps, double sigma_mps) {
+  const auto place = [&](std::size_t i) { return along.dot(detection.points[i]); };
+  std::size_t rearmost = 0;
+  std::size_t foremost = 0;
+  for (std::size_t i = 1; i < detection.points.size(); ++i) {
+    rearmost = place(i) < place(rearmost) ? i : rearmost;
+    foremost = place(i) > place(foremost) ? i : foremost;
+  }
+  const double rear = place(rearmost);
+  const double front = place(foremost);
+  const auto steps = static_cast<std::size_t>((front - rear) / kStep_m) + 1;
+  if (front - rear < kShortest_m || steps > kMostSteps) {
+    return std::nullopt;
+  }
+  DetectionMemory memory;
+  const std::pmr::vector<double> radial = radial_at_sensor(detection, yaw_rate_rps, memory);
+  const double scale = std::max(kGross_mps, estimation::kTukeyTuning * std::max(sigma_mps, whole.spread_mps));
+  std::array<PartSums, kMostSteps> sums{};
+  PartSums ahead;
+  for (std::size_t i = 0; i < radial.size(); ++i) {
+    const double residual = radial[i] - detection.directions[i].dot(whole.W);
+    sums[static_cast<std::size_t>((place(i) - rear) / kStep_m)].add(detection.directions[i], residual,
+                                                                    estimation::tukey_weight(residual, scale));
+  }
+  for (std::size_t k = 0; k < steps; ++k) {
+    ahead += sums[k];
+  }
+  const double points = ahead.weights;
+  const double by_one = ahead.least_squares(sigma_mps);
+  const double noise = points * sigma_mps * sigma_mps;  // what looks better is so by chance
+  const double by_direction_mps =
+      kByDirection_mps * (detection.directions[foremost] - detection.directions[rearmost]).norm();
+  const double least_gain = points * by_direction_mps * by_direction_mps;
+  PartSums behind;
+  std::optional<double> joint;
+  double best = kEvidence;
+  for (std::size_t k = 0; k < steps; ++k) {
+    behind += sums[k];
+    ahead -= sums[k];
+    const double cut = rear + kStep_m * static_cast<double>(k + 1);
+    if (cut - rear < kShortestPart_m || front - cut < kShortestPart_m ||
+        !(std::min(behind.weights, ahead.weights) > kLeastPoints)) {
+      continue;
+    }
+    const double by_two = behind.least_squares(sigma_mps) + ahead.least_squares(sigma_mps);
+    const double evidence = (by_one - by_two) / 3.0 * (points - 6.0) / std::max(by_two, noise);
+    if (evidence > best && by_one - by_two > least_gain) {
+      best = evidence;
+      joint = cut;
+    }
+  }
+  return joint;
+}
+
+}  // namespace dynamic_icp::tracking

@@ -1,0 +1,89 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include "dynamic_icp/method/tracking/articulation.hpp"
+
+#include <cmath>
+#include <cstdint>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/base/random_source.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kNoise_mps = 0.05;
+constexpr double kJointAt_m = 1.0;  // ahead of the middle
+
+/// A side, 2.5 m high, of a lorry that drives along x, seen from the origin. Its parts are joined at kJointAt_m ahead
+/// of its middle and turn with rates of their own.
+struct Lorry {
+  double length_m = 12.0;
+  double rate_ahead_rps = 0.3;
+  double rate_behind_rps = 0.3;
+  double outliers = 0.0;
+  double changing_mps = 0.0;  ///< an error of the Doppler that is so large in the middle and at the ends
+  std::uint64_t seed = 1;
+};
+
+Detection seen(const Lorry& lorry) {
+  const Vector3d middle(18.0, 8.0, 0.5);
+  const Vector3d joint = middle + Vector3d(kJointAt_m, 0.0, 0.0);
+  Detection detection;
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const RandomSource one = RandomSource(lorry.seed).fork(i);
+    const double along = one.uniform(0, -0.5, 0.5) * lorry.length_m;
+    const Vector3d point = middle + Vector3d(along, 0.0, one.uniform(1, -1.2, 1.3));
+    const double rate = along > kJointAt_m ? lorry.rate_ahead_rps : lorry.rate_behind_rps;
+    const Vector3d velocity = Vector3d(6.0, 0.5, 0.0) + rate * Vector3d::UnitZ().cross(point - joint);
+    const double error = lorry.changing_mps * std::cos(4.0 * 3.14 * along / lorry.length_m);
+    const bool is_gross = one.uniform(2) < lorry.outliers;
+    detection.points.push_back(point);
+    detection.directions.push_back(point.normalized());
+    detection.radial.push_back(is_gross
+                                   ? one.uniform(3, -20.0, 20.0)
+                                   : detection.directions.back().dot(velocity) + error + kNoise_mps * one.normal(4));
+    detection.times.push_back(0.0);
+  }
+  return detection;
+}
+
+std::optional<double> joint_of(const Lorry& lorry) {
+  const Detection detection = seen(lorry);
+  return find_joint(detection, Vector3d::UnitX(), motion_of(detection, 0.0, kNoise_mps), 0.0, kNoise_mps);
+}
+
+TEST(Articulation, ARigidBodyHasNoJointHoweverItTurns) {
+  for (std::uint64_t seed = 1; seed <= 50; ++seed) {
+    for (const double rate : {-0.5, 0.0, 0.3}) {
+      const Lorry lorry = {.rate_ahead_rps = rate, .rate_behind_rps = rate, .outliers = 0.1, .seed = seed};
+      EXPECT_FALSE(joint_of(lorry)) << "seed " << seed << " rate " << rate;
+    }
+  }
+}
+
+TEST(Articulation, ErrorsOfTheDopplerThatChangeOverABodyAreNoJoint) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_FALSE(joint_of({.changing_mps = 0.03, .seed = seed})) << seed;
+  }
+}
+
+TEST(Articulation, PartsThatTurnDifferentlyMeetAtTheJoint) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    for (const double outliers : {0.0, 0.1}) {
+      const std::optional<double> joint = joint_of({.rate_behind_rps = 0.0, .outliers = outliers, .seed = seed});
+      ASSERT_TRUE(joint) << seed;
+      EXPECT_NEAR(*joint, 18.0 + kJointAt_m, 1.0) << seed;
+    }
+  }
+}
+
+TEST(Articulation, WhatIsAsShortAsACarHasNoJoint) {
+  EXPECT_FALSE(joint_of({.length_m = 4.6, .rate_ahead_rps = 1.5, .rate_behind_rps = -1.5}));
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
