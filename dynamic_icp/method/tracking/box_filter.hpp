@@ -39,6 +39,9 @@ struct BoxHistory {
 /// Standard deviation of what is anywhere in a gap, as a share.
 constexpr double kUniform = 0.29;
 
+/// Standard deviation of where a face is that was not seen.
+constexpr double kUnknownFace_m = 10.0;
+
 /// Sides shorter than this have no direction, m.
 constexpr double kShortestSide_m = 1.0;
 
@@ -46,6 +49,9 @@ constexpr double kShortestSide_m = 1.0;
 /// of a roof, or of the ground, and its direction is that of the sight.
 bool is_strip_along_sight(std::span<const Eigen::Vector3d> points, const Eigen::Matrix3d& axes,
                           const Eigen::Vector3d& sensor);
+
+/// Standard deviation of what is seen of a face at a place, m.
+double face_sigma(const Eigen::Vector3d& where, const Detection& detection, const TrackConfig& config);
 
 /// One hypothesis about a moving body: an upright box that moves where it points, or one that moves without turning,
 /// anywhere.

@@ -12,17 +12,15 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr double kLasting_s = 5.0;        // of one way to move
-constexpr double kStanding_mps = 0.1;     // standard deviation of the velocity of what stands ...
-constexpr double kStraight_rps = 0.01;    // ... and of the yaw rate of what does not turn
-constexpr double kUnlikely = 1e-6;        // no model is less likely: each may come back
-constexpr double kMostOfOneScan = 100.0;  // the likelihood ratio: measurements err in more ways than the filter knows
+constexpr double kLasting_s = 5.0;       // of one way to move
+constexpr double kStanding_mps = 0.1;    // standard deviation of the velocity of what stands ...
+constexpr double kStraight_rps = 0.01;   // ... and of the yaw rate of what does not turn
+constexpr double kUnlikely = 1e-6;       // no model is less likely: each may come back
+constexpr double kLargestRatio = 100.0;  // of likelihoods of one scan: it errs in more ways than the filter knows
 
 /// Logarithm of the density at zero of a Gaussian, but for a constant.
-template <int kSize>
-double log_density_at_zero(const Eigen::Matrix<double, kSize, 1>& mean,
-                           const Eigen::Matrix<double, kSize, kSize>& covariance) {
-  const Eigen::LLT<Eigen::Matrix<double, kSize, kSize>> llt(covariance);
+double log_density_at_zero(const Eigen::Vector3d& mean, const Eigen::Matrix3d& covariance) {
+  const Eigen::LLT<Eigen::Matrix3d> llt(covariance);
   const auto L = llt.matrixL();
   return -0.5 * L.solve(mean).squaredNorm() - llt.matrixLLT().diagonal().array().log().sum();
 }
@@ -33,19 +31,18 @@ double log_density_of_no_turn(const BodyFilter& body) {
 }
 
 double log_density_of_no_motion(const BodyFilter& body) {
-  constexpr int kSize = 3;
-  Eigen::Matrix<double, kSize, BodyFilter::kStates> H = Eigen::Matrix<double, kSize, BodyFilter::kStates>::Zero();
+  Eigen::Matrix<double, 3, BodyFilter::kStates> H = Eigen::Matrix<double, 3, BodyFilter::kStates>::Zero();
   H.block<2, 3>(0, BodyFilter::kVelocity) = body.level().leftCols<2>().transpose();
   H(2, BodyFilter::kYawRate) = 1.0;
   const Eigen::Vector3d variances(kStanding_mps * kStanding_mps, kStanding_mps * kStanding_mps,
                                   kStraight_rps * kStraight_rps);
   Eigen::Matrix3d covariance = H * body.covariance() * H.transpose();
   covariance.diagonal() += variances;
-  return log_density_at_zero<kSize>(H * body.state(), covariance);
+  return log_density_at_zero(H * body.state(), covariance);
 }
 
 double likelihood_ratio(double log_ratio) {
-  return std::clamp(std::exp(log_ratio), 1.0 / kMostOfOneScan, kMostOfOneScan);
+  return std::clamp(std::exp(log_ratio), 1.0 / kLargestRatio, kLargestRatio);
 }
 
 }  // namespace
