@@ -7,6 +7,7 @@
 #include <numbers>
 #include <utility>
 
+#include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/tracking/box_filter.hpp"
 #include "dynamic_icp/method/tracking/likely_extent.hpp"
 #include "dynamic_icp/method/tracking/size_prior.hpp"
@@ -72,6 +73,9 @@ BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {
     hidden(axis, axis) = likely.variance + kUniform * kUniform * below * below;
   }
   estimate.centre_covariance = H * body_.covariance() * H.transpose() + axes * hidden * axes.transpose();
+  // A body that turns moves otherwise where its centre may be, too: omega x.
+  const Eigen::Matrix3d turn = body_.yaw_rate() * skew(axes.col(2)) * axes;
+  estimate.velocity_covariance += turn * hidden * turn.transpose();
   if (!has_heading_) {  // the side that the motion is nearest to counts as the front
     const Eigen::Vector3d v = axes.transpose() * body_.velocity();
     const double quarters = std::round(std::atan2(v.y(), v.x()) / (0.5 * std::numbers::pi));
