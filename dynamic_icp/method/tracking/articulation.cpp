@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <numeric>
 
 #include <Eigen/Cholesky>
 
@@ -61,43 +62,49 @@ struct PartSums {
   }
 };
 
+using Sums = std::array<PartSums, kMostSteps>;
+
+/// Of the points between each two of the places that are tried.
+Sums sum_between(const Detection& detection, const Vector3d& along, double rear_m, double yaw_rate_rps,
+                 double sigma_mps) {
+  const ClusterVelocity whole = motion_of(detection, yaw_rate_rps, sigma_mps);
+  const double scale = std::max(kGross_mps, estimation::kTukeyTuning * std::max(sigma_mps, whole.spread_mps));
+  DetectionMemory memory;
+  const std::pmr::vector<double> radial = radial_at_sensor(detection, yaw_rate_rps, memory);
+  Sums sums{};
+  for (std::size_t i = 0; i < radial.size(); ++i) {
+    const double residual = radial[i] - detection.directions[i].dot(whole.W);
+    sums[static_cast<std::size_t>((along.dot(detection.points[i]) - rear_m) / kStep_m)].add(
+        detection.directions[i], residual, estimation::tukey_weight(residual, scale));
+  }
+  return sums;
+}
+
 }  // namespace
 
-std::optional<double> find_joint(const Detection& detection, const Vector3d& along, const ClusterVelocity& whole,
-                                 double yaw_rate_rps, double sigma_mps) {
-  const auto place = [&](std::size_t i) { return along.dot(detection.points[i]); };
-  std::size_t rearmost = 0;
-  std::size_t foremost = 0;
-  for (std::size_t i = 1; i < detection.points.size(); ++i) {
-    rearmost = place(i) < place(rearmost) ? i : rearmost;
-    foremost = place(i) > place(foremost) ? i : foremost;
-  }
-  const double rear = place(rearmost);
-  const double front = place(foremost);
+std::optional<double> find_joint(const Detection& detection, const Vector3d& along, double yaw_rate_rps,
+                                 double sigma_mps) {
+  const auto is_behind = [&](const Vector3d& a, const Vector3d& b) { return along.dot(a) < along.dot(b); };
+  const auto [rearmost, foremost] = std::minmax_element(detection.points.begin(), detection.points.end(), is_behind);
+  const double rear = along.dot(*rearmost);
+  const double front = along.dot(*foremost);
   const auto steps = static_cast<std::size_t>((front - rear) / kStep_m) + 1;
   if (front - rear < kShortest_m || steps > kMostSteps) {
     return std::nullopt;
   }
-  DetectionMemory memory;
-  const std::pmr::vector<double> radial = radial_at_sensor(detection, yaw_rate_rps, memory);
-  const double scale = std::max(kGross_mps, estimation::kTukeyTuning * std::max(sigma_mps, whole.spread_mps));
-  std::array<PartSums, kMostSteps> sums{};
-  PartSums ahead;
-  for (std::size_t i = 0; i < radial.size(); ++i) {
-    const double residual = radial[i] - detection.directions[i].dot(whole.W);
-    sums[static_cast<std::size_t>((place(i) - rear) / kStep_m)].add(detection.directions[i], residual,
-                                                                    estimation::tukey_weight(residual, scale));
-  }
-  for (std::size_t k = 0; k < steps; ++k) {
-    ahead += sums[k];
-  }
+  const Sums sums = sum_between(detection, along, rear, yaw_rate_rps, sigma_mps);
+  PartSums ahead = std::accumulate(sums.begin(), sums.end(), PartSums{}, [](PartSums sum, const PartSums& part) {
+    sum += part;
+    return sum;
+  });
+  PartSums behind;
   const double points = ahead.weights;
   const double by_one = ahead.least_squares(sigma_mps);
   const double noise = points * sigma_mps * sigma_mps;  // what looks better is so by chance
   const double by_direction_mps =
-      kByDirection_mps * (detection.directions[foremost] - detection.directions[rearmost]).norm();
+      kByDirection_mps *
+      ((*foremost - detection.sensor).normalized() - (*rearmost - detection.sensor).normalized()).norm();
   const double least_gain = points * by_direction_mps * by_direction_mps;
-  PartSums behind;
   std::optional<double> joint;
   double best = kEvidence;
   for (std::size_t k = 0; k < steps; ++k) {

@@ -15,9 +15,8 @@ namespace dynamic_icp::tracking {
 /// one rigid body explains the Doppler as well, by the F statistic of the two regressions of `ClusterVelocity`,
 ///   F = (S_1 - S_2) / 3 / (S_2 / (n - 6)),
 /// with the sums of squares S_1 and S_2 that one and two bodies leave of n points, or where errors of the Doppler by
-/// direction explain sqrt((S_1 - S_2) / n). `whole` is the regression of all of
-/// them (motion_of), `yaw_rate_rps` and `sigma_mps` are as there.
-std::optional<double> find_joint(const Detection& detection, const Eigen::Vector3d& along, const ClusterVelocity& whole,
-                                 double yaw_rate_rps, double sigma_mps);
+/// direction explain sqrt((S_1 - S_2) / n). `yaw_rate_rps` and `sigma_mps`: as in motion_of.
+std::optional<double> find_joint(const Detection& detection, const Eigen::Vector3d& along, double yaw_rate_rps,
+                                 double sigma_mps);
 
 }  // namespace dynamic_icp::tracking

@@ -4,6 +4,8 @@
 
 #include <cmath>
 #include <cstdint>
+#include <numbers>
+#include <optional>
 
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
@@ -39,7 +41,7 @@ Detection seen(const Lorry& lorry) {
     const Vector3d point = middle + Vector3d(along, 0.0, one.uniform(1, -1.2, 1.3));
     const double rate = along > kJointAt_m ? lorry.rate_ahead_rps : lorry.rate_behind_rps;
     const Vector3d velocity = Vector3d(6.0, 0.5, 0.0) + rate * Vector3d::UnitZ().cross(point - joint);
-    const double error = lorry.changing_mps * std::cos(4.0 * 3.14 * along / lorry.length_m);
+    const double error = lorry.changing_mps * std::cos(4.0 * std::numbers::pi * along / lorry.length_m);
     const bool is_gross = one.uniform(2) < lorry.outliers;
     detection.points.push_back(point);
     detection.directions.push_back(point.normalized());
@@ -52,8 +54,7 @@ Detection seen(const Lorry& lorry) {
 }
 
 std::optional<double> joint_of(const Lorry& lorry) {
-  const Detection detection = seen(lorry);
-  return find_joint(detection, Vector3d::UnitX(), motion_of(detection, 0.0, kNoise_mps), 0.0, kNoise_mps);
+  return find_joint(seen(lorry), Vector3d::UnitX(), 0.0, kNoise_mps);
 }
 
 TEST(Articulation, ARigidBodyHasNoJointHoweverItTurns) {

@@ -17,6 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double kLoose_m =
     1.5;  // standard deviation of the middle of what is seen of a body, if as much: others slide before it
+constexpr double kFrame_m = 4.0;         // of a tractor, below the trailer
 constexpr double kJoint_m = 0.4;         // standard deviation of where parts of a body meet
 constexpr double kCorner_m = 0.5;        // radius between the sides of vehicles and their fronts and rears
 constexpr double kInside_m = 1.0;        // an end so far within what was seen before is none
@@ -108,7 +109,7 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   const bool was_known = is_known(face);  // else it could be anywhere, and no place surprises
   if (is_end) {
     faces_[i] = FaceView::kSeen;
-    hidden_[i] = 0.0;
+    hidden_[i] = is_part_ ? hidden_[i] : 0.0;
   } else if (is_upper_end) {
     hidden_[i] = end.hidden;
   } else {
@@ -215,6 +216,7 @@ void BoxFilter::end_at(const Vector3d& along, double place_m) {
     const Face face = cosine > 0.0 ? Face::kFront : Face::kRear;
     body_.correct_face(face, end, kJoint_m * kJoint_m);
     faces_[index_of(face)] = FaceView::kHidden;
+    hidden_[index_of(face)] = face == Face::kRear ? kFrame_m : 0.0;
     is_part_ = true;
   }
 }

@@ -288,10 +288,8 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   entry.confirmed = entry.confirmed || (seen_often && entry.is_credible(ego_error_, config_));
   entry.note_motion(input.stamp_s, config_);
   if (const BoxFilter& best = entry.track.best(); best.has_heading()) {
-    const double yaw_rate = best.body().yaw_rate();
-    const double sigma_mps = config_.track.doppler_sigma_mps;
-    entry.joint = find_joint(entry.detection, entry.now.box.axes.col(0),
-                             motion_of(entry.detection, yaw_rate, sigma_mps), yaw_rate, sigma_mps);
+    entry.joint =
+        find_joint(entry.detection, entry.now.box.axes.col(0), best.body().yaw_rate(), config_.track.doppler_sigma_mps);
   }
 }
 
