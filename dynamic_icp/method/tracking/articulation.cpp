@@ -17,8 +17,14 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kShortest_m = 5.0;       // cars have no joints
-constexpr double kShortestPart_m = 1.5;   // of a body: a cab
+/// What is smaller has no joint, and what is smaller is no part.
+struct Least {
+  double whole_m;
+  double part_m;
+};
+constexpr Least kLeastLength = {5.0, 1.5};  // a car; a cab
+constexpr Least kLeastWidth = {2.8, 0.0};   // no vehicle is so wide; the side of one beside another is flat
+
 constexpr double kStep_m = 0.5;           // between the places that are tried
 constexpr double kLeastPoints = 20.0;     // of a part
 constexpr double kPrior_mps = 30.0;       // standard deviation of what the motion of a part differs from that of all
@@ -80,16 +86,15 @@ Sums sum_between(const Detection& detection, const Vector3d& along, double rear_
   return sums;
 }
 
-}  // namespace
-
-std::optional<double> find_joint(const Detection& detection, const Vector3d& along, double yaw_rate_rps,
-                                 double sigma_mps) {
+/// Along a direction: where two bodies explain what one does not.
+std::optional<Joint> joint_along(const Detection& detection, const Vector3d& along, const Least& least,
+                                 double yaw_rate_rps, double sigma_mps) {
   const auto is_behind = [&](const Vector3d& a, const Vector3d& b) { return along.dot(a) < along.dot(b); };
   const auto [rearmost, foremost] = std::minmax_element(detection.points.begin(), detection.points.end(), is_behind);
   const double rear = along.dot(*rearmost);
   const double front = along.dot(*foremost);
   const auto steps = static_cast<std::size_t>((front - rear) / kStep_m) + 1;
-  if (front - rear < kShortest_m || steps > kMostSteps) {
+  if (front - rear < least.whole_m || steps > kMostSteps) {
     return std::nullopt;
   }
   const Sums sums = sum_between(detection, along, rear, yaw_rate_rps, sigma_mps);
@@ -105,24 +110,36 @@ std::optional<double> find_joint(const Detection& detection, const Vector3d& alo
       kByDirection_mps *
       ((*foremost - detection.sensor).normalized() - (*rearmost - detection.sensor).normalized()).norm();
   const double least_gain = points * by_direction_mps * by_direction_mps;
-  std::optional<double> joint;
-  double best = kEvidence;
+  Joint joint{along, 0.0, false, kEvidence};
   for (std::size_t k = 0; k < steps; ++k) {
     behind += sums[k];
     ahead -= sums[k];
     const double cut = rear + kStep_m * static_cast<double>(k + 1);
-    if (cut - rear < kShortestPart_m || front - cut < kShortestPart_m ||
+    if (cut - rear < least.part_m || front - cut < least.part_m ||
         !(std::min(behind.weights, ahead.weights) > kLeastPoints)) {
       continue;
     }
     const double by_two = behind.least_squares(sigma_mps) + ahead.least_squares(sigma_mps);
     const double evidence = (by_one - by_two) / 3.0 * (points - 6.0) / std::max(by_two, noise);
-    if (evidence > best && by_one - by_two > least_gain) {
-      best = evidence;
-      joint = cut;
+    if (evidence > joint.evidence && by_one - by_two > least_gain) {
+      joint.evidence = evidence;
+      joint.place_m = cut;
     }
   }
-  return joint;
+  return joint.evidence > kEvidence ? std::optional(joint) : std::nullopt;
+}
+
+}  // namespace
+
+std::optional<Joint> find_joint(const Detection& detection, const Eigen::Matrix3d& axes, double yaw_rate_rps,
+                                double sigma_mps) {
+  const std::optional<Joint> along = joint_along(detection, axes.col(0), kLeastLength, yaw_rate_rps, sigma_mps);
+  std::optional<Joint> across = joint_along(detection, axes.col(1), kLeastWidth, yaw_rate_rps, sigma_mps);
+  if (across && !(along && along->evidence > across->evidence)) {
+    across->is_across = true;
+    return across;
+  }
+  return along;
 }
 
 }  // namespace dynamic_icp::tracking

@@ -53,8 +53,8 @@ Detection seen(const Lorry& lorry) {
   return detection;
 }
 
-std::optional<double> joint_of(const Lorry& lorry) {
-  return find_joint(seen(lorry), Vector3d::UnitX(), 0.0, kNoise_mps);
+std::optional<Joint> joint_of(const Lorry& lorry) {
+  return find_joint(seen(lorry), Eigen::Matrix3d::Identity(), 0.0, kNoise_mps);
 }
 
 TEST(Articulation, ARigidBodyHasNoJointHoweverItTurns) {
@@ -75,11 +75,37 @@ TEST(Articulation, ErrorsOfTheDopplerThatChangeOverABodyAreNoJoint) {
 TEST(Articulation, PartsThatTurnDifferentlyMeetAtTheJoint) {
   for (std::uint64_t seed = 1; seed <= 20; ++seed) {
     for (const double outliers : {0.0, 0.1}) {
-      const std::optional<double> joint = joint_of({.rate_behind_rps = 0.0, .outliers = outliers, .seed = seed});
+      const std::optional<Joint> joint = joint_of({.rate_behind_rps = 0.0, .outliers = outliers, .seed = seed});
       ASSERT_TRUE(joint) << seed;
-      EXPECT_NEAR(*joint, 18.0 + kJointAt_m, 1.0) << seed;
+      EXPECT_NEAR(joint->place_m, 18.0 + kJointAt_m, 1.0) << seed;
     }
   }
+}
+
+/// A side 8 m away and another one 3 m farther, of bodies that drive along x with these speeds.
+Detection abreast(double near_mps, double far_mps) {
+  Detection detection;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const RandomSource one = RandomSource(3).fork(i);
+    const bool is_far = i % 3 == 0;
+    const Vector3d point(12.0 + (is_far ? one.uniform(0, -1.0, 3.0) : one.uniform(0, -3.0, 3.0)), is_far ? 11.0 : 8.0,
+                         one.uniform(1, -1.0, 1.0));
+    detection.points.push_back(point);
+    detection.directions.push_back(point.normalized());
+    detection.radial.push_back((is_far ? far_mps : near_mps) * point.normalized().x() + kNoise_mps * one.normal(2));
+    detection.times.push_back(0.0);
+  }
+  return detection;
+}
+
+TEST(Articulation, BodiesAbreastMeetBetweenThemIfTheirSpeedsDiffer) {
+  const Eigen::Matrix3d axes = Eigen::Matrix3d::Identity();
+  EXPECT_FALSE(find_joint(abreast(2.0, 2.0), axes, 0.0, kNoise_mps));
+  const std::optional<Joint> joint = find_joint(abreast(2.0, 2.8), axes, 0.0, kNoise_mps);
+  ASSERT_TRUE(joint);
+  EXPECT_TRUE(joint->is_across);
+  EXPECT_GT(joint->place_m, 8.0);
+  EXPECT_LT(joint->place_m, 11.0);
 }
 
 TEST(Articulation, WhatIsAsShortAsACarHasNoJoint) {

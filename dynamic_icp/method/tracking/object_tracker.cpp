@@ -289,7 +289,7 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   entry.note_motion(input.stamp_s, config_);
   if (const BoxFilter& best = entry.track.best(); best.has_heading()) {
     entry.joint =
-        find_joint(entry.detection, entry.now.box.axes.col(0), best.body().yaw_rate(), config_.track.doppler_sigma_mps);
+        find_joint(entry.detection, entry.now.box.axes, best.body().yaw_rate(), config_.track.doppler_sigma_mps);
   }
 }
 

@@ -97,7 +97,8 @@ class ObjectTracker {
   void initiate_tracks(const TrackingInput& input, const Workers& workers);
   void begin(const TrackingInput& input, std::span<const std::uint32_t> rows, TrackRecord& entry) const;
   void divide_tracks(const TrackingInput& input);
-  void divide(const TrackingInput& input, double joint_m, TrackRecord& body, TrackRecord& larger, TrackRecord& smaller);
+  void divide(const TrackingInput& input, const Joint& joint, TrackRecord& body, TrackRecord& larger,
+              TrackRecord& smaller);
   void delete_tracks(const TrackingInput& input);
 
   TrackerConfig config_;

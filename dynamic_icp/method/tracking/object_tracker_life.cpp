@@ -96,22 +96,22 @@ void ObjectTracker::divide_tracks(const TrackingInput& input) {
   for (std::size_t k = 0; k < whole; ++k) {
     if (entries_[k].joint) {
       entries_.resize(std::max(entries_.size(), living_ + 2));
-      divide(input, *entries_[k].joint, entries_[k], entries_[living_], entries_[living_ + 1]);
+      const Joint joint = *entries_[k].joint;
+      divide(input, joint, entries_[k], entries_[living_], entries_[living_ + 1]);
     }
   }
 }
 
-/// Of a body that is two: `joint_m` as from find_joint. The others are memory behind the living.
-void ObjectTracker::divide(const TrackingInput& input, double joint_m, TrackRecord& body, TrackRecord& larger,
+/// Of a body that is two. The others are memory behind the living.
+void ObjectTracker::divide(const TrackingInput& input, const Joint& joint, TrackRecord& body, TrackRecord& larger,
                            TrackRecord& smaller) {
   std::vector<std::uint32_t>& behind = body.static_rows;
   std::vector<std::uint32_t>& ahead = body.merged;
   behind.clear();
   ahead.clear();
-  const Vector3d along = body.now.box.axes.col(0);
   for (const std::uint32_t row : body.members) {
-    const bool is_ahead = along.dot(input.sensor.T_world_sensor * input.scan.points()[row]) > joint_m;
-    (is_ahead ? ahead : behind).push_back(row);
+    const Vector3d point = input.sensor.T_world_sensor * input.scan.points()[row];
+    (joint.direction.dot(point) > joint.place_m ? ahead : behind).push_back(row);
   }
   const bool more_are_ahead = ahead.size() > behind.size();
   begin(input, more_are_ahead ? ahead : behind, larger);
@@ -120,10 +120,12 @@ void ObjectTracker::divide(const TrackingInput& input, double joint_m, TrackReco
     return;
   }
   for (TrackRecord* part : {&larger, &smaller}) {
-    const bool is_ahead = (part == &larger) == more_are_ahead;
-    part->track.end_at(is_ahead ? Vector3d(-along) : along, is_ahead ? -joint_m : joint_m);
-    part->predicted_s.reset();
-    part->predict(input.stamp_s, sizes_, config_.track);
+    if (!joint.is_across) {
+      const double outward = (part == &larger) == more_are_ahead ? -1.0 : 1.0;
+      part->track.end_at(outward * joint.direction, outward * joint.place_m);
+      part->predicted_s.reset();
+      part->predict(input.stamp_s, sizes_, config_.track);
+    }
     part->take_name_of(body);
   }
   std::swap(body, larger);

@@ -9,6 +9,7 @@
 #include <Eigen/Core>
 #include <Eigen/Geometry>
 
+#include "dynamic_icp/method/tracking/articulation.hpp"
 #include "dynamic_icp/method/tracking/detection.hpp"
 #include "dynamic_icp/method/tracking/track.hpp"
 #include "dynamic_icp/method/tracking/track_merging.hpp"
@@ -43,7 +44,7 @@ struct TrackRecord {
   int seen = 0;
   int missed = 0;
   std::vector<std::uint32_t> members = {};  ///< rows of the present scan
-  std::optional<double> joint = {};         ///< find_joint along the box, of these
+  std::optional<Joint> joint = {};          ///< of these, if they are two bodies
 
   // For their memory
   Track other;
