@@ -49,7 +49,9 @@ struct Drive {
   std::size_t points = 9000;
   bool has_doppler = true;
   int planes_until = std::numeric_limits<int>::max();  ///< scans with planes
-  std::vector<Eigen::Vector3d> lever_arms = {};        ///< m, of the sensors of a rig; none: one at the origin
+  int planes_again = std::numeric_limits<int>::max();  ///< and from this one on
+  std::function<bool(const Eigen::Vector3d&)> is_there = [](const Eigen::Vector3d&) { return true; };  ///< in the hall
+  std::vector<Eigen::Vector3d> lever_arms = {};  ///< m, of the sensors of a rig; none: one at the origin
 
   [[nodiscard]] Scan scan(int k) const {
     Room room;
@@ -59,6 +61,9 @@ struct Drive {
     const double stamp_s = begin_s(k);
     RawScan raw;
     for (const Eigen::Vector3d& point : room.points(static_cast<unsigned>(1 + k), points)) {
+      if (!is_there(point)) {
+        continue;
+      }
       const Eigen::Vector3d at_stamp = path(stamp_s).inverse() * point;
       const double tau =
           kPeriod_s * (std::atan2(at_stamp.y(), at_stamp.x()) + std::numbers::pi) / (2.0 * std::numbers::pi);
@@ -149,7 +154,7 @@ inline DriveRun drive(const Drive& drive, int scans, const WindowConfig& config 
     now.whole = &scan;
     now.measured = drive.has_doppler ? &measured : nullptr;
     now.is_moving = &is_moving;
-    now.static_points = k < drive.planes_until ? &scan : &nothing;
+    now.static_points = k < drive.planes_until || k >= drive.planes_again ? &scan : &nothing;
     if (k == 0) {
       first_points = *now.static_points;
       run.estimator.begin(now, Eigen::Isometry3d::Identity(), twist(0.0).tail<3>(),

@@ -65,6 +65,15 @@ void PlaneTerms::set_stamp(double stamp_s) {
   stamp_s_ = stamp_s;
 }
 
+std::vector<double> PlaneTerms::slice_times() const {
+  std::vector<double> times;
+  times.reserve(slices_.size());
+  for (const Slice& slice : slices_) {
+    times.push_back(slice.time_s);
+  }
+  return times;
+}
+
 /// Where the points of a slice are: the pose in its middle, and from there a straight step.
 void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
                        Slice& slice) {
@@ -107,8 +116,10 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
 
 /// Points of a patch are weighted alike. Its height is known worse at its rim than in its middle, but where a surface
 /// bulges, the middle lies on one side of the plane and the rim on the other: to believe one more is to move the plane.
+/// A residual may be as large as what is unknown of the pose makes it: else a pose that is off rejects all that would
+/// put it right.
 void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error,
-                           const PlaneNoise& noise, bool adapt) {
+                           const PlaneNoise& noise, bool adapt, const std::vector<Matrix6d>& displacements) {
   R_map_reference_ = trajectory.reference().linear();
   pointing_variance_ = noise.pointing_variance;
   model_variance_ = noise.model_sigma_m * noise.model_sigma_m;
@@ -122,10 +133,14 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
     }
   }
   squares_.clear();
-  for (Row& row : rows_) {
-    if (row.patch != nullptr) {
-      row.in_common = members_[row.patch->id] / precision_[row.patch->id];
-      squares_.push_back(row.e * row.e / (row.own + row.in_common));
+  for (std::size_t s = 0; s < slices_.size(); ++s) {
+    for (std::size_t k = slices_[s].begin; k < slices_[s].end; ++k) {
+      Row& row = rows_[k];
+      if (row.patch != nullptr) {
+        row.in_common = members_[row.patch->id] / precision_[row.patch->id];
+        row.expected = row.own + row.in_common + (displacements.empty() ? 0.0 : row.m.dot(displacements[s] * row.m));
+        squares_.push_back(row.e * row.e / row.expected);
+      }
     }
   }
   const double kernel =
@@ -135,7 +150,7 @@ void PlaneTerms::associate(const SplineTrajectory& trajectory, const Eigen::Vect
     for (std::size_t k = slice.begin; k < slice.end; ++k) {
       Row& row = rows_[k];
       if (row.patch != nullptr) {
-        const double inside = std::max(0.0, 1.0 - row.e * row.e / (kernel * kernel * (row.own + row.in_common)));
+        const double inside = std::max(0.0, 1.0 - row.e * row.e / (kernel * kernel * row.expected));
         row.all = row.own + noise.repeated * members_[row.patch->id] * row.in_common;
         row.w = inside * inside / row.all;
       }

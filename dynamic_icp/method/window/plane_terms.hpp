@@ -53,10 +53,15 @@ class PlaneTerms {
   /// When the scan was taken, as it is known by now.
   void set_stamp(double stamp_s);
 
+  /// The middle of each slice, s.
+  [[nodiscard]] std::vector<double> slice_times() const;
+
   /// Moves the points by the trajectory, looks up their patches and sums their terms. `adapt` widens the kernel to
-  /// the scatter of the residuals.
+  /// the scatter of the residuals. `displacements`: for each slice the covariance of the displacement [rotation;
+  /// position] of what it sees against the map, about the origin of the reference, by which the kernel is widened, too;
+  /// empty: none.
   void associate(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
-                 bool adapt);
+                 bool adapt, const std::vector<Matrix6d>& displacements = {});
 
   /// Adds the terms at the trajectory of the last `associate`; to the lower triangle of H.
   void add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
@@ -80,6 +85,7 @@ class PlaneTerms {
   struct Row : PlaneRow {
     double own = 0.0;                                 ///< m^2, of the point
     double in_common = 0.0;                           ///< m^2, of all points on its patch: one value for all of them
+    double expected = 0.0;                            ///< m^2, of the residual: both of them, and by the displacement
     double all = 0.0;                                 ///< m^2, as one of these points
     Eigen::Vector3d lever = Eigen::Vector3d::Zero();  ///< m, from the origin of the reference, map axes
     const mapping::Patch* patch = nullptr;

@@ -89,7 +89,7 @@ struct Definition {
   VectorXd robust;
 
   Definition(const Scan& points, const PlaneMap& map, const SplineTrajectory& at, const VectorXd& error,
-             const PlaneNoise& noise, bool adapt)
+             const PlaneNoise& noise, bool adapt, const Matrix6d& displacement = Matrix6d::Zero())
       : scan(points), trajectory(at), map_error(error), model_variance(std::pow(noise.model_sigma_m, 2)) {
     std::map<const Patch*, double> members;
     std::map<const Patch*, double> precision;
@@ -102,6 +102,8 @@ struct Definition {
       }
     }
     const VectorXd e = residuals();
+    const MatrixXd m = by_rigid_motion();
+    const VectorXd displaced = (m * displacement).cwiseProduct(m).rowwise().sum();
     const auto size = static_cast<Index>(scan.size());
     VectorXd own = VectorXd::Ones(size);
     VectorXd common = VectorXd::Zero(size);
@@ -110,7 +112,7 @@ struct Definition {
       if (const Patch* patch = patches[static_cast<std::size_t>(i)]; patch != nullptr) {
         own[i] = std::max(patch->plane.variance, std::pow(noise.min_sigma_m, 2));
         common[i] = members[patch] / precision[patch];
-        scaled.push_back(std::abs(e[i]) / std::sqrt(own[i] + common[i]));
+        scaled.push_back(std::abs(e[i]) / std::sqrt(own[i] + common[i] + displaced[i]));
       }
     }
     const double kernel = noise.kernel * (adapt ? std::max(1.0, 1.4826 * median(scaled)) : 1.0);
@@ -118,7 +120,8 @@ struct Definition {
     for (Index i = 0; i < size; ++i) {
       const Patch* patch = patches[static_cast<std::size_t>(i)];
       if (patch != nullptr) {
-        const double inside = std::max(0.0, 1.0 - e[i] * e[i] / (kernel * kernel * (own[i] + common[i])));
+        const double variance = own[i] + common[i] + displaced[i];
+        const double inside = std::max(0.0, 1.0 - e[i] * e[i] / (kernel * kernel * variance));
         robust[i] = inside * inside;
         weights[i] = robust[i] / (own[i] + members[patch] * noise.repeated * common[i]);
       }
@@ -279,6 +282,29 @@ TEST(PlaneTerms, AreTheSumsOfTheirEquation) {
       EXPECT_EQ(sums_of(terms, definition.layout()).g[definition.layout().last_stamp()], 0.0);
     }
   }
+}
+
+TEST(PlaneTerms, ATurnThatIsUnknownRejectsNoWall) {
+  // Floor and ceiling fit at any yaw, walls only near the true one.
+  const Room room;
+  const PlaneMap map = room.map();
+  const Scan scan = scan_of(room, true_trajectory(), 1000);
+  SplineTrajectory turned = true_trajectory();
+  for (Vector6d& coefficient : turned.coefficients()) {
+    coefficient[2] += 0.03;
+  }
+  Matrix6d unknown = Matrix6d::Zero();
+  unknown(2, 2) = 0.03 * 0.03;
+  const VectorXd no_error = VectorXd::Zero(Layout::kMapError);
+  PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+  terms.associate(turned, no_error, {}, false);
+  const PlaneQuality believed = terms.quality();
+  terms.associate(turned, no_error, {}, false, std::vector<Matrix6d>(terms.slice_times().size(), unknown));
+  const PlaneQuality open = terms.quality();
+  EXPECT_LT(believed.matched, 0.6 * static_cast<double>(believed.on_planes));
+  EXPECT_GT(open.matched, 0.8 * static_cast<double>(open.on_planes));
+  const Definition definition(scan, map, turned, no_error, {}, false, unknown);
+  EXPECT_NEAR(open.matched, definition.robust.sum(), 1e-3 * open.matched);
 }
 
 TEST(PlaneTerms, TellHowWellThePointsFit) {

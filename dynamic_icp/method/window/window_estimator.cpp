@@ -19,7 +19,8 @@ constexpr double kEven_s = 0.1;
 // Tukey's kernel of the planes, in standard deviations.
 constexpr double kPlaneKernel = 4.0;
 
-// A step shorter than this (rad and m) ends the iterations.
+// A step shorter than this (rad and m) ends the iterations. The first of them reject no point of a surface for what is
+// unknown of the pose.
 constexpr double kStep = 1e-4;
 constexpr int kMinIterations = 3;
 
@@ -169,7 +170,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
         motion_prior_.keep();
       },
       [&] {
-        compare_with_planes(*scan.static_points, false, *planes);
+        compare_with_planes(*scan.static_points, false, {}, *planes);
         motion.planes = planes->quality();
       });
   motion.T_target_source = trajectory_.pose(stamp_s()).inverse() * trajectory_.pose(last_s);
@@ -260,21 +261,25 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
     if (is_second || !planes) {
       planes.emplace(*scan.static_points, map, stamp_s(), config_.knot_spacing_s / kSlices, workers);
     }
+    if (motion.iterations == 0) {
+      predict(scan, first_new, workers);
+    }
+    const std::vector<Matrix6d> displacements =
+        motion.iterations < kMinIterations ? displacement_covariances(planes->slice_times()) : std::vector<Matrix6d>{};
     workers.both(
         [&] {
+          if (motion.iterations == 0) {
+            return;
+          }
           if (motion.iterations < passes) {
-            renew_doppler(scan, motion.iterations == 0, workers);
+            renew_doppler(scan, false, workers);
           }
           if (motion.iterations < passes || step > kStraight) {
             linearise();
           }
         },
-        [&] { compare_with_planes(*scan.static_points, true, *planes); });
-    const Problem rest = scan_terms(planes, first_new);
-    if (motion.iterations == 0) {
-      factor_tail(rest);
-    }
-    step = solve(rest);
+        [&] { compare_with_planes(*scan.static_points, true, displacements, *planes); });
+    step = solve(scan_terms(planes, first_new));
     if (!(step < kMaxCoordinate_m)) {
       motion.diverged = true;
       return;
@@ -283,12 +288,22 @@ void WindowEstimator::iterate(const WindowScan& scan, const Scan& first_points, 
   }
 }
 
-void WindowEstimator::compare_with_planes(const Scan& points, bool adapt, PlaneTerms& planes) const {
+/// Without planes: how well the past and the Doppler know where the scan is.
+void WindowEstimator::predict(const WindowScan& scan, std::size_t first_new, const Workers& workers) {
+  renew_doppler(scan, true, workers);
+  linearise();
+  const Problem rest = scan_terms({}, first_new);
+  factor_tail(rest);
+  factor(rest);
+}
+
+void WindowEstimator::compare_with_planes(const Scan& points, bool adapt, const std::vector<Matrix6d>& displacements,
+                                          PlaneTerms& planes) const {
   planes.set_stamp(stamp_s());
   planes.associate(trajectory_, map_error_,
                    {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel,
                     config_.max_noise_share, pointing_variance(points)},
-                   adapt);
+                   adapt, displacements);
 }
 
 /// Weights of points around the trajectory of the moment.

@@ -164,10 +164,12 @@ class WindowEstimator {
   void weigh_doppler(const WindowScan& scan, const Workers& workers);
   [[nodiscard]] SampledMotion sampled_motion() const;
   [[nodiscard]] Eigen::Vector2d pointing_variance(const Scan& points) const;
-  void compare_with_planes(const Scan& points, bool adapt, PlaneTerms& planes) const;
+  void compare_with_planes(const Scan& points, bool adapt, const std::vector<Matrix6d>& displacements,
+                           PlaneTerms& planes) const;
   double solve(const Problem& rest);
   void factor(const Problem& rest);
   void factor_tail(const Problem& rest);
+  void predict(const WindowScan& scan, std::size_t first_new, const Workers& workers);
   void join(const Problem& rest, const Workers& workers);
   void lay_first_again(const Scan& first_points, mapping::PlaneMap& map, const Workers& workers);
 
@@ -204,6 +206,7 @@ class WindowEstimator {
 
   // window_uses.cpp
   [[nodiscard]] Matrix6d covariance_of(const Eigen::MatrixXd& rows) const;
+  [[nodiscard]] std::vector<Matrix6d> displacement_covariances(const std::vector<double>& times) const;
   void motion_between(double source_s, WindowMotion& motion) const;
   void find_twist();
   [[nodiscard]] const Layout& layout() const { return quadratic_->layout(); }

@@ -41,6 +41,26 @@ TEST(WindowEstimator, FollowsADrive) {
   EXPECT_NEAR(*run.estimator.point_noise(), 0.03, 0.01);
 }
 
+TEST(WindowEstimator, FindsTheYawThatNothingHasShown) {
+  // Without planes nothing shows how the sensor turns. Then they are back: floor and ceiling, nearly all that is seen,
+  // fit at any yaw, and the few meters of wall only near the true one.
+  constexpr int kBack = 18;
+  Drive blind;
+  blind.planes_until = 4;
+  blind.planes_again = kBack;
+  blind.is_there = [](const Vector3d& point) {
+    return std::abs(point.z()) > 3.0 || (std::abs(point.y()) > 7.0 && std::abs(point.x() - 14.0) < 4.0);
+  };
+  const auto yaw_error = [&](int last) {
+    const DriveRun run = drive(blind, last + 1);
+    expect_finite(run);
+    const Eigen::Isometry3d truth = path(0.0).inverse() * path(blind.begin_s(last));
+    return std::abs(log_se3(run.estimator.trajectory().pose(run.estimator.stamp_s()).inverse() * truth)[2]);
+  };
+  EXPECT_GT(yaw_error(kBack - 1), 0.03);
+  EXPECT_LT(yaw_error(kBack), 0.003);
+}
+
 TEST(WindowEstimator, LearnsAnErrorOfTheDoppler) {
   // A step in azimuth, as where one of several receivers is off. Much of it looks like a motion to the left.
   constexpr double kError_mps = 0.15;

@@ -64,6 +64,35 @@ Matrix6d WindowEstimator::covariance_of(const Eigen::MatrixXd& rows) const {
   return 0.5 * (covariance + covariance.transpose());
 }
 
+/// Of the displacement of what is seen at some times of the scan at hand against the map of that phase of the sweep.
+std::vector<Matrix6d> WindowEstimator::displacement_covariances(const std::vector<double>& times) const {
+  if (!elimination_.is_solvable() || !rest_factor_.is_solvable()) {
+    return {};
+  }
+  const Layout at = rest_layout();
+  const auto count = static_cast<Eigen::Index>(times.size());
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6 * count, rest_factor_.size());
+  const double duration_s = end_s_ - begin_s_;
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const double time_s = times[static_cast<std::size_t>(k)];
+    auto of_time = rows.middleRows<6>(6 * k);
+    of_time.middleCols(at.coefficient(0), 6 * at.coefficients) = displacement_rows(time_s, at);
+    const double share = duration_s > 0.0 ? std::clamp((time_s - stamp_s() - begin_s_) / duration_s, 0.0, 1.0) : 0.0;
+    const double phase = share * static_cast<double>(Layout::kMapNodes - 1);
+    const auto node = std::min<std::size_t>(Layout::kMapNodes - 2, static_cast<std::size_t>(phase));
+    const double beyond = phase - static_cast<double>(node);
+    of_time.middleCols<6>(at.map_node(node)).diagonal().setConstant(beyond - 1.0);
+    of_time.middleCols<6>(at.map_node(node + 1)).diagonal().setConstant(-beyond);
+  }
+  const Eigen::MatrixXd root = rest_factor_.covariance_root(rows.transpose());
+  std::vector<Matrix6d> covariances(times.size());
+  for (Eigen::Index k = 0; k < count; ++k) {
+    const auto of_time = root.middleCols<6>(6 * k);
+    covariances[static_cast<std::size_t>(k)] = of_time.transpose() * of_time;
+  }
+  return covariances;
+}
+
 void WindowEstimator::motion_between(double source_s, WindowMotion& motion) const {
   const TrajectoryPoint a = trajectory_.at(source_s);
   const TrajectoryPoint b = trajectory_.at(stamp_s());
