@@ -14,6 +14,9 @@ namespace {
 
 constexpr std::size_t kPlacingBlock = 512;
 
+// Of a scan, in which what is unknown of the pose counts as the same.
+constexpr std::size_t kSweepParts = 4;
+
 // Sensors in use err by no more than this with direction and range. More was learned of a vehicle that set off slowly.
 constexpr double kLargestError_mps = 0.3;
 
@@ -70,11 +73,12 @@ std::vector<Matrix6d> WindowEstimator::displacement_covariances(const std::vecto
     return {};
   }
   const Layout at = rest_layout();
-  const auto count = static_cast<Eigen::Index>(times.size());
+  const std::size_t parts = std::min(times.size(), kSweepParts);
+  const auto count = static_cast<Eigen::Index>(parts);
   Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6 * count, rest_factor_.size());
   const double duration_s = end_s_ - begin_s_;
   for (Eigen::Index k = 0; k < count; ++k) {
-    const double time_s = times[static_cast<std::size_t>(k)];
+    const double time_s = times[(2 * static_cast<std::size_t>(k) + 1) * times.size() / (2 * parts)];
     auto of_time = rows.middleRows<6>(6 * k);
     of_time.middleCols(at.coefficient(0), 6 * at.coefficients) = displacement_rows(time_s, at);
     const double share = duration_s > 0.0 ? std::clamp((time_s - stamp_s() - begin_s_) / duration_s, 0.0, 1.0) : 0.0;
@@ -86,9 +90,9 @@ std::vector<Matrix6d> WindowEstimator::displacement_covariances(const std::vecto
   }
   const Eigen::MatrixXd root = rest_factor_.covariance_root(rows.transpose());
   std::vector<Matrix6d> covariances(times.size());
-  for (Eigen::Index k = 0; k < count; ++k) {
-    const auto of_time = root.middleCols<6>(6 * k);
-    covariances[static_cast<std::size_t>(k)] = of_time.transpose() * of_time;
+  for (std::size_t i = 0; i < times.size(); ++i) {
+    const auto of_time = root.middleCols<6>(6 * static_cast<Eigen::Index>(i * parts / times.size()));
+    covariances[i] = of_time.transpose() * of_time;
   }
   return covariances;
 }
