@@ -79,9 +79,8 @@ struct TrackRecord {
   /// Where it will be `after_s` after the present scan, world; of the covariance of the velocity nothing is said.
   [[nodiscard]] BoxEstimate forecast(double after_s, const VehicleSizes& sizes, const TrackConfig& config);
 
-  [[nodiscard]]  /// Whether they are known to be two bodies.
-  [[nodiscard]] bool
-  was_divided_from(const TrackRecord& another) const {
+  /// Whether they are known to be two bodies.
+  [[nodiscard]] bool was_divided_from(const TrackRecord& another) const {
     return divided_from == another.id || another.divided_from == id;
   }
 
