@@ -18,20 +18,20 @@ namespace {
 using Eigen::Vector3d;
 
 /// What is smaller has no joint, and what is smaller is no part.
-struct Least {
+struct MinSize {
   double whole_m;
   double part_m;
 };
-constexpr Least kLeastLength = {5.0, 1.5};  // a car; a cab
-constexpr Least kLeastWidth = {2.8, 0.0};   // no vehicle is so wide; the side of one beside another is flat
+constexpr MinSize kMinLength = {5.0, 1.5};  // a car; a cab
+constexpr MinSize kMinWidth = {2.8, 0.0};   // no vehicle is so wide; the side of one beside another is flat
 
 constexpr double kStep_m = 0.5;           // between the places that are tried
-constexpr double kLeastPoints = 20.0;     // of a part
+constexpr double kMinPartPoints = 20.0;   // of a part
 constexpr double kPrior_mps = 30.0;       // standard deviation of what the motion of a part differs from that of all
 constexpr double kEvidence = 40.0;        // F of two bodies
 constexpr double kByDirection_mps = 0.3;  // so much errors of the Doppler change over a radian: root mean square
 constexpr double kGross_mps = 1.5;        // parts differ by less than such errors
-constexpr std::size_t kMostSteps = 64;
+constexpr std::size_t kMaxSteps = 64;
 
 /// The normal equations of what a part of the body moves otherwise than the whole: A dW = b.
 struct PartSums {
@@ -68,7 +68,7 @@ struct PartSums {
   }
 };
 
-using Sums = std::array<PartSums, kMostSteps>;
+using Sums = std::array<PartSums, kMaxSteps>;
 
 /// Of the points between each two of the places that are tried.
 Sums sum_between(const Detection& detection, const Vector3d& along, double rear_m, double yaw_rate_rps,
@@ -87,14 +87,14 @@ Sums sum_between(const Detection& detection, const Vector3d& along, double rear_
 }
 
 /// Along a direction: where two bodies explain what one does not.
-std::optional<Joint> joint_along(const Detection& detection, const Vector3d& along, const Least& least,
+std::optional<Joint> joint_along(const Detection& detection, const Vector3d& along, const MinSize& min,
                                  double yaw_rate_rps, double sigma_mps) {
   const auto is_behind = [&](const Vector3d& a, const Vector3d& b) { return along.dot(a) < along.dot(b); };
   const auto [rearmost, foremost] = std::minmax_element(detection.points.begin(), detection.points.end(), is_behind);
   const double rear = along.dot(*rearmost);
   const double front = along.dot(*foremost);
   const auto steps = static_cast<std::size_t>((front - rear) / kStep_m) + 1;
-  if (front - rear < least.whole_m || steps > kMostSteps) {
+  if (front - rear < min.whole_m || steps > kMaxSteps) {
     return std::nullopt;
   }
   const Sums sums = sum_between(detection, along, rear, yaw_rate_rps, sigma_mps);
@@ -115,8 +115,8 @@ std::optional<Joint> joint_along(const Detection& detection, const Vector3d& alo
     behind += sums[k];
     ahead -= sums[k];
     const double cut = rear + kStep_m * static_cast<double>(k + 1);
-    if (cut - rear < least.part_m || front - cut < least.part_m ||
-        !(std::min(behind.weights, ahead.weights) > kLeastPoints)) {
+    if (cut - rear < min.part_m || front - cut < min.part_m ||
+        !(std::min(behind.weights, ahead.weights) > kMinPartPoints)) {
       continue;
     }
     const double by_two = behind.least_squares(sigma_mps) + ahead.least_squares(sigma_mps);
@@ -133,8 +133,8 @@ std::optional<Joint> joint_along(const Detection& detection, const Vector3d& alo
 
 std::optional<Joint> find_joint(const Detection& detection, const Eigen::Matrix3d& axes, double yaw_rate_rps,
                                 double sigma_mps) {
-  const std::optional<Joint> along = joint_along(detection, axes.col(0), kLeastLength, yaw_rate_rps, sigma_mps);
-  std::optional<Joint> across = joint_along(detection, axes.col(1), kLeastWidth, yaw_rate_rps, sigma_mps);
+  const std::optional<Joint> along = joint_along(detection, axes.col(0), kMinLength, yaw_rate_rps, sigma_mps);
+  std::optional<Joint> across = joint_along(detection, axes.col(1), kMinWidth, yaw_rate_rps, sigma_mps);
   if (across && !(along && along->evidence > across->evidence)) {
     across->is_across = true;
     return across;

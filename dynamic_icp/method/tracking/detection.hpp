@@ -43,7 +43,7 @@ struct Detection {
 Eigen::Vector3d mean_of(std::span<const Eigen::Vector3d> points);
 
 /// Detections need so many points: a velocity has three unknowns.
-inline constexpr std::size_t kLeastDetectionPoints = 3;
+inline constexpr std::size_t kMinDetectionPoints = 3;
 
 /// Detections have no more points: they would not make them better.
 inline constexpr std::size_t kMaxDetectionPoints = 500;

@@ -18,11 +18,11 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr std::size_t kLookedAt = 2048;      // of a scan are looked at: more would not make the plane better
-constexpr std::size_t kLookedAhead = 16;     // of them are asked for in time, as they lie far apart in memory
-constexpr std::size_t kFewestOnGround = 30;  // on the ground
-constexpr double kFlat_m = 40.0;             // roads are flat so far
-constexpr double kOnGround_m = 0.05;         // what is so near to the plane is on it
+constexpr std::size_t kLookedAt = 2048;       // of a scan are looked at: more would not make the plane better
+constexpr std::size_t kLookedAhead = 16;      // of them are asked for in time, as they lie far apart in memory
+constexpr std::size_t kMinGroundPoints = 30;  // on the ground
+constexpr double kFlat_m = 40.0;              // roads are flat so far
+constexpr double kOnGround_m = 0.05;          // what is so near to the plane is on it
 
 constexpr double kGroundSearch_m = 0.5;      // about the start
 constexpr double kSameGroundUp = 0.98;       // cosine between the start and the ground
@@ -37,11 +37,11 @@ constexpr std::array kWidths_m = {0.15, 0.1, 0.07, 0.05, 0.05};
 constexpr double kSlopeWeight_m2 = 2.8;
 
 /// Some points as columns of numbers, on the stack.
-template <std::size_t kMost>
+template <std::size_t kMax>
 struct Columns {
-  std::array<double, kMost> x;
-  std::array<double, kMost> y;
-  std::array<double, kMost> z;
+  std::array<double, kMax> x;
+  std::array<double, kMax> y;
+  std::array<double, kMax> z;
   std::size_t size = 0;
 
   void set(std::size_t i, const Vector3d& point) {
@@ -179,7 +179,7 @@ std::optional<GroundFit> fit_ground(const ego_motion::SupportPlane& start, std::
                                     std::span<const std::uint8_t> is_moving) {
   NearPoints near;
   gather_near(start, points, is_moving, near);
-  if (near.size < kFewestOnGround) {
+  if (near.size < kMinGroundPoints) {
     return std::nullopt;
   }
   GroundFit fit{with_most_points(start, near)};
@@ -190,7 +190,7 @@ std::optional<GroundFit> fit_ground(const ego_motion::SupportPlane& start, std::
     axes.col(2) = fit.plane.normal.cross(axes.col(1));
     HeightSums sums = sum_heights(axes, fit.plane.offset_m, width_m, near);
     fit.points = sums.on_plane;
-    if (fit.points < kFewestOnGround) {
+    if (fit.points < kMinGroundPoints) {
       return std::nullopt;
     }
     sums.information.diagonal().tail<2>().array() += kSlopeWeight_m2;

@@ -266,7 +266,7 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   gather_static(input, expected, entry);
   ++entry.age;
   input.view.remove_mirrored(entry.members, entry.merged);
-  if (entry.members.size() < kLeastDetectionPoints) {
+  if (entry.members.size() < kMinDetectionPoints) {
     return miss();
   }
   Track& corrected = entry.other;

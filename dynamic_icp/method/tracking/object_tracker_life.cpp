@@ -55,7 +55,7 @@ void ObjectTracker::begin(const TrackingInput& input, std::span<const std::uint3
   entry.seen = 0;
   refill(entry.members, rows);
   input.view.remove_mirrored(entry.members, entry.merged);
-  if (entry.members.size() < kLeastDetectionPoints || !detect(input, entry.members, entry.detection)) {
+  if (entry.members.size() < kMinDetectionPoints || !detect(input, entry.members, entry.detection)) {
     return;
   }
   entry.track.begin(entry.detection, input.stamp_s, config_.track);
