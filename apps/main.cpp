@@ -129,6 +129,7 @@ int main(int argc, char** argv) {
   apps::open_standard_streams();
   apps::clean_up_on_signals();
   apps::clean_up_without_memory();
+  apps::reserve_stack();
   dynamic_icp::keep_freed_memory();
   try {
     apps::remember_command_line(argc, argv);

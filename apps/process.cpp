@@ -5,6 +5,7 @@
 #include <atomic>
 #include <cerrno>
 #include <csignal>
+#include <cstddef>
 #include <cstdlib>
 #include <cstring>
 #include <exception>
@@ -113,6 +114,15 @@ void clean_up_on_signals() {
 }
 
 void clean_up_without_memory() { std::set_terminate(end_of_exceptions); }
+
+void reserve_stack() {
+  constexpr std::size_t kStack = 1 << 20;  // bytes: temporary matrices are up to 128 KiB each
+  constexpr std::size_t kPage = 4096;
+  volatile char stack[kStack];
+  for (std::size_t k = kStack; k > 0; k -= kPage) {  // downwards, as it grows
+    stack[k - 1] = 0;
+  }
+}
 
 StopOnSignal::StopOnSignal(const char* notice) {
   noted_signal = 0;

@@ -18,6 +18,10 @@ void clean_up_on_signals();
 /// up and ends with the status of a failed machine.
 void clean_up_without_memory();
 
+/// Lets the stack of the main thread take the memory that the deepest call needs, once. The system gives it page by page
+/// as calls go deeper, and where no memory is left then, it ends the program by a signal without a word.
+void reserve_stack();
+
 /// As long as this object lives, the first interrupt or terminate ends nothing: it is only noted, for work that can
 /// stop between two steps and keep what it has. A second one cleans up and ends the program. One object at a time.
 class StopOnSignal {

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 // A run that is asked to end: the first signal lets it finish its scan and keep what there is, a second one ends it.
 #include <csignal>
+#include <fstream>
 #include <string>
 #include <vector>
 
@@ -54,6 +55,19 @@ class HeldRun {
   HeldRun& operator=(const HeldRun&) = delete;
 
   void send(int signal) const { ::kill(child_, signal); }
+
+  /// The stack of its main thread.
+  [[nodiscard]] double stack_kib() const {
+    std::ifstream status("/proc/" + std::to_string(child_) + "/status");
+    for (std::string word; status >> word;) {
+      double kib = 0;
+      if (word == "VmStk:" && status >> kib) {
+        return kib;
+      }
+    }
+    ADD_FAILURE() << "no VmStk";
+    return 0;
+  }
 
   /// Lets it go on. Its status and messages.
   [[nodiscard]] Outcome finish() const {
@@ -115,6 +129,16 @@ TEST_F(Signals, TheFirstOneKeepsTheResultsSoFar) {
     fs::remove_all(out);
     EXPECT_TRUE(fs::is_empty(folder_)) << "nothing else was left";
   }
+}
+
+// A stack that cannot grow ends a process by SIGSEGV, without a word: `ulimit -v` finds the moment, now and then.
+TEST_F(Signals, TheStackIsThereBeforeMemoryCanEnd) {
+#ifndef __linux__
+  GTEST_SKIP() << "reads /proc";
+#endif
+  const HeldRun run(street(), folder_);
+  EXPECT_GE(run.stack_kib(), 1024);
+  EXPECT_EQ(run.finish().status, kDone);
 }
 
 TEST_F(Signals, ASecondOneEndsItAtOnceAndLeavesNothing) {
