@@ -102,11 +102,37 @@ struct PairErrors {
   }
 };
 
-/// When a true body counted first, and when it had its first pair.
-struct FirstMatch {
+/// When a true body counted first, and when it was first reported from then on.
+struct FirstReport {
   double counted_s = 0.0;
-  std::optional<double> matched_s;
+  std::optional<double> reported_s;
 };
+
+/// By the id of the true body.
+using FirstReports = std::map<std::int64_t, FirstReport>;
+
+/// A body that counted once need not count in the scan that reports it: its points may be fewer again.
+void add_first_reports(const ComparedScan& scan, const ScanBodies& truth, const ScanBodies& reported,
+                       FirstReports& first) {
+  for (const Body* body : scan.truth) {
+    first.try_emplace(body->id, FirstReport{truth.time_s, {}});
+  }
+  std::vector<const Body*> expected;
+  for (const Body& body : truth.bodies) {
+    if (first.contains(body.id)) {
+      expected.push_back(&body);
+    }
+  }
+  const Eigen::MatrixXd overlap = overlaps(expected, reported.bodies);
+  const std::vector<std::optional<std::size_t>> partner = best_assignment(overlap);
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    FirstReport& report = first.at(expected[i]->id);
+    if (!report.reported_s && partner[i] &&
+        overlap(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(*partner[i])) >= kMinOverlap) {
+      report.reported_s = truth.time_s;
+    }
+  }
+}
 
 void set_means(ObjectTracking& result) {
   PairErrors errors;
@@ -136,11 +162,11 @@ void set_rates(double span_s, ObjectTracking& result) {
   }
 }
 
-void set_latency(const std::map<std::int64_t, FirstMatch>& first_matches, ObjectTracking& result) {
+void set_latency(const FirstReports& first_reports, ObjectTracking& result) {
   std::vector<double> latencies;
-  for (const auto& [id, match] : first_matches) {
-    if (match.matched_s) {
-      latencies.push_back(*match.matched_s - match.counted_s);
+  for (const auto& [id, report] : first_reports) {
+    if (report.reported_s) {
+      latencies.push_back(*report.reported_s - report.counted_s);
     }
   }
   if (const auto statistics = summarize(latencies)) {
@@ -171,7 +197,7 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
   }
   ObjectTracking result;
   std::vector<ScoredScan> scans;
-  std::map<std::int64_t, FirstMatch> first_matches;
+  FirstReports first_reports;
   double first_s = 0.0;
   double last_s = 0.0;
   for (std::size_t k = matching.warm_up_scans; k < reported.size(); ++k) {
@@ -182,15 +208,12 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
     const double time_s = found->second->time_s;
     const ComparedScan scan = compared(*found->second, reported[k], matching);
     for (std::size_t i = 0; i < scan.truth.size(); ++i) {
-      FirstMatch& match = first_matches.try_emplace(scan.truth[i]->id, FirstMatch{time_s, {}}).first->second;
       if (scan.partner[i]) {
         const double common = scan.overlap(static_cast<Eigen::Index>(i), static_cast<Eigen::Index>(*scan.partner[i]));
         result.pairs.push_back({found->first, time_s, *scan.truth[i], *scan.reported[*scan.partner[i]], common});
-        if (common >= kMinOverlap && !match.matched_s) {
-          match.matched_s = time_s;
-        }
       }
     }
+    add_first_reports(scan, *found->second, reported[k], first_reports);
     scans.push_back(scored(scan));
     first_s = result.scans == 0 ? time_s : first_s;
     last_s = time_s;
@@ -199,7 +222,7 @@ ObjectTracking compare_tracks(const std::vector<ScanBodies>& truth, const std::v
   result.score = score_tracking(scans, kMinOverlap);
   set_means(result);
   set_rates(last_s - first_s, result);
-  set_latency(first_matches, result);
+  set_latency(first_reports, result);
   return result;
 }
 

@@ -66,7 +66,8 @@ struct HeldPoints {
 
 /// How well the moving bodies of a recording were tracked. A true body counts by ObjectMatching (its reach aside).
 /// Reported ones pair with true ones that count by the intersection over union of their boxes; those that overlap with
-/// or lie in reach of a true one that does not count, and pair with none, are left out.
+/// or lie in reach of a true one that does not count, and pair with none, are left out. Only the latency takes pairs of
+/// true bodies that counted before, too: a body whose points become fewer can still be reported.
 struct ObjectTracking {
   std::size_t scans = 0;  ///< after the warm-up, for which there is truth
   TrackingScore score;    ///< of the intersection over union
@@ -83,7 +84,7 @@ struct ObjectTracking {
   std::optional<double> size_m;         ///< of an edge
   std::optional<double> nees_velocity;  ///< e^T C^-1 e; 3 is right
   std::optional<double> nees_center;
-  std::optional<double> latency_s;  ///< median over bodies from when they count first to their first pair
+  std::optional<double> latency_s;  ///< median over bodies from when they count first to their first report
   std::optional<double> longest_latency_s;
   // What takes more than bodies to compare; `compare_tracks` leaves it empty
   PredictionError prediction;

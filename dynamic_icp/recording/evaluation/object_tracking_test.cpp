@@ -106,6 +106,23 @@ TEST(ObjectTracking, LatencyIsFromWhenABodyCounts) {
   EXPECT_NEAR(*compare_tracks(truth, reported, kAtOnce).latency_s, 0.2, 1e-12);
 }
 
+TEST(ObjectTracking, LatencyEndsWithAReportOfABodyThatCountedBefore) {
+  std::vector<ScanBodies> truth;
+  std::vector<ScanBodies> reported;
+  for (int k = 0; k < 6; ++k) {  // 100 points in scan 0 and from scan 4 on, reported from scan 1 on
+    Body body = car(1);
+    body.points = k == 0 || k >= 4 ? 100 : 10;
+    truth.push_back({k, 0.1 * k, {body, car(2, 40.0)}});
+    reported.push_back({k, 0.1 * k, {car(6, 40.0)}});
+    if (k >= 1) {
+      reported.back().bodies.push_back(car(5, k < 2 ? 23.0 : 20.0));  // in scan 1 with too little in common
+    }
+  }
+  const ObjectTracking tracking = compare_tracks(truth, reported, kAtOnce);
+  EXPECT_NEAR(*tracking.longest_latency_s, 0.2, 1e-12);
+  EXPECT_NEAR(*tracking.latency_s, 0.1, 1e-12) << "the other one is reported at once";
+}
+
 TEST(ObjectTracking, TheWorstPairsAreOfDifferentBodies) {
   std::vector<BodyPair> pairs;
   for (const auto& [scan, id, overlap] :
