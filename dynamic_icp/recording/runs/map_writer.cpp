@@ -29,6 +29,10 @@ constexpr double kRegion_m = 4.0;
 constexpr double kHalo_m = 0.15;
 constexpr double kRoad_m = 0.1;
 constexpr double kRoadGrowth = 0.004;  // m per metre of range
+// While it is there its points are not the road, but for the noise.
+constexpr double kRoadNoise_m = 0.05;
+// A body that is slow is known to move so late.
+constexpr double kKnownAfter_s = 1.0;
 // An object clears its place once it has been seen so often, moves so fast and its motion is known; later also when it
 // is slower.
 constexpr int kScansSeen = 3;
@@ -42,6 +46,24 @@ double checked(double voxel_size_m) {
                                  MapWriter::kMinVoxelSize_m, MapWriter::kMaxVoxelSize_m));
   }
   return voxel_size_m;
+}
+
+/// The box of an object in the world, with a halo at its sides and above. The lowest `road_m` may be the road.
+tracking::OrientedBox place_of(const tracking::TrackedObject& object, double road_m,
+                               const Eigen::Isometry3d& T_world_sensor) {
+  tracking::OrientedBox place = object.box;
+  place.size.head<2>().array() += 2.0 * kHalo_m;
+  place.size.z() += kHalo_m - road_m;
+  place.centre = T_world_sensor * Eigen::Vector3d(place.centre + 0.5 * (kHalo_m + road_m) * place.axes.col(2));
+  place.axes = T_world_sensor.linear() * place.axes;
+  return place;
+}
+
+/// How high above the bottom of its box the road may be, in other scans than the one that sees the object there.
+double road_below(const tracking::TrackedObject& object) { return kRoad_m + kRoadGrowth * object.box.centre.norm(); }
+
+bool holds(const tracking::OrientedBox& place, const Eigen::Vector3d& point) {
+  return !(tracking::distance_outside(place, point) > 0.0);
 }
 
 /// The path without links, as far as it exists.
@@ -83,16 +105,23 @@ fs::path map_destination(const fs::path& path, const fs::path& output, const fs:
 MapWriter::MapWriter(double voxel_size_m) : voxel_size_m_(checked(voxel_size_m)), voxels_(voxel_size_m, 1) {}
 
 void MapWriter::add(const odometry::Frame& frame) {
+  std::vector<tracking::OrientedBox> taken;
+  for (const tracking::TrackedObject& object : frame.tracked) {
+    taken.push_back(place_of(object, kRoadNoise_m, frame.T_world_sensor));
+  }
   std::vector<Eigen::Vector3d> in_world;
   in_world.reserve(frame.static_points.size());
-  for (const Eigen::Vector3d& point : frame.static_points) {
-    in_world.emplace_back(frame.T_world_sensor * point);
+  for (const Eigen::Vector3d& point_sensor : frame.static_points) {
+    const Eigen::Vector3d point = frame.T_world_sensor * point_sensor;
     // Written so that NaN fails as well. One voxel is kept in hand for rounding.
-    if (!((in_world.back().array().abs() < (kMaxVoxels - 1.0) * voxel_size_m_).all())) {
+    if (!((point.array().abs() < (kMaxVoxels - 1.0) * voxel_size_m_).all())) {
       throw DataError(
           fmt::format("the scan at {} s has a static point that lies {} m from the first scan: too far out "
                       "for a map of voxels of {} m",
-                      format_seconds(frame.stamp), in_world.back().norm(), voxel_size_m_));
+                      format_seconds(frame.stamp), point.norm(), voxel_size_m_));
+    }
+    if (std::ranges::none_of(taken, [&](const tracking::OrientedBox& place) { return holds(place, point); })) {
+      in_world.push_back(point);
     }
   }
   const std::size_t before = voxels_.size();
@@ -102,32 +131,56 @@ void MapWriter::add(const odometry::Frame& frame) {
     const auto index = static_cast<std::uint32_t>(i);
     regions_[region_of(voxels_.point(index))].push_back(index);
   }
+  std::erase_if(recent_scans_,
+                [&](const auto& scan) { return seconds_between(scan.first, frame.stamp) > kKnownAfter_s; });
   std::vector<std::int64_t> movers;
   for (const tracking::TrackedObject& object : frame.tracked) {
     const bool moves =
         object.scans_seen >= kScansSeen && object.tangential_observed && object.velocity_sensor.norm() > kMinSpeed_mps;
-    if (moves || std::ranges::find(movers_, object.id) != movers_.end()) {
+    const bool is_known = std::ranges::find(movers_, object.id) != movers_.end();
+    if (moves && !is_known) {
+      take_out_before(object, frame);
+    }
+    if (moves || is_known) {
       movers.push_back(object.id);
       take_out(object, frame.T_world_sensor);
     }
   }
   movers_ = std::move(movers);
+  recent_scans_.emplace_back(frame.stamp, static_cast<std::uint32_t>(before));
+}
+
+/// What it left where it was while it passed for static: of each scan the points in its box as that was then.
+void MapWriter::take_out_before(const tracking::TrackedObject& object, const odometry::Frame& frame) {
+  const tracking::OrientedBox now = place_of(object, road_below(object), frame.T_world_sensor);
+  const Eigen::Vector3d velocity = frame.T_world_sensor.linear() * object.velocity_sensor;
+  for (std::size_t scan = 0; scan < recent_scans_.size(); ++scan) {
+    tracking::OrientedBox then = now;
+    then.centre -= seconds_between(recent_scans_[scan].first, frame.stamp) * velocity;
+    const std::size_t end = scan + 1 < recent_scans_.size() ? recent_scans_[scan + 1].second : voxels_.size();
+    for (std::size_t i = recent_scans_[scan].second; i < end; ++i) {
+      const auto index = static_cast<std::uint32_t>(i);
+      if (holds(then, voxels_.point(index))) {
+        take_out(index);
+      }
+    }
+  }
+}
+
+void MapWriter::take_out(std::uint32_t index) {
+  ghosts_ += is_ghost_[index] == 0 ? 1U : 0U;
+  is_ghost_[index] = 1;
 }
 
 /// The points in the box of an object.
 void MapWriter::take_out(const tracking::TrackedObject& object, const Eigen::Isometry3d& T_world_sensor) {
-  tracking::OrientedBox box = object.box;
-  box.size.head<2>().array() += 2.0 * kHalo_m;
-  const double road_m = kRoad_m + kRoadGrowth * box.centre.norm();
-  box.size.z() += kHalo_m - road_m;
-  box.centre = T_world_sensor * Eigen::Vector3d(box.centre + 0.5 * (kHalo_m + road_m) * box.axes.col(2));
-  box.axes = T_world_sensor.linear() * box.axes;
-  if (!(box.size.minCoeff() > 0.0)) {
+  const tracking::OrientedBox place = place_of(object, road_below(object), T_world_sensor);
+  if (!(place.size.minCoeff() > 0.0)) {
     return;
   }
-  const Eigen::Vector3d reach = 0.5 * tracking::aligned_extent(box);
-  const Eigen::Array3d low = ((box.centre - reach) / kRegion_m).array().floor();
-  const Eigen::Array3d high = ((box.centre + reach) / kRegion_m).array().floor();
+  const Eigen::Vector3d reach = 0.5 * tracking::aligned_extent(place);
+  const Eigen::Array3d low = ((place.centre - reach) / kRegion_m).array().floor();
+  const Eigen::Array3d high = ((place.centre + reach) / kRegion_m).array().floor();
   for (double x = low.x(); x <= high.x(); ++x) {
     for (double y = low.y(); y <= high.y(); ++y) {
       for (double z = low.z(); z <= high.z(); ++z) {
@@ -136,12 +189,11 @@ void MapWriter::take_out(const tracking::TrackedObject& object, const Eigen::Iso
           continue;
         }
         std::erase_if(region->second, [&](std::uint32_t index) {
-          if (tracking::distance_outside(box, voxels_.point(index)) > 0.0) {
-            return false;
+          const bool is_left = holds(place, voxels_.point(index));
+          if (is_left) {
+            take_out(index);
           }
-          is_ghost_[index] = 1;
-          ++ghosts_;
-          return true;
+          return is_left;
         });
       }
     }
@@ -165,12 +217,13 @@ void MapWriter::write(const fs::path& path) const {
 }
 
 void MapWriter::state(StateArchive& archive) {
-  archive(voxels_, regions_, is_ghost_, ghosts_, movers_);
+  archive(voxels_, regions_, is_ghost_, ghosts_, movers_, recent_scans_);
   const auto are_points = [&](const auto& region) {
     return std::ranges::all_of(region.second, [&](std::uint32_t index) { return index < voxels_.size(); });
   };
   archive.require(
-      is_ghost_.size() == voxels_.size() && ghosts_ <= voxels_.size() && std::ranges::all_of(regions_, are_points),
+      is_ghost_.size() == voxels_.size() && ghosts_ <= voxels_.size() && std::ranges::all_of(regions_, are_points) &&
+          std::ranges::all_of(recent_scans_, [&](const auto& scan) { return scan.second <= voxels_.size(); }),
       "a point of the map");
 }
 

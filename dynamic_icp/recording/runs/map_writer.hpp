@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Geometry>
 
+#include "dynamic_icp/method/base/stamp.hpp"
 #include "dynamic_icp/method/odometry/frame.hpp"
 #include "dynamic_icp/method/spatial/voxel_hash_map.hpp"
 
@@ -30,9 +32,9 @@ std::filesystem::path map_destination(const std::filesystem::path& path, const s
                                       const std::filesystem::path& staging, const char* what = "map");
 
 /// Collects the static points of a run in world axes: of each voxel the first point that falls into it. Where a tracked
-/// object drives nothing static can stand: points that it leaves there, or left before it began to move, are taken out
-/// again. The memory it takes (about 110 bytes a voxel) grows with the scene and not with the time spent in it; the
-/// points and their order depend on the frames alone.
+/// object drives nothing static can stand: points in its box are left out, and what it left there, or where it was in
+/// the second before it was known, is taken out again. The memory it takes (about 110 bytes a voxel) grows with the
+/// scene and not with the time spent in it; the points and their order depend on the frames alone.
 class MapWriter {
  public:
   static constexpr double kMinVoxelSize_m = 0.01;
@@ -57,14 +59,17 @@ class MapWriter {
   void state(StateArchive& archive);
 
  private:
+  void take_out(std::uint32_t index);
   void take_out(const tracking::TrackedObject& object, const Eigen::Isometry3d& T_world_sensor);
+  void take_out_before(const tracking::TrackedObject& object, const odometry::Frame& frame);
 
   double voxel_size_m_;
   spatial::VoxelHashMap voxels_;
   std::map<std::uint64_t, std::vector<std::uint32_t>> regions_;  ///< points by cubes of a few metres
   std::vector<std::uint8_t> is_ghost_;                           ///< of each point
   std::size_t ghosts_ = 0;
-  std::vector<std::int64_t> movers_;  ///< ids of tracked objects that moved for sure
+  std::vector<std::int64_t> movers_;                           ///< ids of tracked objects that moved for sure
+  std::vector<std::pair<Stamp, std::uint32_t>> recent_scans_;  ///< of the last second, with the first point of each
 };
 
 }  // namespace dynamic_icp::runs

@@ -125,10 +125,52 @@ TEST_F(MapWriterTest, WhereAnObjectDrivesNothingStands) {
   odometry::Frame other = frame_with_car({{30.0, 0.0, 1.0}}, {30.0, 0.0, 0.75}, 5);
   other.tracked.front().velocity_sensor.setZero();
   other.tracked.front().id = halted.tracked.front().id + 1;
+  map.add(frame_with({{20.0, 0.0, 1.0}, {30.0, 0.0, 1.0}}));
+  map.add(frame_with_car({}, {13.0, 0.0, 0.75}, 5));
+  EXPECT_EQ(map.size(), 4u);
   map.add(halted);
-  EXPECT_EQ(map.size(), 2u);
+  EXPECT_EQ(map.size(), 3u);
   map.add(other);
   EXPECT_EQ(map.size(), 3u);
+}
+
+TEST_F(MapWriterTest, WhatIsInTheBoxOfAnObjectIsOfIt) {
+  const Vector3d sill(11.5, 0.9, 0.1);  // as low as the road
+  const Vector3d road(11.5, 0.9, 0.02);
+  MapWriter map(0.05);
+  map.add(frame_with_car({sill, road}, {10.0, 0.0, 0.75}, 1));
+  ASSERT_EQ(map.size(), 1u);
+  EXPECT_TRUE(points_of(map)[0].isApprox(road, 1e-6));
+  map.add(frame_with({sill}));
+  EXPECT_EQ(map.size(), 2u) << "the car is gone, something else is there";
+}
+
+// A car at 2 m/s passes for static in three scans of four and is known in the last. A sensor that turned left.
+TEST_F(MapWriterTest, WhatAnObjectLeftBeforeItWasKnownGoesToo) {
+  const auto scan = [](int tenths) {
+    const Vector3d rear(10.0 + 0.2 * tenths, 0.5, 1.0);
+    const Vector3d parked(8.4, 0.5, 1.0);  // behind it, seen from the first scan on
+    odometry::Frame frame = frame_with_car({rear, parked}, rear + Vector3d(2.0, -0.5, -0.25), tenths);
+    frame.stamp = Stamp{5'000'000'000 + 100'000'000 * std::int64_t{tenths}};
+    frame.T_world_sensor.linear() << 0.0, -1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 1.0;
+    frame.tracked.front().velocity_sensor = {2.0, 0.0, 0.0};
+    if (tenths < 14) {
+      frame.tracked.clear();
+    } else {
+      frame.static_points.erase(frame.static_points.begin());
+    }
+    return frame;
+  };
+  MapWriter map(0.1);
+  for (const int tenths : {1, 11, 12, 13}) {
+    map.add(scan(tenths));
+  }
+  EXPECT_EQ(map.size(), 5u);
+  map.add(scan(14));
+  const std::vector<Vector3d> points = points_of(map);
+  ASSERT_EQ(points.size(), 2u) << "what it left within the last second is gone";
+  EXPECT_TRUE(points[0].isApprox(Vector3d(-0.5, 10.2, 1.0), 1e-6));
+  EXPECT_TRUE(points[1].isApprox(Vector3d(-0.5, 8.4, 1.0), 1e-6));
 }
 
 TEST_F(MapWriterTest, EqualsTheDirectDefinitionAndDoesNotGrowInAKnownScene) {
