@@ -100,12 +100,13 @@ void BoxFilter::correct(const Detection& detection, const TrackConfig& config) {
   if (has_heading_) {
     DetectionMemory memory;
     correct_heading(points_at_mean_time(detection, body_.velocity(), memory), detection, config);
-  } else {
-    log_likelihood_ += kLogHeading;
   }
   DetectionMemory memory;
   correct_faces(points_at_mean_time(detection, body_.velocity(), memory), detection, config);
   was_vehicle_ = was_vehicle_ || is_fast_for_sure();
+  if (!has_heading_ && !is_as_large_as_person()) {  // persons need none
+    log_likelihood_ += kLogHeading;
+  }
   models_.correct(before, body_);
 }
 
@@ -118,9 +119,12 @@ bool BoxFilter::is_fast_for_sure() const {
 }
 
 /// Of what is hidden on all sides there may be any amount more.
+bool BoxFilter::is_as_large_as_person() const {
+  return !was_vehicle_ && (is_whole(0) || is_whole(1)) && is_person_like(std::max(span(0), span(1)), span(2), 0.0);
+}
+
 bool BoxFilter::may_be_person() const {
-  return !was_vehicle_ && (is_whole(0) || is_whole(1)) &&
-         is_person_like(std::max(span(0), span(1)), span(2), body_.velocity().norm());
+  return is_as_large_as_person() && is_person_like(0.0, 0.0, body_.velocity().norm());
 }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {

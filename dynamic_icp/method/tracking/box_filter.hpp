@@ -104,6 +104,10 @@ class BoxFilter {
   [[nodiscard]] double log_posterior() const { return log_likelihood() + log_prior_; }
   void set_log_prior(double log_prior) { log_prior_ = log_prior; }
 
+  /// Whether it was seen from end to end in one direction at least, is no larger than a person and was never faster,
+  /// for sure: how fast it moves across the line of sight may not be known yet.
+  [[nodiscard]] bool is_as_large_as_person() const;
+
   /// Spread of the last detection's radial velocities about those of a rigid body, m/s.
   [[nodiscard]] double spread_mps() const { return spread_mps_; }
 

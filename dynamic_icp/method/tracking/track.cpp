@@ -95,7 +95,9 @@ void Track::add_headings(const Detection& detection, const BoxHistory& history, 
     return;
   } else {
     const std::optional<double> heading = heading_of_motion();
-    const std::optional<double> likeliest = likeliest_heading(detection);
+    // What may be a person goes anywhere, and that it went with the others may have been refuted.
+    const std::optional<double> likeliest =
+        best().is_as_large_as_person() ? std::nullopt : likeliest_heading(detection);
     if (heading) {
       hypotheses_.emplace_back(detection, *heading, along_sides, config);
     }

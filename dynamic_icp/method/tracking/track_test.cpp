@@ -175,6 +175,36 @@ TEST(Track, OfWhatLittleIsSeenTheTrafficTellsTheHeading) {
       << "before its way shows the direction";
 }
 
+TEST(Track, APersonWhoCrossesDoesNotGoTheWayOfTheTraffic) {
+  TrafficPrior traffic;
+  for (const double x : {20.0, 30.0, 40.0, 50.0}) {
+    traffic.add({x, -16.0, 0.0}, Vector3d::UnitX(), 1.5);
+  }
+  const TrackConfig config;
+  const Vector3d velocity(0.0, 1.3, 0.0);
+  const auto seen_in = [&](int scan, std::uint64_t seed) {
+    Detection detection;
+    for (int i = 0; i < 16; ++i) {
+      const RandomSource one = RandomSource(seed).fork(static_cast<std::uint64_t>(100 * scan + i));
+      const double around = one.uniform(0, 0.7 * std::numbers::pi, 1.6 * std::numbers::pi);  // what faces the sensor
+      const Vector3d on_body(0.25 * std::cos(around), 0.25 * std::sin(around), 0.25 * (i % 7) - 0.85);
+      detection.points.emplace_back(Vector3d(38.0, -20.0, 0.0) + 0.1 * scan * velocity + on_body);
+      detection.directions.push_back(detection.points.back().normalized());
+      detection.radial.push_back(detection.directions.back().dot(velocity) + 0.1 * one.normal(1));
+      detection.times.push_back(0.0);
+    }
+    detection.traffic = &traffic;
+    return detection;
+  };
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    Track track(seen_in(0, seed), 0.0, config);
+    for (int scan = 1; scan < 12; ++scan) {
+      track.correct(seen_in(scan, seed), 0.1 * scan, config);
+    }
+    EXPECT_LT((track.body().velocity() - velocity).norm(), 0.5) << "seed " << seed;
+  }
+}
+
 TEST(Track, AFastMotionOfWhatLittleIsSeenIsNotBelievedAgainstTheTraffic) {
   // The first points of a car that comes into view; their Doppler errs by 0.3 m/s from one end to the other, as if it
   // crossed the line of sight at 25 m/s.
