@@ -175,7 +175,7 @@ void BoxFilter::limit_length(double sigma_m) {
 
 /// What is a small part of the body that its other sides speak of did not end where it seemed to, away from the sensor.
 void BoxFilter::forget_stumps(const Detection& detection) {
-  if (!has_heading_ || is_part_ || may_be_person()) {
+  if (!has_heading_ || is_part_ || is_as_large_as_person()) {
     return;
   }
   const double height = span(2);
