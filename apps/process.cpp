@@ -68,17 +68,33 @@ extern "C" void clean_up_and_end(int signal) {
   ::pthread_sigmask(SIG_UNBLOCK, &own, nullptr);
 }
 
-/// Called where an exception has nowhere to go.
+std::atomic<bool> memory_has_ended = false;
+
+/// Called by `new` where it finds no memory.
+void note_end_of_memory() {
+  memory_has_ended = true;
+  throw std::bad_alloc();
+}
+
+[[noreturn]] void end_without_memory() {
+  constexpr std::string_view kMessage = "dynamic-icp: the machine has no memory left\n";
+  [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
+  formats::remove_unfinished();
+  ::_exit(kDataOrMachineFailed);
+}
+
+/// Called where an exception has nowhere to go. Where a function that may throw none did, it is not told which.
 [[noreturn]] void end_of_exceptions() {
+  const std::exception_ptr error = std::current_exception();
+  if (error == nullptr && memory_has_ended) {
+    end_without_memory();
+  }
   try {
-    if (const std::exception_ptr error = std::current_exception()) {
+    if (error != nullptr) {
       std::rethrow_exception(error);
     }
   } catch (const std::bad_alloc&) {
-    constexpr std::string_view kMessage = "dynamic-icp: the machine has no memory left\n";
-    [[maybe_unused]] const ssize_t written = ::write(STDERR_FILENO, kMessage.data(), kMessage.size());
-    formats::remove_unfinished();
-    ::_exit(kDataOrMachineFailed);
+    end_without_memory();
   } catch (...) {  // a mistake in the program
   }
   std::abort();
@@ -113,7 +129,10 @@ void clean_up_on_signals() {
   }
 }
 
-void clean_up_without_memory() { std::set_terminate(end_of_exceptions); }
+void clean_up_without_memory() {
+  std::set_new_handler(note_end_of_memory);
+  std::set_terminate(end_of_exceptions);
+}
 
 void reserve_stack() {
   constexpr std::size_t kStack = 1 << 20;  // bytes: temporary matrices are up to 128 KiB each

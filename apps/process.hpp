@@ -14,12 +14,12 @@ void open_standard_streams();
 /// Files that outgrow their limit are no signal any more.
 void clean_up_on_signals();
 
-/// Where memory ends in what cannot fail (destructors of the JSON library need some), the program still says so, cleans
-/// up and ends with the status of a failed machine.
+/// Where memory ends in what cannot fail (destructors of the JSON library need some, so do directory iterators), the
+/// program still says so, cleans up and ends with the status of a failed machine.
 void clean_up_without_memory();
 
-/// Lets the stack of the main thread take the memory that the deepest call needs, once. The system gives it page by page
-/// as calls go deeper, and where no memory is left then, it ends the program by a signal without a word.
+/// Lets the stack of the main thread take the memory that the deepest call needs, once. The system gives it page by
+/// page as calls go deeper, and where no memory is left then, it ends the program by a signal without a word.
 void reserve_stack();
 
 /// As long as this object lives, the first interrupt or terminate ends nothing: it is only noted, for work that can

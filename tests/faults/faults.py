@@ -71,8 +71,10 @@ def judge(work, command, outcome, must_name=True, may_leave=False):
         return f"status {outcome.status}"
     if must_name and str(work.folder) not in outcome.text:
         return f"names no file: {outcome.text.strip()[-200:]!r}"
-    # What is made of a run that is whole may fail alone, and says so.
-    if there is not None and there.exists() and not command.grows and "the run is there, but no" not in outcome.text:
+    # What is made of a run that is whole may fail alone, and says so; and memory may end once the result is whole.
+    is_whole = may_leave and not work.differs(command)
+    is_expected = command.grows or is_whole or "the run is there, but no" in outcome.text
+    if there is not None and there.exists() and not is_expected:
         return f"failed, but the result is there ({work.differs(command) or 'whole'}): {outcome.text.strip()[-200:]!r}"
     left = [name for name in work.leftovers(command) if not (may_leave and ".partial-" in name)]
     return f"left {left}" if left else ""

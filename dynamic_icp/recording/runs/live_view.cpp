@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/recording/runs/live_view.hpp"
 
+#include <exception>
 #include <utility>
 #include <vector>
 
@@ -42,7 +43,13 @@ LiveView::LiveView(const LiveViewSettings& settings, const std::string& name, co
                 truth, on_one_thread(std::move(messages))),
       thread_([this] { make_messages(); }) {}
 
-LiveView::~LiveView() { end("the run has ended"); }
+LiveView::~LiveView() {
+  try {
+    end("the run has ended");
+  } catch (const std::exception&) {
+    // No memory for a farewell: the clients see the connection end.
+  }
+}
 
 std::string LiveView::authority() const { return live::authority(address_, server_.port()); }
 
@@ -59,7 +66,7 @@ void LiveView::add(RawScan scan, odometry::Frame frame, double latency_ms) {
   changed_.notify_one();
 }
 
-std::size_t LiveView::end(const std::string& text) {
+std::size_t LiveView::end(std::string_view text) {
   if (thread_.joinable()) {
     {
       const std::lock_guard lock(mutex_);
@@ -67,7 +74,7 @@ std::size_t LiveView::end(const std::string& text) {
       changed_.notify_one();
     }
     thread_.join();
-    server_.end(text);
+    server_.end(std::string(text));
   }
   return left_out_;
 }

@@ -8,6 +8,7 @@
 #include <memory>
 #include <mutex>
 #include <string>
+#include <string_view>
 #include <thread>
 
 #include "dynamic_icp/method/base/raw_scan.hpp"
@@ -44,7 +45,7 @@ class LiveView {
 
   /// Sends what is left, tells all clients that nothing more comes, and disconnects them; that takes a second or two at
   /// most. How many scans were left out.
-  std::size_t end(const std::string& text);
+  std::size_t end(std::string_view text);
 
  private:
   struct Waiting {
