@@ -14,6 +14,7 @@
 
 #include <fcntl.h>
 #include <pthread.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "dynamic_icp/recording/formats/unfinished.hpp"
@@ -100,6 +101,17 @@ void note_end_of_memory() {
   std::abort();
 }
 
+constexpr std::size_t kReservedStack = 1 << 20;  // bytes: temporary matrices are up to 128 KiB each
+
+/// In a call of its own: the compiler may touch all that a call needs when it begins.
+[[gnu::noinline]] void touch_stack() {
+  constexpr std::size_t kPage = 4096;
+  [[maybe_unused]] volatile char stack[kReservedStack];
+  for (std::size_t k = kReservedStack; k > 0; k -= kPage) {  // downwards, as it grows
+    stack[k - 1] = 0;
+  }
+}
+
 }  // namespace
 
 void open_standard_streams() {
@@ -135,11 +147,9 @@ void clean_up_without_memory() {
 }
 
 void reserve_stack() {
-  constexpr std::size_t kStack = 1 << 20;  // bytes: temporary matrices are up to 128 KiB each
-  constexpr std::size_t kPage = 4096;
-  volatile char stack[kStack];
-  for (std::size_t k = kStack; k > 0; k -= kPage) {  // downwards, as it grows
-    stack[k - 1] = 0;
+  rlimit limit = {};
+  if (::getrlimit(RLIMIT_STACK, &limit) == 0 && limit.rlim_cur >= 4 * kReservedStack) {  // else the user wants it small
+    touch_stack();
   }
 }
 

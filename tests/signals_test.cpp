@@ -139,6 +139,8 @@ TEST_F(Signals, TheStackIsThereBeforeMemoryCanEnd) {
   const HeldRun run(street(), folder_);
   EXPECT_GE(run.stack_kib(), 1024);
   EXPECT_EQ(run.finish().status, kDone);
+  const Outcome small = run_shell("ulimit -s 512 && " DYNAMIC_ICP_PROGRAM " --version");
+  EXPECT_EQ(small.status, kDone) << small.text;
 }
 
 TEST_F(Signals, ASecondOneEndsItAtOnceAndLeavesNothing) {

@@ -145,7 +145,7 @@ TEST_F(MapWriterTest, WhatIsInTheBoxOfAnObjectIsOfIt) {
   EXPECT_EQ(map.size(), 2u) << "the car is gone, something else is there";
 }
 
-// A car at 2 m/s passes for static in three scans of four and is known in the last. A sensor that turned left.
+// A car at 2 m/s passes for static in four scans and is known in the fifth. The sensor has turned left.
 TEST_F(MapWriterTest, WhatAnObjectLeftBeforeItWasKnownGoesToo) {
   const auto scan = [](int tenths) {
     const Vector3d rear(10.0 + 0.2 * tenths, 0.5, 1.0);
