@@ -161,13 +161,13 @@ void MapWriter::take_out_before(const tracking::TrackedObject& object, const odo
     for (std::size_t i = recent_scans_[scan].second; i < end; ++i) {
       const auto index = static_cast<std::uint32_t>(i);
       if (holds(then, voxels_.point(index))) {
-        take_out(index);
+        mark_ghost(index);
       }
     }
   }
 }
 
-void MapWriter::take_out(std::uint32_t index) {
+void MapWriter::mark_ghost(std::uint32_t index) {
   ghosts_ += is_ghost_[index] == 0 ? 1U : 0U;
   is_ghost_[index] = 1;
 }
@@ -191,7 +191,7 @@ void MapWriter::take_out(const tracking::TrackedObject& object, const Eigen::Iso
         std::erase_if(region->second, [&](std::uint32_t index) {
           const bool is_left = holds(place, voxels_.point(index));
           if (is_left) {
-            take_out(index);
+            mark_ghost(index);
           }
           return is_left;
         });

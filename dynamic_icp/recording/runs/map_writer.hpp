@@ -59,7 +59,7 @@ class MapWriter {
   void state(StateArchive& archive);
 
  private:
-  void take_out(std::uint32_t index);
+  void mark_ghost(std::uint32_t index);
   void take_out(const tracking::TrackedObject& object, const Eigen::Isometry3d& T_world_sensor);
   void take_out_before(const tracking::TrackedObject& object, const odometry::Frame& frame);
 

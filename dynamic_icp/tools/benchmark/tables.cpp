@@ -276,7 +276,8 @@ Table tracks_table(const BenchmarkResults& results) {
       "partner at that overlap, per 1,000 scans. Over pairs, mean absolute errors: of the velocity along and across "
       "the "
       "true motion, of heading, centre and edges (size), the mean overlap, and the mean NEES of velocity and centre (3 "
-      "is right, more is overconfident). Latency: median time from when an object counts first to its first pair. The "
+      "is right, more is overconfident). Latency: median time from when an object counts first to its first report. "
+      "The "
       "paper's object validation has MAE along 0.53 m/s and lateral 1.08 m/s, on AevaScenes: another data set. " +
       setup_text(results);
   const auto is_scored = [](const CellResult& cell) { return cell.tracks.false_per_1000_scans.has_value(); };
