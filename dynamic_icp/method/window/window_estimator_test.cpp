@@ -2,8 +2,10 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/window/window_estimator.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <optional>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -177,6 +179,22 @@ TEST(WindowEstimator, DrivesByPlanesWithoutDoppler) {
   run.estimator.field_errors(run.last_scan, Workers(1), field);
   const std::vector<double>& errors = field.learned;
   EXPECT_EQ(errors, std::vector<double>(run.last_scan.size(), 0.0)) << "nothing was learned";
+}
+
+TEST(WindowEstimator, TheGroundTellsNothingOfTheWayAlongIt) {
+  // The map goes along with any motion, so what of the Doppler looks like one stays as unknown as it was.
+  Drive on_ground;
+  on_ground.error_mps = [](double azimuth) { return azimuth > 0.0 ? 0.2 : 0.0; };
+  on_ground.is_there = [](const Vector3d& point) { return point.z() < -3.0; };
+  const DriveRun run = drive(on_ground, 40);
+  expect_finite(run);
+  const std::optional<SensorCalibration> calibration = run.estimator.calibration();
+  ASSERT_TRUE(calibration);
+  const auto velocity = std::ranges::find(calibration->parts, "velocity", &SensorCalibration::Part::name);
+  ASSERT_NE(velocity, calibration->parts.end());
+  EXPECT_GT(velocity->sigma_mps[0], 0.8 * velocity->scale_mps);
+  EXPECT_GT(velocity->sigma_mps[1], 0.8 * velocity->scale_mps);
+  EXPECT_LT(velocity->sigma_mps[2], 0.2 * velocity->scale_mps) << "the ground shows what is across it";
 }
 
 TEST(WindowEstimator, PredictsTheDopplerOfWhatStands) {

@@ -24,9 +24,6 @@ constexpr double kStartStamp_s = 1e-6;
 // (m/s)^2, of an error that is not looked for.
 constexpr double kNoError = 1e-9;
 
-// 1/rad^2 and 1/m^2: a map that errs by 0.1 rad and 1 m.
-const Vector6d kMapInformation{{100.0, 100.0, 100.0, 1.0, 1.0, 1.0}};
-
 Eigen::VectorXd tie_variances() {
   Vector6d variances;
   variances << Eigen::Vector3d::Constant(kTieRotation * kTieRotation),
@@ -82,10 +79,6 @@ WindowEstimator::Problem WindowEstimator::terms_of_rest(const PlaneTerms* planes
   if (planes != nullptr) {
     planes->add(at, problem.H, problem.g);
   }
-  // What no scan shows of the map's error stays within what it may be.
-  const Eigen::VectorXd information = kMapInformation.replicate<Layout::kMapNodes, 1>();
-  problem.H.diagonal().segment<Layout::kMapError>(at.map_error()) += information;
-  problem.g.segment<Layout::kMapError>(at.map_error()) += information.cwiseProduct(map_error_);
   motion_prior_.add(trajectory_, first_new, at, problem.H, problem.g);
   problem.H(at.stamp(), at.stamp()) += 1.0 / stamp_variance;
   problem.g[at.stamp()] += stamp_errors_[1] / stamp_variance;

@@ -9,6 +9,16 @@
 // How the linearised terms are solved for all unknowns: theta is eliminated, the vibration of past scans is factored
 // once.
 namespace dynamic_icp::window {
+namespace {
+
+/// 1/rad^2 and 1/m^2: what no scan shows of the map's error stays within what it may be, 0.1 rad and 1 m.
+Eigen::VectorXd map_information() {
+  Vector6d information;
+  information << Eigen::Vector3d::Constant(100.0), Eigen::Vector3d::Constant(1.0);
+  return information.replicate<Layout::kMapNodes, 1>();
+}
+
+}  // namespace
 
 /// One step of all unknowns.
 double WindowEstimator::solve(const Problem& rest) {
@@ -18,6 +28,7 @@ double WindowEstimator::solve(const Problem& rest) {
   Eigen::VectorXd rest_gradient = gradient.tail(rest.g.size()) + rest.g;
   const Eigen::VectorXd by_field = elimination_.rest_gradient(gradient.head(layout().head()));
   rest_gradient.head(by_field.size()) = by_field + rest.g.head(by_field.size());
+  rest_gradient.segment<Layout::kMapError>(rest_layout().map_error()) += map_information().cwiseProduct(map_error_);
   const Eigen::VectorXd y = -rest_factor_.solve(rest_gradient);
   if (!elimination_.is_solvable() || !rest_factor_.is_solvable() || !y.allFinite()) {
     return std::numeric_limits<double>::infinity();
@@ -38,10 +49,11 @@ double WindowEstimator::solve(const Problem& rest) {
   return largest;
 }
 
-/// The information of all unknowns but theta.
+/// The information of all unknowns but theta. The priors of theta and of the map's error stay apart from the past.
 void WindowEstimator::factor(const Problem& rest) {
   const Eigen::Index head = rest_layout().head();
   Eigen::MatrixXd S = elimination_.rest() + rest.H.topLeftCorner(head, head);
+  S.diagonal().segment<Layout::kMapError>(rest_layout().map_error()) += map_information();
   S.diagonal().array() += kNothing;
   rest_factor_.compute(S);
 }
@@ -54,7 +66,9 @@ void WindowEstimator::factor_tail(const Problem& rest) {
   rest_factor_.set_tail(rows);
 }
 
-/// The scan becomes part of the past; the prior of the field stays apart, so that its scale can still be learned.
+/// The scan becomes part of the past. The prior of the field stays apart, so that its scale can still be learned; that
+/// of the map's error, too: the map goes along with a velocity that no plane shows, and to be told in each scan that it
+/// is hardly displaced is to measure that velocity.
 void WindowEstimator::join(const Problem& rest, const Workers& workers) {
   Eigen::VectorXd g = linear_gradient();
   g.tail(rest.g.size()) += rest.g;
