@@ -69,6 +69,7 @@ std::optional<Plane> fit_plane(const Moments& moments, const Eigen::Vector3d& or
   plane.variance = std::max(scattered, 0.0) * moments.weight / (moments.weight - kParameters);
   plane.points = moments.weight;
   plane.phase = moments.phase / moments.weight;
+  plane.scan = moments.scan / moments.weight;
   return plane;
 }
 

@@ -17,10 +17,12 @@ struct Moments {
   Eigen::Vector3d first = Eigen::Vector3d::Zero();                           ///< sum of p, m
   Eigen::Matrix<double, 6, 1> second = Eigen::Matrix<double, 6, 1>::Zero();  ///< sum of xx, xy, xz, yy, yz, zz, m^2
   double phase = 0.0;  ///< sum of the phase of the sweep, 0 to 1, at which they were measured
+  double scan = 0.0;   ///< sum of the numbers of their scans
 
-  void add(const Eigen::Vector3d& point, double point_phase = 0.0) {
+  void add(const Eigen::Vector3d& point, double point_phase = 0.0, double point_scan = 0.0) {
     weight += 1.0;
     phase += point_phase;
+    scan += point_scan;
     first += point;
     second[0] += point.x() * point.x();
     second[1] += point.x() * point.y();
@@ -34,6 +36,7 @@ struct Moments {
   void scale(double factor) {
     weight *= factor;
     phase *= factor;
+    scan *= factor;
     first *= factor;
     second *= factor;
   }
@@ -64,6 +67,7 @@ struct Plane {
   double points = 0.0;                                   ///< the weight of the points it was fitted to
   double bend = 0.0;                                     ///< m^2, of the surface across the plane, without noise
   double phase = 0.0;                                    ///< of the sweep, 0 to 1: the mean of the points
+  double scan = 0.0;                                     ///< the number of their scan, the mean of the points
 
   /// Signed distance of a point, m.
   [[nodiscard]] double distance(const Eigen::Vector3d& point) const { return normal.dot(point - mean); }

@@ -107,7 +107,8 @@ void PlaneMap::add_point(const Eigen::Vector3d& point, double phase) {
   for (int level = levels - 1;; --level, edge_m *= 0.5) {
     touch(cell);
     const Coordinates here(finest[0] >> level, finest[1] >> level, finest[2] >> level);
-    moments_[cell].add(point - edge_m * (here.cast<double>() + Eigen::Vector3d::Constant(0.5)), phase);
+    moments_[cell].add(point - edge_m * (here.cast<double>() + Eigen::Vector3d::Constant(0.5)), phase,
+                       static_cast<double>(scans_));
     if (level == 0) {
       return;
     }

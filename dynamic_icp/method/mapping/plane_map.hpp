@@ -67,6 +67,9 @@ class PlaneMap {
   /// Cells of all levels that are held in memory.
   [[nodiscard]] std::size_t cell_count() const { return cells_.size() - free_cells_.size(); }
 
+  /// How many were added since the map was empty: the number of the last one.
+  [[nodiscard]] std::uint32_t scans() const { return scans_; }
+
   [[nodiscard]] bool empty() const { return scans_ == 0; }
 
   /// Standard deviation of the ranges (m): of points on surfaces that face the sensor. Zero until it saw enough.

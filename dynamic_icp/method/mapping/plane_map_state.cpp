@@ -17,11 +17,11 @@ void PlaneMap::state(StateArchive& archive) {
   archive(scans_, oldest_, root_keys_, roots_, range_noise_.position, range_noise_.variance, free_cells_,
           free_patches_);
   archive.each(cells_, [&](Cell& cell) { archive(cell.parts, cell.patch, cell.last_scan, cell.is_stale); });
-  archive.each(moments_, [&](Moments& sums) { archive(sums.weight, sums.first, sums.second, sums.phase); });
+  archive.each(moments_, [&](Moments& sums) { archive(sums.weight, sums.first, sums.second, sums.phase, sums.scan); });
   archive.each(patches_, [&](Patch& patch) {
     Plane& plane = patch.plane;
     archive(plane.mean, plane.normal, plane.tangential, plane.variance, plane.points, plane.bend, plane.phase,
-            patch.id);
+            plane.scan, patch.id);
   });
   if (archive.reads()) {
     root_numbers_.clear();

@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/window/plane_sums.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <vector>
 
@@ -24,14 +25,16 @@ std::vector<PlaneRow> some_rows() {
     row.J = Vector2d(std::cos(k), std::sin(2.0 * k));
     row.e = std::cos(0.7 * k);
     row.w = 1.0 + 0.1 * k;
+    row.recent = std::max(0.0, std::sin(0.9 * k));
     k += 1.0;
   }
   return rows;
 }
 
-/// The share of a node: a hat over the phase.
+/// The share of a node: a hat over the phase, without that of the last sweep.
 double hat(const PlaneRow& row, std::size_t node) {
-  return std::max(0.0, 1.0 - std::abs(static_cast<double>(row.node) + row.beyond - static_cast<double>(node)));
+  return (1.0 - row.recent) *
+         std::max(0.0, 1.0 - std::abs(static_cast<double>(row.node) + row.beyond - static_cast<double>(node)));
 }
 
 TEST(PlaneSums, AreTheSumsOverTheirRows) {
@@ -61,6 +64,34 @@ TEST(PlaneSums, AreTheSumsOverTheirRows) {
       EXPECT_TRUE(sums.LL_next(node).isApprox(LL_next, 1e-12)) << node;
     }
   }
+}
+
+TEST(PlaneSums, TellTheLastSweepApart) {
+  PlaneSums sums;
+  std::array<Matrix6d, PlaneSums::kMapNodes> Lr;
+  Lr.fill(Matrix6d::Zero());
+  Matrix6d rr = Matrix6d::Zero();
+  Matrix6d S = Matrix6d::Zero();
+  Vector6d E = Vector6d::Zero();
+  PlaneSums::Pointing P = PlaneSums::Pointing::Zero();
+  for (const PlaneRow& row : some_rows()) {
+    sums.add(row);
+    const double r = row.recent;
+    for (std::size_t node = 0; node < PlaneSums::kMapNodes; ++node) {
+      Lr[node] += row.w * hat(row, node) * r * row.m * row.m.transpose();
+    }
+    rr += row.w * r * r * row.m * row.m.transpose();
+    S += row.w * r * row.m * row.m.transpose();
+    E += row.w * r * row.e * row.m;
+    P += row.w * r * row.m * row.J.transpose();
+  }
+  for (std::size_t node = 0; node < PlaneSums::kMapNodes; ++node) {
+    EXPECT_TRUE(sums.Lr(node).isApprox(Lr[node], 1e-12)) << node;
+  }
+  EXPECT_TRUE(sums.rr().isApprox(rr, 1e-12));
+  EXPECT_TRUE(sums.S_recent().isApprox(S, 1e-12));
+  EXPECT_TRUE(sums.E_recent().isApprox(E, 1e-12));
+  EXPECT_TRUE(sums.P_recent().isApprox(P, 1e-12));
 }
 
 TEST(PlaneSums, OfAllNodesAreThoseWithoutThem) {

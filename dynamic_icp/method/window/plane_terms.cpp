@@ -74,6 +74,13 @@ std::vector<double> PlaneTerms::slice_times() const {
   return times;
 }
 
+/// The error of the map is that of sweeps `map_age` scans before the last one. In a direction that no patch has shown
+/// yet it may have gone far since then, and a patch of the last scans has not.
+double PlaneTerms::recent_share(const mapping::Plane& plane) const {
+  const double age = static_cast<double>(map_.scans()) - plane.scan;
+  return last_.map_age > 0.0 ? std::clamp(1.0 - age / last_.map_age, 0.0, 1.0) : 0.0;
+}
+
 /// Where the points of a slice are: the pose in its middle, and from there a straight step.
 void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd& map_error, const PlaneNoise& noise,
                        Slice& slice) {
@@ -107,7 +114,9 @@ void PlaneTerms::place(const SplineTrajectory& trajectory, const Eigen::VectorXd
     row.beyond = phase - static_cast<double>(row.node);
     const auto before = map_error.segment<6>(6 * static_cast<Eigen::Index>(row.node));
     const auto after = map_error.segment<6>(6 * static_cast<Eigen::Index>(row.node + 1));
-    row.e = plane.distance(in_map) - (1.0 - row.beyond) * row.m.dot(before) - row.beyond * row.m.dot(after);
+    row.recent = recent_share(plane);
+    const double by_map = (1.0 - row.beyond) * row.m.dot(before) + row.beyond * row.m.dot(after);
+    row.e = plane.distance(in_map) - (1.0 - row.recent) * by_map - row.recent * row.m.dot(last_.displacement);
     row.J = by_angles(scan_, i).transpose() * (slice.at.R.transpose() * n);
     row.own = std::max(plane.variance, min_variance);
     row.in_common = plane.height_variance(in_map) + model_variance_ + kBendInCommon * plane.bend;
@@ -184,10 +193,18 @@ void PlaneTerms::sum(Slice& slice) const {
   }
 }
 
+/// Information about the two displacements along the principal motions: sum of w [1 r; r r^2] m m^T.
+Eigen::Matrix<double, 12, 12> PlaneTerms::by_displacements(const PlaneSums& sums) const {
+  const Matrix6d S_recent = motions_.transpose() * sums.S_recent() * motions_;
+  Eigen::Matrix<double, 12, 12> result;
+  result << motions_.transpose() * sums.S() * motions_, S_recent, S_recent, motions_.transpose() * sums.rr() * motions_;
+  return result;
+}
+
 /// Normals err, and of a motion along which no surface lies across, as along a tunnel or around it, the sum of w m m^T
 /// is their noise alone. The map, which moves with us, confirms any speed of it, or none. The principal motions are
 /// those that have most and least of that noise in their information; of one that has too much the map has a
-/// displacement of its own in each scan.
+/// displacement of its own in each scan, and its last sweep another one.
 void PlaneTerms::hold_motions(double max_noise_share) {
   Matrix6d information = kNoInformation * Matrix6d::Identity();
   Matrix6d noise = Matrix6d::Zero();
@@ -204,122 +221,17 @@ void PlaneTerms::hold_motions(double max_noise_share) {
   const estimation::SymmetricEigen shares = estimation::symmetric_eigen(whiten * noise * whiten.transpose());
   motions_ = root.matrixU().solve(shares.vectors);
   held_ = (1.0 - shares.values.array() / max_noise_share).max(kMinHeld).min(1.0 - 1e-9);
+  const Vector6d known = held_.array() / (1.0 - held_.array());
   common_information_.setZero();
-  common_information_.diagonal().head<6>() = (1.0 - held_.array()).inverse();
+  common_information_.diagonal().head<12>() << known, known;
   for (const Slice& slice : slices_) {
-    const Eigen::Matrix<double, 2, 6> coupling = slice.sums.P().transpose() * motions_;
-    common_information_.bottomLeftCorner<2, 6>() += coupling;
-    common_information_.topRightCorner<6, 2>() += coupling.transpose();
+    common_information_.topLeftCorner<12, 12>() += by_displacements(slice.sums);
+    const Eigen::Matrix<double, 12, 2> by_pointing = along_displacements(slice.sums.P(), slice.sums.P_recent());
+    common_information_.topRightCorner<12, 2>() += by_pointing;
+    common_information_.bottomLeftCorner<2, 12>() += by_pointing.transpose();
     common_information_.bottomRightCorner<2, 2>() += slice.sums.PP();
   }
   common_information_.diagonal().tail<2>().array() += pointing_variance_.array().max(kNoPointing).inverse();
-}
-
-namespace {
-
-/// m -> the change of the residual with [phi; p].
-Matrix6d by_coefficients(const TrajectoryPoint& at) {
-  Matrix6d M = Matrix6d::Identity();
-  const Eigen::Matrix3d JR = at.J.transpose() * at.R.transpose();
-  M.topLeftCorner<3, 3>() = JR;
-  M.topRightCorner<3, 3>() = -JR * skew(at.p);
-  return M;
-}
-
-/// A later stamp moves the points of the slice as the sensor moves: m . [omega; velocity of the origin].
-Vector6d along_motion(const TrajectoryPoint& at) {
-  Vector6d along;
-  along.head<3>() = at.R * at.omega;
-  along.tail<3>() = at.R * at.velocity - Eigen::Vector3d(along.head<3>()).cross(at.p);
-  return along;
-}
-
-}  // namespace
-
-/// The terms of one slice, had map and pointing no error of their own.
-void PlaneTerms::add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) {
-  const Matrix6d M = by_coefficients(slice.at);
-  const Matrix6d S = slice.sums.S();
-  const Vector6d E = slice.sums.E();
-  const Matrix6d MSM = M * S * M.transpose();
-  const Vector6d ME = M * E;
-  const Vector6d along = along_motion(slice.at);
-  const Vector6d S_along = S * along;
-  const Vector6d M_along = M * S_along;
-  const Eigen::Index stamp = layout.stamp();
-  H(stamp, stamp) += along.dot(S_along);
-  g[stamp] += along.dot(E);
-  for (std::size_t i = 0; i < 4; ++i) {
-    const Eigen::Index row = layout.coefficient(slice.at.first + i);
-    const double wi = slice.at.weight[i];
-    for (std::size_t j = 0; j <= i; ++j) {
-      H.block<6, 6>(row, layout.coefficient(slice.at.first + j)) += (wi * slice.at.weight[j]) * MSM;
-    }
-    H.block<6, 1>(row, stamp) += wi * M_along;
-    g.segment<6>(row) += wi * ME;
-  }
-  for (std::size_t j = 0; j < PlaneSums::kMapNodes; ++j) {
-    const Matrix6d S_node = slice.sums.S(j);
-    const Matrix6d MS_node = M * S_node;
-    const Eigen::Index d = layout.map_node(j);
-    H.block<6, 6>(d, d) += slice.sums.LL(j);
-    if (j + 1 < PlaneSums::kMapNodes) {
-      H.block<6, 6>(layout.map_node(j + 1), d) += slice.sums.LL_next(j);
-    }
-    g.segment<6>(d) -= slice.sums.E(j);
-    H.block<1, 6>(stamp, d) -= (S_node * along).transpose();
-    for (std::size_t i = 0; i < 4; ++i) {
-      H.block<6, 6>(layout.coefficient(slice.at.first + i), d) -= slice.at.weight[i] * MS_node;
-    }
-  }
-}
-
-PlaneTerms::Common PlaneTerms::common(const Layout& layout) const {
-  using ByCommon = Eigen::Matrix<double, 6, 8>;  // sum of w m by [displacement; pointing]
-  Common common{Eigen::MatrixXd::Zero(layout.size(), 8), Vector8d::Zero()};
-  for (const Slice& slice : slices_) {
-    if (slice.matched <= 0.0) {
-      continue;
-    }
-    ByCommon all = ByCommon::Zero();
-    for (std::size_t j = 0; j < PlaneSums::kMapNodes; ++j) {
-      ByCommon of_node;
-      of_node << slice.sums.S(j) * motions_, slice.sums.P(j);
-      common.U.middleRows<6>(layout.map_node(j)) -= of_node;
-      all += of_node;
-    }
-    const ByCommon of_coefficients = by_coefficients(slice.at) * all;
-    for (std::size_t i = 0; i < 4; ++i) {
-      common.U.middleRows<6>(layout.coefficient(slice.at.first + i)) += slice.at.weight[i] * of_coefficients;
-    }
-    common.U.row(layout.stamp()) += along_motion(slice.at).transpose() * all;
-    common.gradient.head<6>() += motions_.transpose() * slice.sums.E();
-    common.gradient.tail<2>() += slice.sums.PE();
-  }
-  return common;
-}
-
-void PlaneTerms::add(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const {
-  for (const Slice& slice : slices_) {
-    if (slice.matched > 0.0) {
-      add_slice(slice, layout, H, g);
-    }
-  }
-  auto [U, gradient] = common(layout);
-  const Eigen::LLT<Matrix8d> information(common_information_);
-  information.matrixU().solveInPlace<Eigen::OnTheRight>(U);
-  information.matrixL().solveInPlace(gradient);
-  const Eigen::Index first = layout.map_error();
-  const Eigen::Index n = layout.head() - first;  // the vibration moves nothing
-  H.block(first, first, n, n).selfadjointView<Eigen::Lower>().rankUpdate(U.middleRows(first, n), -1.0);
-  g.noalias() -= U * gradient;
-}
-
-PlaneTerms::ScanPointing PlaneTerms::scan_pointing(const Layout& layout) const {
-  const Common in_common = common(layout);
-  const Matrix8d covariance = common_information_.llt().solve(Matrix8d::Identity());
-  return {(covariance * in_common.gradient).tail<2>(), covariance.diagonal().tail<2>(),
-          in_common.U * covariance.rightCols<2>()};
 }
 
 PlaneQuality PlaneTerms::quality() const {

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include <Eigen/Core>
@@ -39,12 +40,20 @@ struct PlaneQuality {
   std::optional<double> model_sigma_m;
 };
 
+/// The last sweep, which the map has taken in.
+struct LastSweep {
+  double map_age = 0.0;                      ///< scans, by which the map's mean sweep is older than the last one
+  Vector6d displacement = Vector6d::Zero();  ///< [rotation; position] since then, about the reference, its axes
+  Eigen::MatrixXd rows = Eigen::MatrixXd::Zero(6, 0);  ///< of it by the coefficients
+};
+
 /// The point-to-plane terms of one scan in continuous time:
 ///   e = n . (p(t) + R(t) x - m) - n . (d_p + d_phi x X) ,
 /// each point at its own time t, with d the error of the map, a rigid displacement that changes with the phase of the
-/// sweep at which the patch was measured (Layout::kMapNodes). Sums of w m m^T, m = [X x n; n], over slices of time
-/// stand for the points in all steps of the solution. An error of the stamp moves all points along the motion of the
-/// sensor.
+/// sweep at which the patch was measured (Layout::kMapNodes). A patch that is younger than the map errs as the last
+/// sweep, by the share of its age: d = (1 - r) d_map + r d_last, r = 1 - age / age of the map. Sums of w m m^T, m = [X
+/// x n; n], over slices of time stand for the points in all steps of the solution. An error of the stamp moves all
+/// points along the motion of the sensor.
 class PlaneTerms {
  public:
   /// `points` static and thinned; scan and map must outlive it.
@@ -52,6 +61,9 @@ class PlaneTerms {
 
   /// When the scan was taken, as it is known by now.
   void set_stamp(double stamp_s);
+
+  /// From the next `associate` on.
+  void set_last_sweep(LastSweep sweep) { last_ = std::move(sweep); }
 
   /// The middle of each slice, s.
   [[nodiscard]] std::vector<double> slice_times() const;
@@ -80,8 +92,10 @@ class PlaneTerms {
   [[nodiscard]] PlaneQuality quality() const;
 
  private:
-  using Vector8d = Eigen::Matrix<double, 8, 1>;
-  using Matrix8d = Eigen::Matrix<double, 8, 8>;
+  /// What the points of a scan have in common: a displacement of the map, one of its last sweep, and the pointing.
+  static constexpr int kCommon = 14;
+  using CommonVector = Eigen::Matrix<double, kCommon, 1>;
+  using CommonMatrix = Eigen::Matrix<double, kCommon, kCommon>;
   struct Row : PlaneRow {
     double own = 0.0;                                 ///< m^2, of the point
     double in_common = 0.0;                           ///< m^2, of all points on its patch: one value for all of them
@@ -107,17 +121,28 @@ class PlaneTerms {
   void sum(Slice& slice) const;
   /// What the terms have in common with the displacement of the map in this scan and with the pointing of the scan.
   struct Common {
-    Eigen::MatrixXd U;  ///< unknowns x 8
-    Vector8d gradient = Vector8d::Zero();
+    Eigen::MatrixXd U;  ///< unknowns x kCommon
+    CommonVector gradient = CommonVector::Zero();
   };
   [[nodiscard]] Common common(const Layout& layout) const;
+  [[nodiscard]] Eigen::Matrix<double, 12, 12> by_displacements(const PlaneSums& sums) const;
+  /// Of the two displacements, from sums over m and over r m.
+  template <typename Sum>
+  [[nodiscard]] auto along_displacements(const Sum& all, const Sum& recent) const {
+    Eigen::Matrix<double, 12, Sum::ColsAtCompileTime> result;
+    result << motions_.transpose() * all, motions_.transpose() * recent;
+    return result;
+  }
   static void add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g);
+  void add_last_sweep(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
+  [[nodiscard]] double recent_share(const mapping::Plane& plane) const;
   void hold_motions(double max_noise_share);
 
   const Scan& scan_;
   const mapping::PlaneMap& map_;
   const Workers& workers_;
   double stamp_s_;
+  LastSweep last_;
   std::vector<std::uint32_t> order_;  ///< rows of the scan by slice
   std::vector<Slice> slices_;
   std::vector<Row> rows_;                ///< in that order
@@ -128,8 +153,8 @@ class PlaneTerms {
   Eigen::Matrix3d R_map_reference_ = Eigen::Matrix3d::Identity();
   Matrix6d motions_ = Matrix6d::Identity();  ///< the principal ones, columns [phi; p], reference frame
   Eigen::Vector2d pointing_variance_ = Eigen::Vector2d::Zero();
-  double model_variance_ = 0.0;                         ///< m^2, of a patch from a plane
-  Matrix8d common_information_ = Matrix8d::Identity();  ///< of [displacement of the map by these; pointing]
+  double model_variance_ = 0.0;  ///< m^2, of a patch from a plane
+  CommonMatrix common_information_ = CommonMatrix::Identity();
   Vector6d held_ = Vector6d::Ones();
 };
 

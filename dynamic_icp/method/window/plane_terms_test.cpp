@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -12,28 +12,25 @@
 #include <Eigen/Eigenvalues>
 #include <gtest/gtest.h>
 
-#include "dynamic_icp/method/base/quantile.hpp"
-
 #include "testing/dense_algebra.hpp"
 #include "testing/one_thread.hpp"
+#include "testing/plane_terms_by_hand.hpp"
 #include "testing/swept_room.hpp"
 
 namespace dynamic_icp::window {
 namespace {
 
+using namespace by_hand;
+
 using Eigen::Index;
 using Eigen::MatrixXd;
 using Eigen::Vector3d;
 using Eigen::VectorXd;
-using mapping::Patch;
 using mapping::PlaneMap;
 
 constexpr double kKnots_s = 0.0125;
 constexpr double kSlice_s = kKnots_s / 8.0;
 constexpr std::size_t kSlices = 64;
-constexpr double kStamp_s = 5.003;
-constexpr double kBendInCommon = 0.4;
-constexpr double kTiltOfModel = 0.3;
 
 SplineTrajectory true_trajectory() {
   Vector6d reference;
@@ -77,147 +74,13 @@ Scan scan_of(const Room& room, const SplineTrajectory& trajectory, std::size_t c
   return Scan::from_raw(raw);
 }
 
-/// The terms written out point by point; weights and patches stay as they are at the first state.
-struct Definition {
-  const Scan& scan;
-  SplineTrajectory trajectory;
-  VectorXd map_error;
-  double model_variance;
-  double stamp_s = kStamp_s;
-  std::vector<const Patch*> patches;
-  VectorXd weights;
-  VectorXd robust;
-
-  Definition(const Scan& points, const PlaneMap& map, const SplineTrajectory& at, const VectorXd& error,
-             const PlaneNoise& noise, bool adapt, const Matrix6d& displacement = Matrix6d::Zero())
-      : scan(points), trajectory(at), map_error(error), model_variance(std::pow(noise.model_sigma_m, 2)) {
-    std::map<const Patch*, double> members;
-    std::map<const Patch*, double> precision;
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      patches.push_back(map.find(in_map(i)));
-      if (const Patch* patch = patches.back(); patch != nullptr) {
-        ++members[patch];
-        precision[patch] += 1.0 / (patch->plane.height_variance(in_map(i)) + std::pow(noise.model_sigma_m, 2) +
-                                   kBendInCommon * patch->plane.bend);
-      }
-    }
-    const VectorXd e = residuals();
-    const MatrixXd m = by_rigid_motion();
-    const VectorXd displaced = (m * displacement).cwiseProduct(m).rowwise().sum();
-    const auto size = static_cast<Index>(scan.size());
-    VectorXd own = VectorXd::Ones(size);
-    VectorXd common = VectorXd::Zero(size);
-    std::vector<double> scaled;
-    for (Index i = 0; i < size; ++i) {
-      if (const Patch* patch = patches[static_cast<std::size_t>(i)]; patch != nullptr) {
-        own[i] = std::max(patch->plane.variance, std::pow(noise.min_sigma_m, 2));
-        common[i] = members[patch] / precision[patch];
-        scaled.push_back(std::abs(e[i]) / std::sqrt(own[i] + common[i] + displaced[i]));
-      }
-    }
-    const double kernel = noise.kernel * (adapt ? std::max(1.0, 1.4826 * median(scaled)) : 1.0);
-    weights = robust = VectorXd::Zero(size);
-    for (Index i = 0; i < size; ++i) {
-      const Patch* patch = patches[static_cast<std::size_t>(i)];
-      if (patch != nullptr) {
-        const double variance = own[i] + common[i] + displaced[i];
-        const double inside = std::max(0.0, 1.0 - e[i] * e[i] / (kernel * kernel * variance));
-        robust[i] = inside * inside;
-        weights[i] = robust[i] / (own[i] + members[patch] * noise.repeated * common[i]);
-      }
-    }
-  }
-
-  [[nodiscard]] Vector3d in_map(std::size_t i) const {
-    return trajectory.pose(stamp_s + scan.times()[i]) * scan.points()[i];
-  }
-
-  [[nodiscard]] Vector3d normal(std::size_t i) const {
-    return trajectory.reference().linear().transpose() * patches[i]->plane.normal;
-  }
-
-  /// n . (p(t) + R(t) x - m) - n . (d_p + d_phi x X)
-  [[nodiscard]] VectorXd residuals() const {
-    VectorXd e = VectorXd::Zero(static_cast<Index>(scan.size()));
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      if (patches[i] == nullptr) {
-        continue;
-      }
-      const Vector3d X = trajectory.reference().inverse() * in_map(i);
-      Vector6d d = Vector6d::Zero();  // hats around the nodes
-      for (Index node = 0; node < Layout::kMapNodes; ++node) {
-        const double apart = std::abs(patches[i]->plane.phase * (Layout::kMapNodes - 1.0) - static_cast<double>(node));
-        d += std::max(0.0, 1.0 - apart) * map_error.segment<6>(6 * node);
-      }
-      e[static_cast<Index>(i)] =
-          patches[i]->plane.distance(in_map(i)) - normal(i).dot(Vector3d(d.tail<3>()) + Vector3d(d.head<3>()).cross(X));
-    }
-    return e;
-  }
-
-  [[nodiscard]] Layout layout() const { return {3, static_cast<Index>(trajectory.coefficients().size())}; }
-
-  [[nodiscard]] MatrixXd jacobian() const {
-    constexpr double kStep = 1e-6;
-    const Layout at = layout();
-    MatrixXd J = MatrixXd::Zero(static_cast<Index>(scan.size()), at.size());
-    Definition moved = *this;
-    const auto differentiate = [&](double& unknown, Index column) {
-      const double value = unknown;
-      unknown = value + kStep;
-      J.col(column) = moved.residuals();
-      unknown = value - kStep;
-      J.col(column) = (J.col(column) - moved.residuals()) / (2.0 * kStep);
-      unknown = value;
-    };
-    for (Index k = 0; k < Layout::kMapError; ++k) {
-      differentiate(moved.map_error[k], at.map_error() + k);
-    }
-    differentiate(moved.stamp_s, at.stamp());
-    for (std::size_t k = 0; k < trajectory.coefficients().size(); ++k) {
-      for (Index axis = 0; axis < 6; ++axis) {
-        differentiate(moved.trajectory.coefficients()[k][axis], at.coefficient(k) + axis);
-      }
-    }
-    return J;
-  }
-
-  /// [X x n; n] of each point: how its residual changes with a rigid motion of all.
-  [[nodiscard]] MatrixXd by_rigid_motion() const {
-    MatrixXd m = MatrixXd::Zero(static_cast<Index>(scan.size()), 6);
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      if (patches[i] != nullptr) {
-        const Vector3d X = trajectory.reference().inverse() * in_map(i);
-        m.row(static_cast<Index>(i)) << X.cross(normal(i)).transpose(), normal(i).transpose();
-      }
-    }
-    return m;
-  }
-
-  /// Sum of w times the covariance of these rows by the noise of the normals.
-  [[nodiscard]] Matrix6d noise_of_normals() const {
-    Matrix6d sum = Matrix6d::Zero();
-    for (std::size_t i = 0; i < scan.size(); ++i) {
-      if (patches[i] != nullptr) {
-        const mapping::Plane& plane = patches[i]->plane;
-        Eigen::Matrix<double, 6, 3> A;
-        A << skew(trajectory.reference().inverse() * in_map(i)), Eigen::Matrix3d::Identity();
-        A = A * trajectory.reference().linear().transpose();
-        const double variance = plane.variance / plane.points + kTiltOfModel * model_variance;
-        sum += weights[static_cast<Index>(i)] * variance * A * plane.tangential * A.transpose();
-      }
-    }
-    return sum;
-  }
-};
-
 struct PlaneTermSums {
   MatrixXd H;
   VectorXd g;
 };
 
-/// Of the definition; a rigid displacement of the map is eliminated, known as well as `held` says of each motion that
-/// is principal to information and noise.
+/// Of the definition; rigid displacements of the map and of its last sweep are eliminated, both known as well as `held`
+/// says of each motion that is principal to information and noise.
 PlaneTermSums expected_sums(const Definition& definition, const Vector6d& held) {
   const MatrixXd J = definition.jacobian();
   const auto W = definition.weights.asDiagonal();
@@ -231,11 +94,16 @@ PlaneTermSums expected_sums(const Definition& definition, const Vector6d& held) 
   EXPECT_LT((held - expected).cwiseAbs().maxCoeff(), 0.02);
   const MatrixXd motions = root * shares.vectors;
   const VectorXd known = held.array() / (1.0 - held.array());
-  const MatrixXd A = information + motions * known.asDiagonal() * motions.transpose();
+  MatrixXd both(m.rows(), 12);
+  both << m, definition.recent_shares().asDiagonal() * m;
+  MatrixXd A = both.transpose() * W * both;
+  const MatrixXd prior = motions * known.asDiagonal() * motions.transpose();
+  A.topLeftCorner(6, 6) += prior;
+  A.bottomRightCorner(6, 6) += prior;
   const VectorXd We = W * definition.residuals();
-  const MatrixXd U = J.transpose() * W * m;
+  const MatrixXd U = J.transpose() * W * both;
   return {J.transpose() * W * J - U * dense::solve(A, U.transpose()),
-          J.transpose() * We - U * dense::solve(A, m.transpose() * We)};
+          J.transpose() * We - U * dense::solve(A, both.transpose() * We)};
 }
 
 PlaneTermSums sums_of(const PlaneTerms& terms, const Layout& at) {
@@ -281,6 +149,35 @@ TEST(PlaneTerms, AreTheSumsOfTheirEquation) {
       EXPECT_EQ(sums_of(terms, definition.layout()).g.head(3).norm(), 0.0) << "nothing of the Doppler's error";
       EXPECT_EQ(sums_of(terms, definition.layout()).g[definition.layout().last_stamp()], 0.0);
     }
+  }
+}
+
+TEST(PlaneTerms, APatchErrsAsTheSweepsOfItsAge) {
+  for (const bool has_ends : {true, false}) {
+    Room room;
+    room.has_ends = has_ends;
+    PlaneMap map = room.map(20000);
+    const std::vector<Vector3d> again = room.points(7, 20000);
+    std::vector<Vector3d> near_by;
+    std::ranges::copy_if(again, std::back_inserter(near_by), [](const Vector3d& point) { return point.x() > 0.0; });
+    const std::vector<double> phases(near_by.size(), 0.3);
+    for (int k = 0; k < 3; ++k) {
+      map.add(near_by, Vector3d::Zero(), kOneThread, phases);
+    }
+    const Scan scan = scan_of(room, true_trajectory(), 1000);
+    LastSweep last;
+    last.map_age = 2.2;
+    last.displacement << 3e-4, -2e-4, 5e-4, 0.003, -0.005, 0.002;
+    const auto count = static_cast<Index>(true_trajectory().coefficients().size());
+    last.rows = MatrixXd::NullaryExpr(6, 6 * count, [](Index i, Index k) {
+      return 0.3 * std::sin(1.1 * static_cast<double>(i) + 2.3 * static_cast<double>(k)) /
+             (1.0 + static_cast<double>(k));
+    });
+    PlaneTerms terms(scan, map, kStamp_s, kSlice_s, kOneThread);
+    terms.set_last_sweep(last);
+    terms.associate(wrong_trajectory(), some_map_error(), {}, false);
+    const Definition definition(scan, map, wrong_trajectory(), some_map_error(), {}, false, Matrix6d::Zero(), last);
+    expect_equal(sums_of(terms, definition.layout()), expected_sums(definition, terms.quality().held), 2e-3);
   }
 }
 

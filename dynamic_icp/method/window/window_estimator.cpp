@@ -86,6 +86,7 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
   interval_.reset();
   scan_error_ = {};
   map_error_.setZero();
+  map_age_ = 0.0;
   scans_ = 1;
   const std::size_t coefficients = trajectory_.coefficients().size();
   if (quadratic_) {
@@ -225,6 +226,7 @@ void WindowEstimator::linearise_here() {
 
 /// Makes room for a scan: coefficients, its stamp, and its stamp as the reference.
 void WindowEstimator::advance(const WindowScan& scan) {
+  last_middle_s_ = stamp_s() + 0.5 * (begin_s_ + end_s_);
   quadratic_->next_stamp();
   stamp_errors_ << stamp_errors_[1], 0.0;
   last_stamp_ = this_stamp_;
@@ -300,6 +302,7 @@ void WindowEstimator::predict(const WindowScan& scan, std::size_t first_new, con
 void WindowEstimator::compare_with_planes(const Scan& points, bool adapt, const std::vector<Matrix6d>& displacements,
                                           PlaneTerms& planes) const {
   planes.set_stamp(stamp_s());
+  planes.set_last_sweep(last_sweep());
   planes.associate(trajectory_, map_error_,
                    {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel,
                     config_.max_noise_share, pointing_variance(points)},

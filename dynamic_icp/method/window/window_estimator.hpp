@@ -183,6 +183,7 @@ class WindowEstimator {
   void add_period(const Layout& at, Problem& problem) const;
   void tie_map_to_first_sweep(Problem& problem) const;
   void take_in_sweep(double share);
+  [[nodiscard]] LastSweep last_sweep() const;
   [[nodiscard]] Eigen::MatrixXd displacement_rows(double time_s, const Layout& layout) const;
   [[nodiscard]] Eigen::MatrixXd sweep_rows(double begin_s, double end_s, const Layout& layout) const;
 
@@ -248,6 +249,8 @@ class WindowEstimator {
   LearnedVariance scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common
   double cell_variance_ = 1e-4;          ///< (m/s)^2
   double model_sigma_m_ = 0.003;
+  double map_age_ = 0.0;        ///< scans, by which the mean sweep of the map is older than the last one
+  double last_middle_s_ = 0.0;  ///< of the last sweep, while the next is added
   double stamp_s_ = 0.0;
   double begin_s_ = 0.0;
   double end_s_ = 0.0;

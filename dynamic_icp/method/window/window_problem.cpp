@@ -158,6 +158,18 @@ Eigen::MatrixXd WindowEstimator::displacement_rows(double time_s, const Layout& 
   return rows;
 }
 
+/// The middle of the last sweep, displaced since it was added to the map.
+LastSweep WindowEstimator::last_sweep() const {
+  LastSweep last;
+  last.map_age = map_age_;
+  last.rows = displacement_rows(last_middle_s_, rest_layout());
+  for (std::size_t k = 0; k < coefficients_0_.size(); ++k) {
+    const Vector6d change = trajectory_.coefficients()[k] - coefficients_0_[k];
+    last.displacement += last.rows.middleCols<6>(6 * static_cast<Eigen::Index>(k)) * change;
+  }
+  return last;
+}
+
 /// The same at the phases of a sweep at which the map's error has its nodes.
 Eigen::MatrixXd WindowEstimator::sweep_rows(double begin_s, double end_s, const Layout& layout) const {
   Eigen::MatrixXd rows(Layout::kMapError, 6 * layout.coefficients);
@@ -184,6 +196,7 @@ void WindowEstimator::take_in_sweep(double share) {
   quadratic_->mix_map_error(share, sweep_rows(stamp_s() + begin_s_, stamp_s() + end_s_, layout()));
   quadratic_->walk(layout().map_error(), tie_variances().asDiagonal());
   map_error_ *= 1.0 - share;
+  map_age_ = share > 0.0 ? (1.0 - share) * (map_age_ + 1.0) : 0.0;  // where it took in none, no patch errs as the last
 }
 
 }  // namespace dynamic_icp::window

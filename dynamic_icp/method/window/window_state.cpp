@@ -23,7 +23,7 @@ void WindowEstimator::state(StateArchive& archive) {
   archive(trajectory_, theta_, map_error_, coefficients_0_, vibration_0_, theta_0_, map_error_0_, stamp_errors_,
           stamp_errors_0_, cells_, field_covariance_root_, motion_prior_, pointing_variance_, stamp_variance_,
           last_stamp_.value, last_stamp_.variance, this_stamp_.value, this_stamp_.variance, period_, period_variance_,
-          scan_error_variance_, cell_variance_, model_sigma_m_);
+          scan_error_variance_, cell_variance_, model_sigma_m_, map_age_);
   archive(twist_.angular, twist_.linear, twist_.covariance, stamp_s_, begin_s_, end_s_, first_.stamp_s, first_.begin_s,
           first_.end_s, scans_, scans_ever_, is_calibrated_);
   check_read(archive);
@@ -38,7 +38,8 @@ void WindowEstimator::check_read(const StateArchive& archive) const {
   archive.require(is_sweep(begin_s_, end_s_) && is_sweep(first_.begin_s, first_.end_s) &&
                       stamp_errors_.cwiseAbs().maxCoeff() <= kLongestSweep_s,
                   "a time of a scan");
-  archive.require(map_error_.size() == Layout::kMapError && cell_variance_ >= 0.0, "the error of the map");
+  archive.require(map_error_.size() == Layout::kMapError && cell_variance_ >= 0.0 && map_age_ >= 0.0,
+                  "the error of the map");
   archive.require(field_.has_value() || (scans_ever_ == 0 && !is_calibrated_), "the error field");
   if (!field_) {
     return;
