@@ -1,6 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
 #include <cmath>
+#include <cstddef>
 
 #include <fmt/format.h>
 
@@ -11,6 +12,15 @@ namespace dynamic_icp::diagnosis {
 namespace {
 
 constexpr double kAlong_deg = 60.0;
+constexpr std::size_t kManyMotions = 3;
+constexpr double kOppositeLength = 0.3;
+
+/// Whether the Doppler is opposite beyond doubt: most of what is seen in a jam moves, this way or that. What few
+/// motions scatter by is not known, so they must be opposite in length, too.
+bool is_opposite(const Comparison& reference) {
+  return reference.turned_deg > 180.0 - kAlong_deg && reference.ratio + kCertain * reference.ratio_error < 0.0 &&
+         (reference.moving >= kManyMotions || std::abs(reference.ratio + 1.0) < kOppositeLength);
+}
 
 /// The mean velocity of all looks, in the axes of the sensor.
 Eigen::Vector3d mean_velocity(const Evidence& evidence) {
@@ -63,7 +73,7 @@ Finding doppler_sign(const Evidence& evidence) {
   if (reference->turned_deg < kAlong_deg && reference->ratio > 0.0) {
     finding.sentence =
         fmt::format("positive away from the sensor: the ego velocity from Doppler agrees with that {}", source);
-  } else if (reference->turned_deg > 180.0 - kAlong_deg && reference->ratio < 0.0) {
+  } else if (is_opposite(*reference)) {
     finding.verdict = Verdict::kWrong;
     finding.sentence =
         fmt::format("positive TOWARDS the sensor: the ego velocity from Doppler, {:.1f} m/s, is opposite to that {}",

@@ -2,6 +2,8 @@
 // SPDX-License-Identifier: MIT
 #include <gtest/gtest.h>
 
+#include "dynamic_icp/recording/diagnosis/questions.hpp"
+
 #include "testing/spoiled_recording.hpp"
 
 namespace dynamic_icp::diagnosis {
@@ -47,6 +49,26 @@ TEST(DopplerSignAnswer, WhereNoScansMatchASignMayBeATurnOfTheSensor) {
   EXPECT_NE(sign.sentence.find("or points and Doppler are right and the sensor is turned by 180 degrees"),
             std::string::npos)
       << sign.sentence;
+}
+
+TEST(DopplerSignAnswer, AJamIsNoTurnedSign) {
+  // Three motions of a drive among traffic that is faster.
+  Evidence evidence;
+  evidence.matching = {.motions = 3,
+                       .moving = 3,
+                       .reference_speed_mps = 3.2,
+                       .doppler_speed_mps = 2.0,
+                       .ratio = -0.57,
+                       .ratio_error = 0.28,
+                       .turned_deg = 165.0};
+  EXPECT_EQ(doppler_sign(evidence).verdict, Verdict::kCannotTell);
+  evidence.matching.ratio_error = 0.05;
+  EXPECT_EQ(doppler_sign(evidence).verdict, Verdict::kWrong);
+  evidence.matching.motions = evidence.matching.moving = 1;
+  evidence.matching.ratio_error = 0.0;
+  EXPECT_EQ(doppler_sign(evidence).verdict, Verdict::kCannotTell);
+  evidence.matching.ratio = -0.95;
+  EXPECT_EQ(doppler_sign(evidence).verdict, Verdict::kWrong);
 }
 
 TEST(DopplerSignAnswer, WhatCannotBeToldIsSaidWithoutContradiction) {
