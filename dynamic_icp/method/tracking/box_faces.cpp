@@ -39,20 +39,22 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
   const std::array<AxisView, 3> views =
       views_along(body_.axes(), body_.position(), points, body_.doppler_velocity(detection.sensor), detection);
   const Vector3d reference = body_.position();
+  const auto seen_along = [&](int axis) {  // from where the reference is now: corrections move it
+    const double moved = body_.axes().col(axis).dot(body_.position() - reference);
+    const Interval& seen = views[static_cast<std::size_t>(axis)].seen;
+    return Interval{seen.low - moved, seen.high - moved};
+  };
   for (const int axis : {2, 1, 0}) {  // what is wide and high is a vehicle
     const AxisView& view = views[static_cast<std::size_t>(axis)];
     if (axis < 2) {
-      correct_middle(axis, view);
+      correct_middle(axis, seen_along(axis));
     }
-    correct_face(high_face(axis), view.high, view.seen.high, detection, config);
-    correct_face(low_face(axis), view.low, -view.seen.low, detection, config);
+    correct_face(high_face(axis), view.high, detection, config);
+    correct_face(low_face(axis), view.low, detection, config);
   }
   top_is_cut_ = views[2].high.is_cut;
-  // What was seen, from where the reference is now.
   for (const int axis : {0, 1}) {
-    const double shift = body_.axes().col(axis).dot(body_.position() - reference);
-    const Interval& seen = views[static_cast<std::size_t>(axis)].seen;
-    last_seen_[static_cast<std::size_t>(axis)] = Interval{seen.low - shift, seen.high - shift};
+    last_seen_[static_cast<std::size_t>(axis)] = seen_along(axis);
   }
   size_log_likelihood_ = size_log_likelihood(config);  // before what is too wide is cut off
   limit_width(config);
@@ -67,9 +69,7 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
   }
 }
 
-/// `span_end`: how far from the reference the points reach towards the face, m.
-void BoxFilter::correct_face(Face face, const EndView& end, double span_end, const Detection& detection,
-                             const TrackConfig& config) {
+void BoxFilter::correct_face(Face face, const EndView& end, const Detection& detection, const TrackConfig& config) {
   const std::size_t i = index_of(face);
   const bool was_seen = faces_[i] != FaceView::kUnknown;
   if (is_known(face) && end.is_of_few) {  // which may be somebody else's
@@ -80,9 +80,8 @@ void BoxFilter::correct_face(Face face, const EndView& end, double span_end, con
   // Where rays pass beside an end they miss it by less than their distance there; faces that look at them they meet.
   const bool is_beside = outward.dot((end.middle - detection.sensor).normalized()) > -kFacing;
   const double gap = is_beside ? end.gap : 0.0;
-  const double seen = span_end + 0.5 * gap;
-  // The end of the span, beside the middle of the points there.
-  const Vector3d at_end = end.middle + (seen - outward.dot(end.middle - body_.position())) * outward;
+  const Vector3d at_end = end.middle + (end.inside + 0.5 * gap) * outward;
+  const double seen = outward.dot(at_end - body_.position());
   const Vector3d face_end = at_end + hidden_corner(face, at_end, detection) * outward;
   const double sigma = std::hypot(face_sigma(at_end, detection, config), kUniform * gap);
   const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
@@ -199,13 +198,13 @@ void BoxFilter::forget_stumps(const Detection& detection) {
 }
 
 /// Where neither end was ever seen, the middle of the points holds the body, as far as it shows as much as before.
-void BoxFilter::correct_middle(int axis, const AxisView& view) {
+void BoxFilter::correct_middle(int axis, const Interval& seen) {
   const std::optional<Interval>& last = last_seen_[static_cast<std::size_t>(axis)];
   if (!last || is_known(high_face(axis)) || is_known(low_face(axis))) {
     return;
   }
-  const double sigma = kLoose_m + std::abs(last->length() - view.seen.length());
-  const Vector3d reference = body_.position() + (view.seen.middle() - last->middle()) * body_.axes().col(axis);
+  const double sigma = kLoose_m + std::abs(last->length() - seen.length());
+  const Vector3d reference = body_.position() + (seen.middle() - last->middle()) * body_.axes().col(axis);
   log_likelihood_ += body_.correct_position(axis, reference, sigma * sigma);
 }
 

@@ -122,10 +122,9 @@ class BoxFilter {
   void correct_doppler(const Detection& detection, const TrackConfig& config);
   void correct_heading(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
   void correct_faces(std::span<const Eigen::Vector3d> points, const Detection& detection, const TrackConfig& config);
-  void correct_face(Face face, const EndView& end, double span_end, const Detection& detection,
-                    const TrackConfig& config);
+  void correct_face(Face face, const EndView& end, const Detection& detection, const TrackConfig& config);
   [[nodiscard]] double hidden_corner(Face face, const Eigen::Vector3d& at_end, const Detection& detection) const;
-  void correct_middle(int axis, const AxisView& view);
+  void correct_middle(int axis, const Interval& seen);
   void limit_width(const TrackConfig& config);
   void limit_length(double sigma_m);
   void forget_stumps(const Detection& detection);

@@ -182,11 +182,13 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
         deviations += std::abs(off);
         if (towards_sensor * off > -kSamePlace_m) {
           end.middle += points[i];
+          end.inside += inwards(along[i]);
           nearer += 1.0;
         }
       }
     }
     end.middle /= nearer;
+    end.inside /= nearer;
     if (end.width > kFaceWidth_m) {  // a side with a few points behind it is not wide
       end.width = std::min(end.width, 4.0 * deviations / end.count);
     }

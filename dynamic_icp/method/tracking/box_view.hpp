@@ -17,8 +17,9 @@ constexpr double kViewTrim = 0.01;
 
 /// Where the points along one axis of a box end.
 struct EndView {
-  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m, world: of the points there, of the nearer part of them
-  double count = 0.0;                                ///< of these points ...
+  Eigen::Vector3d middle = Eigen::Vector3d::Zero();  ///< m, world: of the points there, of the nearer part of them ...
+  double inside = 0.0;                               ///< m: ... which is so far within the end
+  double count = 0.0;                                ///< of the points there ...
   bool is_of_few = false;                            ///< ... so few that they may be somebody else's
   double gap = 0.0;                                  ///< m, from the end to the next points
   double reach = 0.0;                                ///< m, of the few points beyond the end, but for one
