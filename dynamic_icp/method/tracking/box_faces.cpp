@@ -52,7 +52,6 @@ void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection&
     correct_face(high_face(axis), view.high, detection, config);
     correct_face(low_face(axis), view.low, detection, config);
   }
-  top_is_cut_ = views[2].high.is_cut;
   for (const int axis : {0, 1}) {
     last_seen_[static_cast<std::size_t>(axis)] = seen_along(axis);
   }
@@ -87,9 +86,13 @@ void BoxFilter::correct_face(Face face, const EndView& end, const Detection& det
   const double known_sigma = std::hypot(sigma, body_.beyond_sigma(face, at_end));
   // Where it was seen to reach farther it does not end.
   const bool is_possible = is_known(face) || seen > least_[i] - kInside_m;
-  // Hoods are lower than roofs that were seen before.
+  // Hoods and cabins are lower than what was seen before.
+  const double lower = is_known(face) ? -body_.beyond(face, at_end) : least_[i] - seen;
   const bool is_lower =
-      face == Face::kTop && is_known(face) && body_.beyond(face, at_end) < -kFalseEnd_m - kFalseEndSigmas * known_sigma;
+      face == Face::kTop && lower > kFalseEnd_m + kFalseEndSigmas * (is_known(face) ? known_sigma : sigma);
+  if (face == Face::kTop && !is_lower) {
+    top_is_cut_ = end.is_cut;
+  }
   const bool is_end = end.is_true && is_possible && !is_lower;
   // Where its upper part ends it may not, but that shows the motion, too, until the end is seen.
   const bool is_upper_end = end.hidden > 0.0 && is_possible && !was_seen;

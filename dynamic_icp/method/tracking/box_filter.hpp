@@ -143,7 +143,7 @@ class BoxFilter {
   bool has_heading_;
   bool was_vehicle_ = false;                            ///< faster than any person, at any time
   bool is_part_ = false;                                ///< of a body that bends: as short as a cab
-  bool top_is_cut_ = false;                             ///< by the edge of the field of view, at last
+  bool top_is_cut_ = false;                             ///< by the edge of the field of view, where it was highest
   std::array<double, kFaces.size()> least_{};           ///< m from the reference: points were seen so far out
   std::array<FaceView, kFaces.size()> faces_{};         ///< by Face
   std::array<double, kFaces.size()> hidden_{};          ///< m: so much farther than its upper part a body may reach

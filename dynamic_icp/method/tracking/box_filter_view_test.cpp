@@ -101,6 +101,48 @@ TEST(BoxFilterView, WhereTheTopIsAboveTheViewTheLengthIsMoreUncertain) {
   EXPECT_GT(share_of_length(0.5), 1.2 * share_of_length(10.0));
 }
 
+TEST(BoxFilterView, ALorryStaysAsHighAsItWasWhereOnlyItsCabinIsLeftInView) {
+  // The sensor overtakes it. Its field of view ends 60 degrees to the right and 9.5 degrees up: the top of the load is
+  // above that; the cabin, 3 m high, is not.
+  constexpr double kGround_m = -1.8;
+  constexpr double kBeside_m = -8.75;
+  const double highest = std::tan(9.5 * std::numbers::pi / 180.0);
+  const double rearmost = std::tan(30.0 * std::numbers::pi / 180.0);
+  const TrackConfig config;
+  const Vector3d velocity(2.7, 0.0, 0.0);
+  std::optional<BoxFilter> filter;
+  for (int k = 0; k < 16; ++k) {
+    const Vector3d sensor = 2.0 * kScanPeriod_s * k * velocity;
+    const double front = 9.0 + velocity.x() * kScanPeriod_s * k;
+    RawScan raw;
+    Detection detection;
+    for (double x = sensor.x() - kBeside_m * rearmost; x <= front; x += 0.1) {
+      const double edge = highest * std::hypot(x - sensor.x(), kBeside_m);
+      for (double z = kGround_m + 1.0; z <= std::min(kGround_m + (x < front - 2.5 ? 3.6 : 3.0), edge); z += 0.05) {
+        detection.points.emplace_back(x, kBeside_m, z);
+        raw.points.push_back(detection.points.back() - sensor);
+        detection.directions.push_back(raw.points.back().normalized());
+        detection.radial.push_back(detection.directions.back().dot(velocity));
+        detection.times.push_back(0.0);
+      }
+    }
+    for (double azimuth = -1.05; azimuth < 1.05;
+         azimuth += 0.005) {  // what stands far away, up to the edge of the view
+      for (double up = 0.0; up <= 1.0; up += 0.03125) {
+        raw.points.emplace_back(50.0 * std::cos(azimuth), 50.0 * std::sin(azimuth), 50.0 * highest * up);
+      }
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    detection.view = &image;
+    detection.sensor = sensor;
+    detection.T_sensor_world.translation() = -sensor;
+    detection.ground = {Eigen::Matrix3d::Identity(), kGround_m};
+    take_in(filter, detection, 0.0, config);
+    EXPECT_GT(filter->estimate().box.size.z(), 3.3) << "scan " << k;
+  }
+}
+
 TEST(BoxFilterView, WhatComesIntoViewChangesTheLengthAndNotTheMotion) {
   // A lorry comes out from behind a screen with its front first. The rear was never seen until the end of it.
   const TrackConfig config;

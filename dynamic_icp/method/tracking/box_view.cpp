@@ -261,11 +261,10 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     }
   }
   // What is below bodies is hidden by them.
-  views[2].high.is_true = is_true_end(views[2].high, axes.col(2), {}, true, W, detection);
+  EndView& top = views[2].high;
   const Vector3d up = axes.col(2);
-  const Vector3d& below_top = views[2].high.middle;
-  views[2].high.is_cut =
-      is_cut_above(below_top + (views[2].seen.high - up.dot(below_top - reference)) * up, up, detection);
+  top.is_cut = is_cut_above(top.middle + top.inside * up, up, detection);
+  top.is_true = !top.is_cut && is_true_end(top, up, {}, true, W, detection);
   return views;
 }
 
