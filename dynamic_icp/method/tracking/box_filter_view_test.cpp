@@ -111,7 +111,7 @@ TEST(BoxFilterView, ALorryStaysAsHighAsItWasWhereOnlyItsCabinIsLeftInView) {
   const TrackConfig config;
   const Vector3d velocity(2.7, 0.0, 0.0);
   std::optional<BoxFilter> filter;
-  for (int k = 0; k < 16; ++k) {
+  for (int k = 0; k < 14; ++k) {
     const Vector3d sensor = 2.0 * kScanPeriod_s * k * velocity;
     const double front = 9.0 + velocity.x() * kScanPeriod_s * k;
     RawScan raw;
