@@ -111,33 +111,6 @@ TEST(BoxFilter, ABoxThatGrowsStaysWhereItsTrueEndIs) {
   }
 }
 
-TEST(BoxFilter, TwoEndsTellOfADisplacementOnce) {
-  // A van seen almost from the side, from end to end, and 1.5 m farther in the next scan, while its Doppler, of which
-  // little is believed, says half of that. Each end tells the whole displacement, and both together no more.
-  constexpr double kFarther_m = 1.5;
-  const Vector3d velocity_of_doppler(0, 5.0 * kFarther_m, 0);
-  TrackConfig config;
-  config.doppler_floor_mps = 1.0;
-  const auto side = [&](double y, std::uint64_t seed) {
-    Detection detection;
-    for (std::uint64_t i = 0; i < 100; ++i) {
-      const RandomSource one = RandomSource(seed).fork(i);
-      detection.points.emplace_back(-40.0 + 0.02 * one.normal(0), y + one.uniform(1, 8.0, 13.0),
-                                    one.uniform(2, -1.0, 1.0));
-      detection.directions.push_back(detection.points.back().normalized());
-      detection.radial.push_back(detection.directions.back().dot(velocity_of_doppler) + 0.1 * one.normal(3));
-      detection.times.push_back(0.0);
-    }
-    return detection;
-  };
-  BoxFilter filter(side(0.0, 1), 0.5 * std::numbers::pi, {}, config);
-  const double before = filter.body().position().y();
-  filter.predict(0.1, config);
-  filter.correct(side(kFarther_m, 2), config);
-  EXPECT_LT(filter.body().position().y(), before + kFarther_m + 0.05);
-  EXPECT_GT(filter.body().position().y(), before + kFarther_m - 0.2);
-}
-
 TEST(BoxFilter, AnEndThatWasNoneSpeaksAgainstTheMotion) {
   // Seen from behind, to 0.3 of its length: it stays where the sensor sees it, or 1.5 m behind where it should be.
   const Vector3d velocity(10, 0, 0);

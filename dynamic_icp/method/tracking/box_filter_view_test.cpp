@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <optional>
 #include <vector>
@@ -126,8 +127,8 @@ TEST(BoxFilterView, ALorryStaysAsHighAsItWasWhereOnlyItsCabinIsLeftInView) {
         detection.times.push_back(0.0);
       }
     }
-    for (double azimuth = -1.05; azimuth < 1.05;
-         azimuth += 0.005) {  // what stands far away, up to the edge of the view
+    // What stands far away, up to the edge of the view.
+    for (double azimuth = -1.05; azimuth < 1.05; azimuth += 0.005) {
       for (double up = 0.0; up <= 1.0; up += 0.03125) {
         raw.points.emplace_back(50.0 * std::cos(azimuth), 50.0 * std::sin(azimuth), 50.0 * highest * up);
       }
@@ -141,6 +142,33 @@ TEST(BoxFilterView, ALorryStaysAsHighAsItWasWhereOnlyItsCabinIsLeftInView) {
     take_in(filter, detection, 0.0, config);
     EXPECT_GT(filter->estimate().box.size.z(), 3.3) << "scan " << k;
   }
+}
+
+TEST(BoxFilterView, TwoEndsTellOfADisplacementOnce) {
+  // A van seen almost from the side, from end to end, and 1.5 m farther in the next scan, while its Doppler, of which
+  // little is believed, says half of that. Each end tells the whole displacement, and both together no more.
+  constexpr double kFarther_m = 1.5;
+  const Vector3d velocity_of_doppler(0, 5.0 * kFarther_m, 0);
+  TrackConfig config;
+  config.doppler_floor_mps = 1.0;
+  const auto side = [&](double y, std::uint64_t seed) {
+    Detection detection;
+    for (std::uint64_t i = 0; i < 100; ++i) {
+      const RandomSource one = RandomSource(seed).fork(i);
+      detection.points.emplace_back(-40.0 + 0.02 * one.normal(0), y + one.uniform(1, 8.0, 13.0),
+                                    one.uniform(2, -1.0, 1.0));
+      detection.directions.push_back(detection.points.back().normalized());
+      detection.radial.push_back(detection.directions.back().dot(velocity_of_doppler) + 0.1 * one.normal(3));
+      detection.times.push_back(0.0);
+    }
+    return detection;
+  };
+  BoxFilter filter(side(0.0, 1), 0.5 * std::numbers::pi, {}, config);
+  const double before = filter.body().position().y();
+  filter.predict(0.1, config);
+  filter.correct(side(kFarther_m, 2), config);
+  EXPECT_LT(filter.body().position().y(), before + kFarther_m + 0.05);
+  EXPECT_GT(filter.body().position().y(), before + kFarther_m - 0.2);
 }
 
 TEST(BoxFilterView, WhatComesIntoViewChangesTheLengthAndNotTheMotion) {
