@@ -94,7 +94,6 @@ TEST(BodyFilterMotion, AccelerationsAreAnOrnsteinUhlenbeckProcessAhead) {
   const State x = state_of({3, 4, 0}, {6, 8, 0}, yaw, 0.0);
   BodyFilter once(x, 1e-14 * Covariance::Identity(), Matrix3d::Identity());
   BodyFilter twice = once;
-  BodyFilter often = once;
   const MotionNoise noise{9.0, 0.0, 0.0, 0.0, 1.5, 0.0};
   once.predict(0.8, noise);
   twice.predict(0.4, noise);
