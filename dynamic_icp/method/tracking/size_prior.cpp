@@ -10,9 +10,9 @@ namespace dynamic_icp::tracking {
 namespace {
 
 constexpr double kScatter = 0.15;  // of sizes about the curves, as a share
-constexpr double kLength_m = 2.35;
-constexpr double kWidthPower = 0.8;
-constexpr double kHeightSquare = 0.43;  // times the square of the logarithm of the height
+constexpr double kLength_m = 2.4;
+constexpr double kWidthPower = 0.9;
+constexpr double kHeightSquare = 0.35;  // times the square of the logarithm of the height
 constexpr double kMinSide_m = 0.3;
 constexpr double kLongest = 1.75;  // of the typical length: none was found longer
 constexpr double kPersonSide_m = 1.2;

@@ -15,9 +15,10 @@ struct Belief {
 Belief at_least(const Belief& belief, double least);
 
 // Road users from bicycles to trailers, whatever they are called: curves through the mean sizes of the classes of
-// KITTI, nuScenes, ONCE, Lyft and Waymo. People do not lie near them, nor do animals: see is_person_like.
+// KITTI, nuScenes, ONCE, Lyft and Waymo, and of cars and vans as their makers state them. People do not lie near them,
+// nor do animals: see is_person_like.
 
-/// The length of what is so wide and high: 2.35 m (width / m)^0.8 exp(0.43 ln^2(height / m)), by least squares of the
+/// The length of what is so wide and high: 2.4 m (width / m)^0.9 exp(0.35 ln^2(height / m)), by least squares of the
 /// logarithms. What is lower than 1 m counts as so high.
 Belief typical_length(double width_m, double height_m);
 
