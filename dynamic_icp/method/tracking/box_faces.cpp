@@ -36,8 +36,9 @@ double face_sigma(const Vector3d& where, const Detection& detection, const Track
 }
 
 void BoxFilter::correct_faces(std::span<const Vector3d> points, const Detection& detection, const TrackConfig& config) {
+  const std::optional<double> top_m = is_known(Face::kTop) ? std::optional(reach(Face::kTop)) : std::nullopt;
   const std::array<AxisView, 3> views =
-      views_along(body_.axes(), body_.position(), points, body_.doppler_velocity(detection.sensor), detection);
+      views_along(body_.axes(), body_.position(), points, body_.doppler_velocity(detection.sensor), detection, top_m);
   const Vector3d reference = body_.position();
   const auto seen_along = [&](int axis) {  // from where the reference is now: corrections move it
     const double moved = body_.axes().col(axis).dot(body_.position() - reference);

@@ -5,10 +5,12 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 #include <memory_resource>
 #include <vector>
 
 #include "dynamic_icp/method/base/simd.hpp"
+#include "dynamic_icp/method/tracking/size_prior.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
@@ -33,6 +35,8 @@ constexpr double kFlatDepth_m = 0.1;    // so is what is narrower, but not deepe
 constexpr double kFlatWidth = 2.5;      // ... and so many times wider, as the sensor sees it, than deep ...
 constexpr double kFlatFacing = 0.1;     // ... if it looks at the sensor but a little
 constexpr double kMinEndPoints = 3.0;   // points of an end
+constexpr std::size_t kMinPast = 5;     // points past an end ...
+constexpr double kSideAway_m = 1.0;     // ... and how far they lie apart away from it: a side, not a corner
 constexpr double kUpperPart = 0.7;      // of the way up to the top: under a nearer body the lower part alone is seen
 constexpr double kCarHeight_m = 1.8;    // what is higher has no boot ...
 constexpr double kVanHeight_m = 2.8;    // ... and what is higher is a lorry, with a cabin that may be lower
@@ -40,6 +44,8 @@ constexpr double kVanHood_m = 1.2;      // hoods and boots are at most so long .
 constexpr double kSlope_m = 0.2;        // ... sides lean so much ...
 constexpr double kCabin_m = 2.4;        // ... and such cabins
 constexpr double kHood_m = 0.6;         // below this height bodies reach as far as anywhere: hoods, bumpers ...
+constexpr double kBeltLine_m = 0.9;     // of cars: above it are windows, which lean ...
+constexpr double kBoot_m = 0.8;         // ... and beyond them at most so much of boots
 constexpr double kCabinHeight_m = 2.0;  // ... and lorries below this one
 
 /// How far above and below an end, m, it is asked what comes next.
@@ -68,10 +74,9 @@ bool is_true_end(const EndView& end, const Vector3d& outward, const LookBeside& 
     return !is_dim;
   }
   const double cell = range * RangeImage::cell_width();
-  const bool is_upward = outward.dot(detection.ground.up()) > 0.5;
   for (const double step : {cell, std::max(kLookBeyond_m, 3.0 * cell)}) {
     const Vector3d beyond = detection.T_sensor_world * (end.middle + (end.reach + step) * sideways.normalized());
-    if (is_upward && detection.view->is_above_all(beyond)) {
+    if (detection.view->is_above_all(beyond)) {
       return false;
     }
     // Behind a dim end the body itself may go on; within a cell it is the end that is seen.
@@ -135,10 +140,10 @@ Interval seen_span(std::span<const double> along) {
   return without.length() < 0.0 ? span : without;  // of two points neither is far from all others
 }
 
-/// `along` and `across`: places of the points along the axis and one at right angles to it; `sensor_across`: that of
-/// the sensor.
-AxisView view_along(std::span<const double> along, std::span<const double> across, double sensor_across,
-                    std::span<const Vector3d> points) {
+/// `along`, `across` and `up`: places of the points along the axis, one at right angles to it, and upwards;
+/// `sensor_across`: that of the sensor.
+AxisView view_along(std::span<const double> along, std::span<const double> across, std::span<const double> up,
+                    double sensor_across, std::span<const Vector3d> points) {
   AxisView view;
   view.seen = seen_span(along);
   const auto look_at = [&](auto&& inwards) {  // how far inwards of the end a point lies
@@ -148,6 +153,7 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
     double depths = 0.0;
     double farthest = 0.0;  // beyond the end
     end.gap = kMaxGap_m;
+    end.lowest = std::numeric_limits<double>::max();
     for (std::size_t i = 0; i < points.size(); ++i) {
       const double depth = inwards(along[i]);
       if (depth > kMaxGap_m) {
@@ -158,6 +164,7 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
         sum += across[i];
         squares += across[i] * across[i];
         depths += depth * depth;
+        end.lowest = std::min(end.lowest, up[i]);
       }
       if (depth > kSamePlace_m) {
         end.gap = std::min(end.gap, depth);
@@ -199,10 +206,33 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
   return view;
 }
 
+/// Whether points are seen past an end of the view along an axis, whose lines of sight would meet what is seen of the
+/// near face beyond that end, were there more of it. `outward`: 1 at the high end, -1 at the low one; `near`: where
+/// that face is along the other axis.
+bool is_seen_past(const AxisView& view, double outward, std::span<const double> along, double sensor_along, double near,
+                  std::span<const double> away, double sensor_away) {
+  const double end = outward > 0.0 ? view.seen.high : -view.seen.low;
+  if (outward * sensor_along <= end) {
+    return false;
+  }
+  std::size_t count = 0;
+  Interval side{std::numeric_limits<double>::max(), std::numeric_limits<double>::lowest()};
+  for (std::size_t i = 0; i < along.size(); ++i) {
+    const double at = outward * along[i];
+    const double at_face = at + (away[i] - near) / (away[i] - sensor_away) * (outward * sensor_along - at);
+    if (std::abs(at - end) < kFlatDepth_m && at_face > end + kFlatDepth_m) {
+      ++count;
+      side.low = std::min(side.low, away[i]);
+      side.high = std::max(side.high, away[i]);
+    }
+  }
+  return count >= kMinPast && side.length() > kSideAway_m;
+}
+
 }  // namespace
 
 std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& reference, std::span<const Vector3d> points,
-                                    const Vector3d& W, const Detection& detection) {
+                                    const Vector3d& W, const Detection& detection, std::optional<double> top_m) {
   DetectionMemory memory;
   std::pmr::vector<double> places(3 * points.size(), memory.resource());
   const auto part = [&](std::size_t axis) { return std::span(places).subspan(axis * points.size(), points.size()); };
@@ -211,18 +241,28 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   std::array<AxisView, 3> views;
   std::array<bool, 2> faces_sensor{};
   const Vector3d sensor = axes.transpose() * (detection.sensor - reference);
-  views[2] = view_along(along[2], along[1], sensor.y(), points);
+  views[2] = view_along(along[2], along[1], along[2], sensor.y(), points);
   // Over something nearer often the cabin of a car is seen, and neither its hood nor its boot.
   const double ground =
       detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
-  const double height = views[2].seen.high - ground;
+  EndView& top = views[2].high;
+  const Vector3d up = axes.col(2);
+  top.is_cut = is_cut_above(top.middle + top.inside * up, up, detection);
+  const double seen_m = views[2].seen.high - ground;
+  const double height = top_m ? *top_m - ground : top.is_cut ? height_beyond(seen_m).mean : seen_m;
   const auto is_end = [&](EndView& end, const Vector3d& outward) {
     if (end.has_points_beyond || end.is_of_few) {
       return false;
     }
     const double facing = outward.dot((detection.sensor - end.middle).normalized());
     const bool is_flat = end.depth < kFlatDepth_m && facing * end.width > kFlatWidth * end.depth;
+    const bool is_along = std::abs(outward.dot(axes.col(0))) > 0.5;
+    const bool is_car = height < kCarHeight_m;
     if ((is_flat && facing > kFlatFacing) || (end.width > kFaceWidth_m && facing > kLooksAtSensor)) {
+      if (!is_flat && is_car && is_along && end.lowest > ground + kBeltLine_m) {
+        end.hidden = kBoot_m;  // a window, over something nearer
+        return false;
+      }
       return true;
     }
     const double at = axes.col(2).dot(end.middle - reference);
@@ -233,8 +273,6 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
     if (!is_end_down_to(views[2].seen.high)) {
       return false;
     }
-    const bool is_along = std::abs(outward.dot(axes.col(0))) > 0.5;
-    const bool is_car = height < kCarHeight_m;
     const bool is_lorry = height > kVanHeight_m;
     // Vans and lorries are boxes but for their fronts.
     const bool is_box = !is_car && outward.dot(axes.col(0)) < 0.5;
@@ -246,7 +284,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   };
   for (const int axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);
-    AxisView& view = views[k] = view_along(along[k], along[1 - k], sensor[1 - axis], points);
+    AxisView& view = views[k] = view_along(along[k], along[1 - k], along[2], sensor[1 - axis], points);
     const double grazing = kGrazing * sensor.norm();
     view.high.is_true = sensor[axis] > view.seen.high && is_end(view.high, axes.col(axis));
     view.low.is_true = sensor[axis] < view.seen.low && is_end(view.low, -axes.col(axis));
@@ -260,10 +298,16 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
       view.low.is_true = view.low.is_true || is_end(view.low, -axes.col(axis));
     }
   }
+  if (const Interval& seen = views[0].seen; sensor.x() < seen.low || sensor.x() > seen.high) {
+    const double near = sensor.x() < seen.low ? seen.low : seen.high;
+    for (EndView* end : {&views[1].low, &views[1].high}) {
+      const double outward = end == &views[1].high ? 1.0 : -1.0;
+      end->is_true =
+          end->is_true || (!end->has_points_beyond && !end->is_of_few &&
+                           is_seen_past(views[1], outward, along[1], sensor.y(), near, along[0], sensor.x()));
+    }
+  }
   // What is below bodies is hidden by them.
-  EndView& top = views[2].high;
-  const Vector3d up = axes.col(2);
-  top.is_cut = is_cut_above(top.middle + top.inside * up, up, detection);
   top.is_true = !top.is_cut && is_true_end(top, up, {}, true, W, detection);
   return views;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 
 #include <Eigen/Core>
@@ -22,6 +23,7 @@ struct EndView {
   double count = 0.0;                                ///< of the points there ...
   bool is_of_few = false;                            ///< ... so few that they may be somebody else's
   double gap = 0.0;                                  ///< m, from the end to the next points
+  double lowest = 0.0;                               ///< m, up from the reference: of these points
   double reach = 0.0;                                ///< m, of the few points beyond the end, but for one
   double width = 0.0;                                ///< m, across the axis, of what is seen at the end
   double depth = 0.0;                                ///< m, along the axis: of these points, root mean square
@@ -42,8 +44,9 @@ struct AxisView {
 /// reference point of the body. How far a body reaches away from the sensor shows only a face that looks at the sensor
 /// and spans that axis; and an end is one of the body only where nothing hides what would follow. `W` as in
 /// ClusterVelocity tells where points of the body may be missing because they hardly move along the line of sight.
+/// `top_m`: how far the body reaches up from the reference, where that is known.
 std::array<AxisView, 3> views_along(const Eigen::Matrix3d& axes, const Eigen::Vector3d& reference,
                                     std::span<const Eigen::Vector3d> points, const Eigen::Vector3d& W,
-                                    const Detection& detection);
+                                    const Detection& detection, std::optional<double> top_m = {});
 
 }  // namespace dynamic_icp::tracking

@@ -3,31 +3,21 @@
 #include "dynamic_icp/method/tracking/box_view.hpp"
 
 #include <cmath>
+#include <optional>
 #include <utility>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "testing/face_points.hpp"
 
 namespace dynamic_icp::tracking {
 namespace {
 
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
-
-constexpr double kStep_m = 0.1;
-
-/// Points `kStep_m` apart from one corner to the other of a face.
-std::vector<Vector3d> face_points(const Vector3d& low, const Vector3d& high) {
-  std::vector<Vector3d> points;
-  for (double x = low.x(); x <= high.x() + 1e-9; x += kStep_m) {
-    for (double y = low.y(); y <= high.y() + 1e-9; y += kStep_m) {
-      for (double z = low.z(); z <= high.z() + 1e-9; z += kStep_m) {
-        points.emplace_back(x, y, z);
-      }
-    }
-  }
-  return points;
-}
+using testing::face_points;
+using testing::kFaceStep_m;
 
 TEST(BoxView, OfABodySeenFromBehindTheRearAndTheSidesAreSeen) {
   // The sensor is in the origin; nothing hides anything.
@@ -39,7 +29,7 @@ TEST(BoxView, OfABodySeenFromBehindTheRearAndTheSidesAreSeen) {
   EXPECT_TRUE(left.high.is_true);
   EXPECT_NEAR(left.seen.low, -0.9, 1e-9);
   EXPECT_NEAR(left.seen.high, 0.9, 1e-9);
-  EXPECT_NEAR(left.high.gap, kStep_m, 1e-9);
+  EXPECT_NEAR(left.high.gap, kFaceStep_m, 1e-9);
   EXPECT_FALSE(up.low.is_true) << "what is below";
 }
 
@@ -109,6 +99,7 @@ TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
     raw.points = cabin;
     for (double x = -4.0; x <= 4.0; x += 0.02) {
       raw.points.emplace_back(2.0 * x, -20.0, 0.0);  // behind all
+      raw.points.emplace_back(2.0 * x, -20.0, 10.0);
       raw.points.emplace_back(x, -4.0, kGround_m);
       for (double z = kGround_m; z < -0.45 && is_hidden; z += 0.02) {
         raw.points.emplace_back(x, -5.0, z);
@@ -189,7 +180,7 @@ TEST(BoxView, AFewPointsBehindASideMakeNoFaceOfItsEnd) {
   // The rear part of a lorry, the end of which looks at the sensor; a wall that is nearer hides whether it goes on. At
   // its end a tenth of what is seen is a wheel on its other side.
   std::vector<Vector3d> side = face_points({4.0, -5.0, -0.5}, {8.0, -5.0, 0.5});
-  for (double z = -0.5; z < -0.2; z += kStep_m) {
+  for (double z = -0.5; z < -0.2; z += kFaceStep_m) {
     side.emplace_back(4.1, -6.1, z);
   }
   const std::vector<Vector3d> rear = face_points({4.0, -6.5, -0.5}, {4.0, -5.0, 0.5});
@@ -214,21 +205,25 @@ TEST(BoxView, AFewPointsBehindASideMakeNoFaceOfItsEnd) {
 
 TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButInFront) {
   // The same as above, of what is higher than any car, 8 m away, over something 5 m away: of a van, of a lorry of which
-  // as much is hidden, and of one of which a cabin would be.
+  // as much is hidden, and of one of which a cabin would be. What the upper edge of the view cuts off is likely to be a
+  // lorry, where its height is not known.
   struct Case {
     double top_m;
     double hidden_below_m;
-    double may_reach_m;  // farther in front
+    double may_reach_m;                  // farther in front
+    bool is_cut = false;                 // by the upper edge of the view
+    std::optional<double> known_m = {};  // height
   };
   constexpr double kGround_m = -1.5;
-  for (const auto& [top_m, hidden_below_m, may_reach_m] :
-       {Case{2.4, 0.7, 1.2}, Case{3.0, 0.7, 0.0}, Case{3.6, 2.4, 2.4}}) {
+  for (const auto& [top_m, hidden_below_m, may_reach_m, is_cut, known_m] :
+       {Case{2.4, 0.7, 1.2}, Case{3.0, 0.7, 0.0}, Case{3.6, 2.4, 2.4}, Case{2.4, 0.7, 0.0, true},
+        Case{2.4, 0.7, 1.2, true, 2.5}}) {
     const std::vector<Vector3d> upper =
         face_points({-4.0, -8.0, kGround_m + hidden_below_m}, {4.0, -8.0, kGround_m + top_m});
     RawScan raw;
     raw.points = upper;
     for (double x = -6.0; x <= 6.0; x += 0.02) {
-      raw.points.emplace_back(2.0 * x, -20.0, 0.0);
+      raw.points.emplace_back(2.0 * x, -20.0, is_cut ? 0.0 : 10.0);
       for (double z = -1.5; z < 5.0 / 8.0 * (kGround_m + hidden_below_m); z += 0.02) {
         raw.points.emplace_back(x, -5.0, z);
       }
@@ -238,7 +233,9 @@ TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButInFront) {
     Detection detection;
     detection.ground.offset_m = kGround_m;
     detection.view = &image;
-    const AxisView along = views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, upper, {5.0, -5.0, 0.0}, detection)[0];
+    const std::optional<double> top = known_m ? std::optional(kGround_m + *known_m) : std::nullopt;
+    const AxisView along =
+        views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, upper, {5.0, -5.0, 0.0}, detection, top)[0];
     EXPECT_EQ(along.high.is_true, may_reach_m == 0.0);
     EXPECT_EQ(along.high.hidden, may_reach_m) << "the front of what is " << top_m << " m high";
     EXPECT_TRUE(along.low.is_true);
@@ -367,23 +364,6 @@ TEST(BoxView, AFrontOfWhichTheUpperPartIsHiddenEndsWhereItsHoodDoes) {
   detection.ground.offset_m = kGround_m;
   detection.view = &image;
   EXPECT_TRUE(views_along(Matrix3d::Identity(), front.front(), front, {5.0, -5.0, 0.0}, detection)[0].high.is_true);
-}
-
-TEST(BoxView, WhatReachesTheUpperEdgeOfTheViewIsCut) {
-  const std::vector<Vector3d> side = face_points({-2.0, -5.0, -0.5}, {2.0, -5.0, 0.8});
-  for (const double highest : {0.8, 1.2}) {  // m at the distance of the side: what is seen elsewhere
-    RawScan raw;
-    raw.points = side;
-    for (double x = -20.0; x <= 20.0; x += 0.05) {
-      raw.points.emplace_back(x, -20.0, 4.0 * highest);
-    }
-    raw.doppler.assign(raw.points.size(), 0.0);
-    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
-    Detection detection;
-    detection.view = &image;
-    const AxisView up = views_along(Matrix3d::Identity(), {0, -5, 0}, side, {5.0, -5.0, 0.0}, detection)[2];
-    EXPECT_EQ(up.high.is_cut, highest == 0.8);
-  }
 }
 
 }  // namespace

@@ -12,8 +12,7 @@ namespace {
 
 constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of which the top was not seen
 constexpr double kLowestVehicle_m = 1.5;
-constexpr double kHighestVehicle_m = 4.0;  // on public roads
-constexpr double kNoBox = 0.05;            // bodies end by this share of their size nearer or farther than boxes do
+constexpr double kNoBox = 0.05;  // bodies end by this share of their size nearer or farther than boxes do
 
 LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
   LikelyExtent extent;
@@ -51,9 +50,8 @@ std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen
     up.ends_high = false;  // a hood; something hides the cabin
     height.mean = std::max(kLowestVehicle_m, height.mean);
   }
-  if (!is_as_seen && up.is_cut_high && height.mean < kHighestVehicle_m) {  // anywhere between
-    const double more = kHighestVehicle_m - height.mean;
-    height = {height.mean + 0.5 * more, more * more / 12.0};
+  if (!is_as_seen && up.is_cut_high) {
+    height = height_beyond(height.mean);
   } else if (!up.ends_high) {
     height.variance = kHiddenHeight_m * kHiddenHeight_m;
   }

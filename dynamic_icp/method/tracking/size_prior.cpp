@@ -15,6 +15,7 @@ constexpr double kWidthPower = 0.9;
 constexpr double kHeightSquare = 0.35;  // times the square of the logarithm of the height
 constexpr double kMinSide_m = 0.3;
 constexpr double kLongest = 1.75;  // of the typical length: none was found longer
+constexpr double kHighestVehicle_m = 4.0;
 constexpr double kPersonSide_m = 1.2;
 constexpr double kPersonHeight_m = 2.3;
 constexpr double kPersonSpeed_mps = 2.5;
@@ -53,6 +54,11 @@ double longest_length(double width_m, double height_m) { return kLongest * typic
 Belief typical_width(double length_m) { return about(std::clamp(0.41 * length_m, kMinSide_m, 2.5)); }
 
 Belief typical_width_by_height(double height_m) { return about(std::min(2.5, 1.3 + 0.33 * height_m)); }
+
+Belief height_beyond(double seen_m) {
+  const double more = std::max(0.0, kHighestVehicle_m - seen_m);
+  return {seen_m + 0.5 * more, more * more / 12.0};
+}
 
 bool is_person_like(double longest_side_m, double height_m, double speed_mps) {
   return longest_side_m < kPersonSide_m && height_m < kPersonHeight_m && speed_mps < kPersonSpeed_mps;

@@ -34,6 +34,10 @@ Belief typical_width(double length_m);
 /// The width of what is so high and of which neither length nor width are seen.
 Belief typical_width_by_height(double height_m);
 
+/// The height of what is seen up to so far above the ground, where the upper edge of the field of view cuts it off:
+/// anywhere from there up to the 4 m that roads allow.
+Belief height_beyond(double seen_m);
+
 /// Whether what is seen of a body is as small as a person and as slow: nothing suggests that there is more of it.
 bool is_person_like(double longest_side_m, double height_m, double speed_mps);
 

@@ -92,6 +92,14 @@ TEST(SizePrior, WidthsOfRoadUsersLieOnItsCurve) {
   }
 }
 
+TEST(SizePrior, WhatIsCutOffReachesAnywhereUpToTheHighest) {
+  const Belief height = height_beyond(2.8);
+  EXPECT_DOUBLE_EQ(height.mean, 3.4);
+  EXPECT_DOUBLE_EQ(height.variance, 1.2 * 1.2 / 12.0) << "of what is even between";
+  EXPECT_DOUBLE_EQ(height_beyond(4.5).mean, 4.5);
+  EXPECT_DOUBLE_EQ(height_beyond(4.5).variance, 0.0);
+}
+
 TEST(SizePrior, LargerBodiesAreLongerAndWider) {
   EXPECT_LT(typical_length(1.5, 1.5).mean, typical_length(1.8, 1.5).mean);
   EXPECT_LT(typical_length(1.8, 1.5).mean, typical_length(1.8, 2.2).mean);

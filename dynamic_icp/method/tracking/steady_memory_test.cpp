@@ -15,15 +15,16 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr int kRound = 20;  // scans after which traffic is where it was
+constexpr int kRound = 40;  // scans after which traffic is where it was
 
 /// Cars that come, turn, cross the line of sight and leave: one is born and one is lost in every round.
 std::vector<MovingBox> rounds_of_traffic(double t) {
   const double in_round = std::fmod(t + 1e-6, kRound * kScanPeriod_s);
-  const double angle = -1.0 + std::numbers::pi * t;
-  std::vector<MovingBox> boxes = {car(25 + 8 * std::cos(angle), 8 * std::sin(angle), angle + 0.5 * std::numbers::pi,
-                                      8 * std::numbers::pi, std::numbers::pi),
-                                  car(45, -16 + 16 * in_round, 0.5 * std::numbers::pi, 16)};
+  const double yaw_rate = 2.0 * std::numbers::pi / (kRound * kScanPeriod_s);
+  const double angle = -1.0 + yaw_rate * t;
+  std::vector<MovingBox> boxes = {
+      car(25 + 6 * std::cos(angle), 6 * std::sin(angle), angle + 0.5 * std::numbers::pi, 6 * yaw_rate, yaw_rate),
+      car(45, -16 + 8 * in_round, 0.5 * std::numbers::pi, 8)};
   if (in_round < 1.0) {
     boxes.push_back(car(12 + 10 * in_round, -6, 0.0, 10));
   }

@@ -1,0 +1,118 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/tracking/box_view.hpp"
+
+#include "testing/face_points.hpp"
+
+// Bodies of which something nearer, or the edge of the field of view, cuts off a part.
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Matrix3d;
+using Eigen::Vector3d;
+using testing::face_points;
+
+RangeImage image_of(RawScan raw) {
+  raw.doppler.assign(raw.points.size(), 0.0);
+  return {Scan::from_raw(raw), Vector3d::Zero(), Workers(1)};
+}
+
+TEST(BoxView, WhatReachesTheUpperEdgeOfTheViewIsCut) {
+  const std::vector<Vector3d> side = face_points({-2.0, -5.0, -0.5}, {2.0, -5.0, 0.8});
+  for (const double highest : {0.8, 1.2}) {  // m at the distance of the side: what is seen elsewhere
+    RawScan raw;
+    raw.points = side;
+    for (double x = -20.0; x <= 20.0; x += 0.05) {
+      raw.points.emplace_back(x, -20.0, 4.0 * highest);
+    }
+    raw.doppler.assign(raw.points.size(), 0.0);
+    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    Detection detection;
+    detection.view = &image;
+    const AxisView up = views_along(Matrix3d::Identity(), {0, -5, 0}, side, {5.0, -5.0, 0.0}, detection)[2];
+    EXPECT_EQ(up.high.is_cut, highest == 0.8);
+  }
+}
+
+TEST(BoxView, WhatTheUpperEdgeOfTheViewCutsOffMayGoOn) {
+  // A strip of the side of a lorry, right below the upper edge of the view: what is nearer would be seen above that.
+  // Where something else is seen higher up, the view ends elsewhere.
+  const std::vector<Vector3d> strip = face_points({4.0, -5.5, 1.4}, {7.0, -5.5, 1.4});
+  for (const bool is_edge : {true, false}) {
+    RawScan raw;
+    raw.points = strip;
+    for (double x = -20.0; x <= 40.0; x += 0.05) {
+      raw.points.emplace_back(x, -20.0, 0.0);
+    }
+    if (!is_edge) {
+      raw.points.emplace_back(20.0, 0.0, 10.0);
+    }
+    const RangeImage image = image_of(std::move(raw));
+    Detection detection;
+    detection.ground.offset_m = -2.0;
+    detection.view = &image;
+    const AxisView along = views_along(Matrix3d::Identity(), strip.front(), strip, {5.0, -5.0, 0.0}, detection)[0];
+    EXPECT_NE(along.low.is_true, is_edge);
+  }
+}
+
+TEST(BoxView, BehindAWindowSeenOverSomethingNearerMayBeABoot) {
+  // What is seen of the rear of a car 30 m away, from some height on, which leans or not.
+  constexpr double kGround_m = -1.8;
+  struct Case {
+    double from_m;  // over ground
+    double lean;    // m per m
+    double boot_m;
+  };
+  for (const auto& [from_m, lean, boot_m] : {Case{0.95, 1.0, 0.8}, Case{0.95, 0.1, 0.0}, Case{0.55, 1.0, 0.0}}) {
+    std::vector<Vector3d> rear;
+    for (double z = from_m; z < 1.45; z += 0.05) {
+      for (double y = -0.7; y <= 0.7; y += 0.1) {
+        rear.emplace_back(30.0 + lean * (z - from_m), y, kGround_m + z);
+      }
+    }
+    Detection detection;
+    detection.ground.offset_m = kGround_m;
+    const EndView end = views_along(Matrix3d::Identity(), rear.front(), rear, {5.0, 0.0, 0.0}, detection)[0].low;
+    EXPECT_EQ(end.is_true, boot_m == 0.0);
+    EXPECT_EQ(end.hidden, boot_m);
+  }
+}
+
+TEST(BoxView, TheRearEndsWhereTheSideIsSeenPastIt) {
+  // A part of the rear of a lorry 40 m away, up to its left side; a wall hides all that would be to the left of it. The
+  // side itself is seen at an angle of 7 degrees. Points of a roof reach as far as the wall lets them.
+  const std::vector<Vector3d> rear = face_points({40.0, -6.2, -1.0}, {40.0, -4.8, 1.0});
+  std::vector<Vector3d> side;
+  std::vector<Vector3d> roof;
+  for (double x = 41.0; x <= 46.0; x += 1.0) {
+    side.emplace_back(x, -4.8, 0.5);
+    roof.emplace_back(x, -4.8 * x / 40.0, 1.0);
+  }
+  RawScan raw;
+  for (double y = -2.4; y <= 2.0; y += 0.02) {
+    for (double z = -1.0; z <= 2.0; z += 0.05) {
+      raw.points.emplace_back(20.0, y, z);
+    }
+  }
+  raw.points.insert(raw.points.end(), rear.begin(), rear.end());
+  const RangeImage image = image_of(std::move(raw));
+  Detection detection;
+  detection.view = &image;
+  const auto ends_left = [&](const std::vector<Vector3d>& beyond) {
+    std::vector<Vector3d> body = rear;
+    body.insert(body.end(), beyond.begin(), beyond.end());
+    return views_along(Matrix3d::Identity(), rear.front(), body, {5.0, 0.0, 0.0}, detection)[1].high.is_true;
+  };
+  EXPECT_FALSE(ends_left({}));
+  EXPECT_FALSE(ends_left(roof));
+  EXPECT_TRUE(ends_left(side));
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
