@@ -44,9 +44,7 @@ SeenExtent BoxFilter::extent(int axis) const {
   const auto is_end = [&](Face face) {
     return is_known(face) && (is_one || faces_[index_of(face)] != FaceView::kUnknown);
   };
-  const auto likely_reach = [&](Face face) {
-    return reach(face) + (is_end(face) ? 0.5 * hidden_[index_of(face)] : 0.0);
-  };
+  const auto likely_reach = [&](Face face) { return reach(face) + (is_end(face) ? hidden_[index_of(face)] : 0.0); };
   return {likely_reach(high), likely_reach(low), is_end(high), is_end(low), axis == 2 && top_is_cut_ && !is_end(high)};
 }
 
@@ -70,7 +68,7 @@ BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {
     H.col(BodyFilter::kFirstFace + 2 * axis + 1) = -likely.weight_low * axes.col(axis);
     const double below = std::hypot(likely.weight_high * hidden_[index_of(high_face(axis))],
                                     likely.weight_low * hidden_[index_of(low_face(axis))]);
-    hidden(axis, axis) = likely.variance + kUniform * kUniform * below * below;
+    hidden(axis, axis) = likely.variance + below * below / 3.0;  // even from none to twice as much
   }
   estimate.centre_covariance = H * body_.covariance() * H.transpose() + axes * hidden * axes.transpose();
   // A body that turns moves otherwise where its centre may be, too: omega x.

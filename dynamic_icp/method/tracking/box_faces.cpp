@@ -17,7 +17,7 @@ using Eigen::Vector3d;
 
 constexpr double kLoose_m =
     1.5;  // standard deviation of the middle of what is seen of a body, if as much: others slide before it
-constexpr double kFrame_m = 4.0;         // of a tractor, below the trailer
+constexpr double kFrame_m = 3.6;         // of a tractor, below the trailer
 constexpr double kJoint_m = 0.4;         // standard deviation of where parts of a body meet
 constexpr double kCorner_m = 0.5;        // radius between the sides of vehicles and their fronts and rears
 constexpr double kInside_m = 1.0;        // an end so far within what was seen before is none

@@ -141,12 +141,12 @@ class BoxFilter {
   BodyFilter body_;
   MotionModels models_;
   bool has_heading_;
-  bool was_vehicle_ = false;                            ///< faster than any person, at any time
-  bool is_part_ = false;                                ///< of a body that bends: as short as a cab
-  bool top_is_cut_ = false;                             ///< by the edge of the field of view, where it was highest
-  std::array<double, kFaces.size()> least_{};           ///< m from the reference: points were seen so far out
-  std::array<FaceView, kFaces.size()> faces_{};         ///< by Face
-  std::array<double, kFaces.size()> hidden_{};          ///< m: so much farther than its upper part a body may reach
+  bool was_vehicle_ = false;                     ///< faster than any person, at any time
+  bool is_part_ = false;                         ///< of a body that bends: as short as a cab
+  bool top_is_cut_ = false;                      ///< by the edge of the field of view, where it was highest
+  std::array<double, kFaces.size()> least_{};    ///< m from the reference: points were seen so far out
+  std::array<FaceView, kFaces.size()> faces_{};  ///< by Face
+  std::array<double, kFaces.size()> hidden_{};   ///< m: so much farther than its upper part a body is likely to reach
   std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last
   double log_likelihood_ = 0.0;                         ///< of the motion
   double size_log_likelihood_ = 0.0;                    ///< of the sizes

@@ -29,8 +29,8 @@ struct EndView {
   double depth = 0.0;                                ///< m, along the axis: of these points, root mean square
   bool has_points_beyond = false;                    ///< far from it, few: seen over something nearer
   bool is_true = false;                              ///< whether the body ends there, too ...
-  double hidden = 0.0;                               ///< m: ... or if > 0 its upper part, and below so much farther
-  bool is_cut = false;                               ///< of the top: by the upper edge of the field of view
+  double hidden = 0.0;  ///< m: ... or if > 0 its upper part, and below so much farther in the mean
+  bool is_cut = false;  ///< of the top: by the upper edge of the field of view
 };
 
 /// What a detection shows along one axis of a box.

@@ -69,7 +69,7 @@ TEST(BoxView, BehindAWindowSeenOverSomethingNearerMayBeABoot) {
     double lean;    // m per m
     double boot_m;
   };
-  for (const auto& [from_m, lean, boot_m] : {Case{0.95, 1.0, 0.8}, Case{0.95, 0.1, 0.0}, Case{0.55, 1.0, 0.0}}) {
+  for (const auto& [from_m, lean, boot_m] : {Case{0.95, 1.0, 0.4}, Case{0.95, 0.1, 0.0}, Case{0.55, 1.0, 0.0}}) {
     std::vector<Vector3d> rear;
     for (double z = from_m; z < 1.45; z += 0.05) {
       for (double y = -0.7; y <= 0.7; y += 0.1) {

@@ -114,7 +114,7 @@ TEST(BoxView, WhereTheLowerPartIsHiddenTheEndOfTheUpperOneIsNone) {
         views_along(Matrix3d::Identity(), {0.0, -8.0, 0.0}, cabin, {5.0, -5.0, 0.0}, detection);
     for (const EndView& end : {along.high, along.low}) {
       EXPECT_NE(end.is_true, is_hidden);
-      EXPECT_EQ(end.hidden, is_hidden ? 1.2 : 0.0) << "a hood or a boot";
+      EXPECT_EQ(end.hidden, is_hidden ? 0.6 : 0.0) << "a hood or a boot";
     }
     EXPECT_TRUE(left.high.is_true) << "the side is seen";
   }
@@ -210,14 +210,14 @@ TEST(BoxView, OfWhatIsHighTheUpperPartEndsWhereTheLowerOneDoesButInFront) {
   struct Case {
     double top_m;
     double hidden_below_m;
-    double may_reach_m;                  // farther in front
+    double may_reach_m;                  // farther in front, in the mean
     bool is_cut = false;                 // by the upper edge of the view
     std::optional<double> known_m = {};  // height
   };
   constexpr double kGround_m = -1.5;
   for (const auto& [top_m, hidden_below_m, may_reach_m, is_cut, known_m] :
-       {Case{2.4, 0.7, 1.2}, Case{3.0, 0.7, 0.0}, Case{3.6, 2.4, 2.4}, Case{2.4, 0.7, 0.0, true},
-        Case{2.4, 0.7, 1.2, true, 2.5}}) {
+       {Case{2.4, 0.7, 0.6}, Case{3.0, 0.7, 0.0}, Case{3.6, 2.4, 1.2}, Case{2.4, 0.7, 0.0, true},
+        Case{2.4, 0.7, 0.6, true, 2.5}}) {
     const std::vector<Vector3d> upper =
         face_points({-4.0, -8.0, kGround_m + hidden_below_m}, {4.0, -8.0, kGround_m + top_m});
     RawScan raw;
