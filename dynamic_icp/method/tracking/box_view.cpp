@@ -33,6 +33,7 @@ constexpr double kFaceWidth_m = 0.8;    // what is seen so wide at an end that l
 constexpr double kLooksAtSensor = 0.5;  // cosine of the line of sight to such a face
 constexpr double kFlatDepth_m = 0.1;    // so is what is narrower, but not deeper than this ...
 constexpr double kFlatWidth = 2.5;      // ... and so many times wider, as the sensor sees it, than deep ...
+constexpr double kMinFlat_m = 0.2;      // ... and so wide: a few points side by side are as flat ...
 constexpr double kFlatFacing = 0.1;     // ... if it looks at the sensor but a little
 constexpr double kMinEndPoints = 3.0;   // points of an end
 constexpr std::size_t kMinPast = 5;     // points past an end ...
@@ -255,7 +256,8 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
       return false;
     }
     const double facing = outward.dot((detection.sensor - end.middle).normalized());
-    const bool is_flat = end.depth < kFlatDepth_m && facing * end.width > kFlatWidth * end.depth;
+    const bool is_flat =
+        end.depth < kFlatDepth_m && end.width > kMinFlat_m && facing * end.width > kFlatWidth * end.depth;
     const bool is_along = std::abs(outward.dot(axes.col(0))) > 0.5;
     const bool is_car = height < kCarHeight_m;
     if ((is_flat && facing > kFlatFacing) || (end.width > kFaceWidth_m && facing > kLooksAtSensor)) {

@@ -84,6 +84,22 @@ TEST(BoxView, BehindAWindowSeenOverSomethingNearerMayBeABoot) {
   }
 }
 
+TEST(BoxView, AFewPointsSideBySideAreNoFace) {
+  // The hood of a car, of which the edge of the view cuts off the rest, and the last of its points there.
+  std::vector<Vector3d> hood = face_points({20.4, 10.0, -0.5}, {22.0, 11.5, -0.5});
+  for (const double beside : {0.0, 0.03, 0.06}) {
+    hood.emplace_back(20.0, 10.5 + beside, -0.5);
+  }
+  RawScan raw;
+  raw.points = hood;
+  const RangeImage image = image_of(std::move(raw));
+  Detection detection;
+  detection.view = &image;
+  const AxisView along = views_along(Matrix3d::Identity(), hood.front(), hood, {5.0, 0.0, 0.0}, detection)[0];
+  ASSERT_GE(along.low.count, 3.0);
+  EXPECT_FALSE(along.low.is_true);
+}
+
 TEST(BoxView, TheRearEndsWhereTheSideIsSeenPastIt) {
   // A part of the rear of a lorry 40 m away, up to its left side; a wall hides all that would be to the left of it. The
   // side itself is seen at an angle of 7 degrees. Points of a roof reach as far as the wall lets them.
