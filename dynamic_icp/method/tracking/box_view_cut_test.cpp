@@ -30,8 +30,7 @@ TEST(BoxView, WhatReachesTheUpperEdgeOfTheViewIsCut) {
     for (double x = -20.0; x <= 20.0; x += 0.05) {
       raw.points.emplace_back(x, -20.0, 4.0 * highest);
     }
-    raw.doppler.assign(raw.points.size(), 0.0);
-    const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    const RangeImage image = image_of(std::move(raw));
     Detection detection;
     detection.view = &image;
     const AxisView up = views_along(Matrix3d::Identity(), {0, -5, 0}, side, {5.0, -5.0, 0.0}, detection)[2];
