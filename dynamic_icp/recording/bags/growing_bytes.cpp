@@ -69,7 +69,7 @@ class GrowingFile final : public GrowingBytes {
     const steady_clock::time_point now = steady_clock::now();
     if (file_.size() > known) {
       const std::lock_guard lock(mutex_);
-      grow_to(file_.size(), std::chrono::system_clock::now());
+      grow_to(file_.size(), now);
       changed_.notify_all();
       grown_at_ = now;
     }
@@ -204,7 +204,7 @@ class GrowingStream final : public GrowingBytes {
       bytes.remove_prefix(count);
       size_now += count;
     }
-    grow_to(size_now, std::chrono::system_clock::now());
+    grow_to(size_now, steady_clock::now());
   }
 
   int descriptor_;

@@ -17,8 +17,8 @@
 
 namespace dynamic_icp::bags {
 
-/// When something was there, by the clock of the machine.
-using Arrival = std::chrono::system_clock::time_point;
+/// When something was there, by a clock that never jumps.
+using Arrival = std::chrono::steady_clock::time_point;
 
 /// Bytes that become more. A thread of their own sees to it, so that it is known when they came however busy the rest
 /// of the program is.

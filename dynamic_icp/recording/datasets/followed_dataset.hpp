@@ -16,8 +16,8 @@
 
 namespace dynamic_icp::datasets {
 
-/// When something was there, by the clock of the machine.
-using Arrival = std::chrono::system_clock::time_point;
+/// When something was there, by a clock that never jumps.
+using Arrival = std::chrono::steady_clock::time_point;
 
 /// A recording that still grows. `size` is how many of its scans are known to be there. One thread at a time.
 class FollowedDataset : public Dataset {

@@ -3,6 +3,7 @@
 #include "dynamic_icp/recording/datasets/followed_folder.hpp"
 
 #include <algorithm>
+#include <map>
 #include <thread>
 #include <utility>
 
@@ -20,20 +21,30 @@ using std::chrono::milliseconds;
 using std::chrono::steady_clock;
 using std::chrono::system_clock;
 
-constexpr milliseconds kSettled{150};      // since the last byte of a file that is taken for whole
+constexpr milliseconds kSettled{150};      // unchanged for so long, a file is taken for whole
 constexpr milliseconds kShortestRest{20};  // between two looks at the folder
 constexpr int kRestPerLook = 4;            // looking takes at most a fifth of the time
 constexpr milliseconds kLater{1000};       // that files beside that of the points may come
 constexpr milliseconds kPatience{5000};    // with a folder that cannot be read: its files may be half there
 
-/// When a file was last written to; nothing where it is gone.
-std::optional<Arrival> written_at(const fs::path& file) {
+/// What tells that somebody has written to a file.
+struct FileState {
+  ::off_t bytes = 0;
+  system_clock::time_point written_at;  ///< by the clock of the machine that has the disk, which may jump or be off
+
+  bool operator==(const FileState&) const = default;
+};
+
+/// Nothing where the file is gone.
+std::optional<FileState> state_of(const fs::path& file) {
   struct ::stat status {};
   if (::stat(file.c_str(), &status) != 0) {
     return std::nullopt;
   }
-  return Arrival(std::chrono::duration_cast<system_clock::duration>(std::chrono::seconds(status.st_mtim.tv_sec) +
-                                                                    std::chrono::nanoseconds(status.st_mtim.tv_nsec)));
+  const auto since_epoch =
+      std::chrono::seconds(status.st_mtim.tv_sec) + std::chrono::nanoseconds(status.st_mtim.tv_nsec);
+  return FileState{status.st_size,
+                   system_clock::time_point(std::chrono::duration_cast<system_clock::duration>(since_epoch))};
 }
 
 class FollowedFolder final : public FollowedDataset {
@@ -61,9 +72,11 @@ class FollowedFolder final : public FollowedDataset {
   }
 
   [[nodiscard]] std::optional<Arrival> arrival(std::size_t index) const override {
-    const std::optional<Arrival> written = written_at(scan_file(index));
-    return written && *written > followed_since_ ? written : std::nullopt;
+    const auto found = seen_.find(index);
+    return found == seen_.end() ? std::nullopt : found->second.arrival;
   }
+
+  void release_before(std::size_t index) override { seen_.erase(seen_.begin(), seen_.lower_bound(index)); }
 
   [[nodiscard]] std::string_view format() const override { return opened().format(); }
   [[nodiscard]] std::size_t size() const override { return complete_; }
@@ -98,8 +111,21 @@ class FollowedFolder final : public FollowedDataset {
     return *dataset_;
   }
 
-  /// Opens what is there now. What cannot be read may be half written: that is borne with for a while.
+  /// A file that was not known to be whole.
+  struct Seen {
+    FileState state;
+    Arrival unchanged_since;
+    std::optional<Arrival> arrival;  ///< nothing: as it was when the folder was first looked at
+  };
+
   void look() {
+    const Arrival now = steady_clock::now();
+    look_at(now);
+    looked_at_ = now;
+  }
+
+  /// Opens what is there now. What cannot be read may be half written: that is borne with for a while.
+  void look_at(Arrival now) {
     std::unique_ptr<Dataset> next;
     try {
       next = open_input(folder_, settings_);
@@ -113,11 +139,30 @@ class FollowedFolder final : public FollowedDataset {
       bear_with_fault();
       return;
     }
-    const std::size_t complete = complete_of(*next);
+    note_changes(*next, now);
     check_unchanged(*next);
+    const std::size_t complete = complete_of(*next, now);
     if (complete >= complete_ && complete > 0) {
       dataset_ = std::move(next);
       complete_ = complete;
+    }
+  }
+
+  /// The clock of the machine says only when between two looks a file was written: it may have jumped.
+  void note_changes(const Dataset& next, Arrival now) {
+    const std::size_t last = next.size() - std::min<std::size_t>(next.size(), 1);
+    for (std::size_t index = looked_at_ ? complete_ : last; index < next.size(); ++index) {
+      const std::optional<FileState> state = state_of(next.scan_file(index));
+      const auto known = seen_.find(index);
+      if (!state) {
+        seen_.erase(index);
+      } else if (!looked_at_) {
+        seen_[index] = {*state, now, std::nullopt};
+      } else if (known == seen_.end() || known->second.state != *state) {
+        const auto age = std::chrono::duration_cast<Arrival::duration>(system_clock::now() - state->written_at);
+        const Arrival at = now - std::clamp(age, Arrival::duration::zero(), now - *looked_at_);
+        seen_[index] = {*state, at, at};
+      }
     }
   }
 
@@ -130,10 +175,13 @@ class FollowedFolder final : public FollowedDataset {
     }
   }
 
-  static std::size_t complete_of(const Dataset& dataset) {
+  /// All but the last file, and that one when it has settled.
+  [[nodiscard]] std::size_t complete_of(const Dataset& dataset, Arrival now) const {
     const std::size_t size = dataset.size();
-    const std::optional<Arrival> last = size > 0 ? written_at(dataset.scan_file(size - 1)) : std::nullopt;
-    return last && system_clock::now() - *last >= kSettled ? size : size - std::min<std::size_t>(size, 1);
+    const auto last = size > 0 ? seen_.find(size - 1) : seen_.end();
+    const bool is_known = size > 0 && size <= complete_;
+    const bool has_settled = last != seen_.end() && now - last->second.unchanged_since >= kSettled;
+    return is_known || has_settled ? size : size - std::min<std::size_t>(size, 1);
   }
 
   /// Scans that were read stay where they were.
@@ -152,7 +200,8 @@ class FollowedFolder final : public FollowedDataset {
 
   fs::path folder_;
   InputSettings settings_;
-  Arrival followed_since_ = system_clock::now();
+  std::optional<Arrival> looked_at_;  ///< when it was last
+  std::map<std::size_t, Seen> seen_;  ///< by the index of the scan
   std::unique_ptr<Dataset> dataset_;  ///< as of the last look; null: nothing was there
   std::size_t complete_ = 0;
   std::optional<steady_clock::time_point> fault_since_;

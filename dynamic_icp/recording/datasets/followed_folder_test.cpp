@@ -52,8 +52,38 @@ TEST_F(FollowedFolderTest, WaitsForScansUntilTheyAreWhole) {
   writer.join();
   EXPECT_EQ(followed->scan(2).points.size(), 3U);
   EXPECT_TRUE(followed->arrival(2));
-  EXPECT_LE(*followed->arrival(2), std::chrono::system_clock::now());
+  EXPECT_LE(*followed->arrival(2), std::chrono::steady_clock::now());
 }
+
+/// How far the clock of whoever writes is ahead.
+class FollowedFolderClockTest : public FollowedFolderTest, public testing::WithParamInterface<std::chrono::hours> {};
+
+TEST_P(FollowedFolderClockTest, TheClockOfWhoWritesMayJump) {
+  using std::chrono::steady_clock;
+  write_scan(1);
+  const auto followed = follow_folder(folder_, {});
+  steady_clock::time_point written;  // about
+  std::thread writer([&] {
+    for (int k = 0; k < 6; ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(60));
+      written = steady_clock::now();
+      write_file(scan_file(2), k < 5 ? floats({1.0F, 2.0F}) : floats({1.0F, 2.0F, 3.0F, 0.5F}));
+      fs::last_write_time(scan_file(2), fs::file_time_type::clock::now() + GetParam());
+    }
+  });
+  const steady_clock::time_point latest = steady_clock::now() + std::chrono::seconds(20);
+  const bool came = followed->wait_for(1, [&] { return steady_clock::now() > latest; });
+  const steady_clock::time_point seen = steady_clock::now();
+  writer.join();
+  ASSERT_TRUE(came);
+  EXPECT_EQ(followed->scan(1).points.size(), 1U) << "as long as somebody writes, nobody reads";
+  ASSERT_TRUE(followed->arrival(1));
+  EXPECT_GE(*followed->arrival(1), written - std::chrono::seconds(1));
+  EXPECT_LE(*followed->arrival(1), seen);
+}
+
+INSTANTIATE_TEST_SUITE_P(Hours, FollowedFolderClockTest,
+                         testing::Values(std::chrono::hours(-1), std::chrono::hours(0), std::chrono::hours(1)));
 
 TEST_F(FollowedFolderTest, ALaterFileMakesAnEarlierOneWhole) {
   const auto followed = follow_folder(folder_, {});

@@ -13,7 +13,7 @@ double Latencies::add(const std::optional<datasets::Arrival>& arrival) {
   if (!arrival) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  const std::chrono::duration<double, std::milli> latency = std::chrono::system_clock::now() - *arrival;
+  const std::chrono::duration<double, std::milli> latency = std::chrono::steady_clock::now() - *arrival;
   latencies_ms_.push_back(latency.count());
   return latency.count();
 }
