@@ -2,7 +2,8 @@
 // SPDX-License-Identifier: MIT
 // Loaded before a program (LD_PRELOAD), it lets one call of the C library fail, as a full or dying disk or a machine
 // without memory would. Environment:
-//   FAULT_CALL    open, read, write, fsync, rename, mkdir or malloc
+//   FAULT_CALL    open, read, write, fsync, rename, mkdir, stat (or the next entry of a folder), unlink or malloc;
+//                 file: all of them but malloc
 //   FAULT_NUMBER  which of these calls fails, counted from 1; 0: none, for counting
 //   FAULT_ERROR   the number of the error, or 0: `read` and `write` do one byte only
 //   FAULT_LASTS   set: all calls from that one on fail
@@ -17,6 +18,7 @@
 #include <cstdlib>
 #include <cstring>
 
+#include <dirent.h>
 #include <dlfcn.h>
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -71,7 +73,10 @@ __attribute__((destructor)) void end() {
   ::syscall(SYS_close, file);
 }
 
-bool is_counted(const char* call) { return ready && std::strcmp(fault.call, call) == 0; }
+bool is_counted(const char* call) {
+  const bool is_any_file = std::strcmp(fault.call, "file") == 0 && std::strcmp(call, "malloc") != 0;
+  return ready && (is_any_file || std::strcmp(fault.call, call) == 0);
+}
 
 /// Counts a call; whether it is to fail.
 bool is_due() {
@@ -93,6 +98,17 @@ bool lies_under(int descriptor) {
   }
   path[length] = '\0';
   return lies_under(path);
+}
+
+/// A path that may be relative to that of a folder.
+struct FileIn {
+  int folder;
+  const char* path;
+};
+
+bool lies_under(const FileIn& file) {
+  const bool is_alone = file.path != nullptr && (file.path[0] == '/' || file.folder == AT_FDCWD);
+  return is_alone ? lies_under(file.path) : lies_under(file.folder);
 }
 
 /// Of a call by name on a file by path or descriptor.
@@ -202,6 +218,23 @@ int open(const char* path, int flags, ...) {
   return open64(path, flags, mode);
 }
 
+int openat64(int folder, const char* path, int flags, ...) {
+  static auto* const real = next<int(int, const char*, int, ...)>("openat64");
+  va_list rest;
+  va_start(rest, flags);
+  const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
+  return fails("open", FileIn{folder, path}) ? -1 : real(folder, path, flags, mode);
+}
+
+int openat(int folder, const char* path, int flags, ...) {
+  va_list rest;
+  va_start(rest, flags);
+  const mode_t mode = (flags & (O_CREAT | O_TMPFILE)) != 0 ? va_arg(rest, mode_t) : 0;
+  va_end(rest);
+  return openat64(folder, path, flags, mode);
+}
+
 FILE* fopen64(const char* path, const char* mode) {
   static auto* const real = next<FILE*(const char*, const char*)>("fopen64");
   return fails("open", path) ? nullptr : real(path, mode);
@@ -222,6 +255,41 @@ int renameat2(int from_folder, const char* from, int to_folder, const char* to, 
 int mkdir(const char* path, mode_t mode) {
   static auto* const real = next<int(const char*, mode_t)>("mkdir");
   return fails("mkdir", path) ? -1 : real(path, mode);
+}
+
+int stat(const char* path, struct ::stat* status) {
+  static auto* const real = next<int(const char*, struct ::stat*)>("stat");
+  return fails("stat", path) ? -1 : real(path, status);
+}
+
+int lstat(const char* path, struct ::stat* status) {
+  static auto* const real = next<int(const char*, struct ::stat*)>("lstat");
+  return fails("stat", path) ? -1 : real(path, status);
+}
+
+int fstat(int descriptor, struct ::stat* status) {
+  static auto* const real = next<int(int, struct ::stat*)>("fstat");
+  return fails("stat", descriptor) ? -1 : real(descriptor, status);
+}
+
+int statx(int folder, const char* path, int flags, unsigned mask, struct ::statx* status) {
+  static auto* const real = next<int(int, const char*, int, unsigned, struct ::statx*)>("statx");
+  return fails("stat", FileIn{folder, path}) ? -1 : real(folder, path, flags, mask, status);
+}
+
+dirent* readdir(DIR* folder) {
+  static auto* const real = next<dirent*(DIR*)>("readdir");
+  return fails("stat", ::dirfd(folder)) ? nullptr : real(folder);
+}
+
+int unlink(const char* path) {
+  static auto* const real = next<int(const char*)>("unlink");
+  return fails("unlink", path) ? -1 : real(path);
+}
+
+int unlinkat(int folder, const char* path, int flags) {
+  static auto* const real = next<int(int, const char*, int)>("unlinkat");
+  return fails("unlink", FileIn{folder, path}) ? -1 : real(folder, path, flags);
 }
 
 }  // extern "C"

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Lets the machine fail under the program, in every way that it can, and looks at what is left; see docs/robustness.md.
 
-usage: faults.py PROGRAM [--library failing_calls.so] [--parts calls,kills,resume,disk,limits,inputs] [--commands NAME,...]
-                 [--calls open,read,write,fsync,rename,mkdir,malloc] [--places N] [--kills N] [--seed N]
+usage: faults.py PROGRAM [--library failing_calls.so] [--parts calls,kills,resume,vanish,disk,limits,inputs] [--commands NAME,...]
+                 [--calls open,read,write,fsync,rename,mkdir,stat,malloc] [--places N] [--kills N] [--seed N]
 
 --places is how many calls of each kind fail in turn, spread evenly over those that a command makes (0: every one).
 Prints a table; status 1 where anything was not as it must be.
@@ -31,10 +31,12 @@ FAULTS = {
     "fsync": [errno.EIO],
     "rename": [errno.EXDEV],
     "mkdir": [errno.ENOSPC],
+    "stat": [errno.EIO],
     "malloc": [errno.ENOMEM],
 }
 CLONE_NEWNS, MS_REC, MS_PRIVATE, MS_RDONLY, MS_REMOUNT = 0x20000, 0x4000, 0x40000, 1, 32
 ROUGH_STATUSES = (1, 2)
+MOST_SCANS_LOST = 3
 
 
 class Findings:
@@ -116,7 +118,7 @@ def calls(work, command, findings, options):
                 what = f"{call} {number} of {count}, {errno.errorcode.get(error, 'one byte')}"
                 outcome = work.run(command, fault)
                 harmless = error in (errno.EINTR, 0)  # to be tried again
-                wrong = judge(work, command, outcome, must_name=call != "malloc", may_leave=call == "malloc")
+                wrong = judge(work, command, outcome, must_name=call != "malloc", may_leave=call in ("malloc", "stat"))
                 if harmless and outcome.status != 0:
                     wrong = f"status {outcome.status}: {outcome.text.strip()[-200:]}"
                 findings.note(call, command.name, what, wrong)
@@ -295,14 +297,37 @@ def inputs(work, command, findings, options):
             outcome = argparse.Namespace(status=child.returncode, text=text)
             # Read before it was damaged, or found to be damaged; files of the result that name the input differ.
             wrong = "" if outcome.status == 0 or command.grows and outcome.status == 1 else judge(work, moved, outcome)
-            if outcome.status == 3:  # most scans lost, as it says
+            if outcome.status == MOST_SCANS_LOST:  # as it says
                 wrong = ""
             findings.note("inputs", command.name, damage, wrong)
             remove(source)
             work.clear()
 
 
-PARTS = {"calls": calls, "kills": kills, "resume": resume, "disk": disk, "limits": limits, "inputs": inputs}
+def vanish(work, command, findings, options):
+    """A network folder, of the input or of the result, goes away at any moment: no call on anything in it works any more."""
+    report = work.folder / "report"
+    inputs = next((word for word in command.words if isinstance(word, Path)), None)
+    for what, folder in (("input", inputs), ("result", work.place if command.result else None)):
+        if folder is None:
+            continue
+        report.unlink(missing_ok=True)
+        common = {"LD_PRELOAD": str(options.library), "FAULT_REPORT": str(report), "FAULT_CALL": "file", "FAULT_UNDER": str(folder)}
+        work.run(command, common | {"FAULT_NUMBER": "0"})
+        work.clear()
+        count = max(map(int, report.read_text().split()), default=0)
+        for number in range(1, count + 1, max(1, count // options.places) if options.places else 1):
+            outcome = work.run(command, common | {"FAULT_NUMBER": str(number), "FAULT_ERROR": str(errno.ESTALE), "FAULT_LASTS": "1"})
+            wrong = "" if outcome.status == MOST_SCANS_LOST else judge(work, command, outcome, may_leave=what == "result")
+            if not wrong and what == "result":  # back again, and the next command clears up
+                outcome = work.run(command)
+                wrong = outcome.text if outcome.status else work.differs(command)
+                wrong = wrong or (f"left {left}" if (left := work.leftovers(command)) else "")
+            findings.note("vanish", command.name, f"{what}, call {number} of {count}", wrong)
+            work.clear()
+
+
+PARTS = {"calls": calls, "kills": kills, "resume": resume, "vanish": vanish, "disk": disk, "limits": limits, "inputs": inputs}
 
 
 def main():
@@ -320,8 +345,8 @@ def main():
     for name, words, known in (("--parts", parts, PARTS), ("--calls", options.calls.split(","), FAULTS)):
         if unknown := [word for word in words if word not in known]:
             parser.error(f"{name}: unknown {unknown[0]!r}, expected some of {','.join(known)}")
-    if "calls" in parts and not options.library:
-        parser.error("part calls needs --library")
+    if needy := {"calls", "vanish"} & set(parts) if not options.library else set():
+        parser.error(f"part {min(needy)} needs --library")
     signal.signal(signal.SIGXFSZ, signal.SIG_DFL)  # Python ignores it, and children inherit that
 
     findings = Findings()

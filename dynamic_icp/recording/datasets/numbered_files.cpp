@@ -10,6 +10,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/folder_entries.hpp"
 
 namespace dynamic_icp::datasets {
 namespace {
@@ -206,19 +207,14 @@ OrderedNames order_names(std::vector<fs::path> files) {
 }
 
 std::vector<fs::path> files_ending_with(const fs::path& folder, std::string_view ending) {
-  std::error_code fault;
   std::vector<fs::path> numbered;
   std::vector<fs::path> others;
-  for (fs::directory_iterator entry(folder, fault); !fault && entry != fs::directory_iterator();
-       entry.increment(fault)) {
-    const fs::path& path = entry->path();
+  for (const fs::directory_entry& entry : formats::entries_in(folder)) {
+    const fs::path& path = entry.path();
     const std::string name = path.filename().string();
     if (name.ends_with(ending) && name.front() != '.') {
       (last_digits(path.stem().string()).empty() ? others : numbered).push_back(path);
     }
-  }
-  if (fault) {
-    throw DataError(fmt::format("{}: cannot read the folder: {}", folder.string(), fault.message()));
   }
   return numbered.empty() ? others : numbered;
 }

@@ -13,6 +13,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/folder_entries.hpp"
 #include "dynamic_icp/recording/formats/path_lock.hpp"
 #include "dynamic_icp/recording/formats/staged_names.hpp"
 
@@ -57,7 +58,7 @@ bool try_exchange(const fs::path& staging, const fs::path& target, const FolderC
 /// them, before or after the others.
 void move_entries(const fs::path& from, const fs::path& to, const std::string& first, const std::string& last) {
   std::vector<std::string> names;
-  for (const fs::directory_entry& entry : fs::directory_iterator(from)) {
+  for (const fs::directory_entry& entry : entries_in(from)) {
     if (const std::string name = entry.path().filename().string(); !is_staged_within(name)) {
       names.push_back(name);
     }

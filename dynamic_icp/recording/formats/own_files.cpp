@@ -14,6 +14,7 @@
 #include <unistd.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/folder_entries.hpp"
 
 namespace dynamic_icp::formats {
 namespace {
@@ -37,7 +38,17 @@ class OwnerCheck {
  public:
   explicit OwnerCheck(const fs::path& folder) : folder_(folder) {}
 
-  /// Whether an entry is a folder; throws where it is not one's own.
+  /// Throws where an entry, or one below, is not one's own.
+  void check_all(const fs::path& path) {
+    if (check(path)) {
+      for (const fs::directory_entry& entry : entries_in(path)) {
+        check_all(entry.path());
+      }
+    }
+  }
+
+ private:
+  /// Whether an entry is a folder.
   bool check(const fs::path& path) {
     struct stat status = {};
     if (::lstat(path.c_str(), &status) != 0) {
@@ -54,7 +65,6 @@ class OwnerCheck {
     return is_folder;
   }
 
- private:
   uid_t owner_of_new() {
     owner_of_new_ = owner_of_new_ ? *owner_of_new_ : owner_of_new_file(folder_);
     return *owner_of_new_;
@@ -66,14 +76,6 @@ class OwnerCheck {
 
 }  // namespace
 
-void refuse_foreign_files(const fs::path& path, const fs::path& folder) {
-  OwnerCheck owner(folder);
-  if (!owner.check(path)) {
-    return;
-  }
-  for (fs::recursive_directory_iterator entry(path); entry != fs::recursive_directory_iterator(); ++entry) {
-    owner.check(entry->path());
-  }
-}
+void refuse_foreign_files(const fs::path& path, const fs::path& folder) { OwnerCheck(folder).check_all(path); }
 
 }  // namespace dynamic_icp::formats

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <chrono>
+#include <cstring>
 #include <thread>
 
 #include <fcntl.h>
@@ -50,10 +51,18 @@ PathLock::PathLock(const std::filesystem::path& path, Wait wait, Kind kind) : de
 }
 
 bool PathLock::is_of(const std::filesystem::path& path) const {
+  if (!held()) {
+    return false;
+  }
   struct stat own = {};
   struct stat there = {};
-  return held() && ::fstat(descriptor_, &own) == 0 && ::stat(path.c_str(), &there) == 0 && own.st_dev == there.st_dev &&
-         own.st_ino == there.st_ino;
+  if (::fstat(descriptor_, &own) == 0 && ::stat(path.c_str(), &there) == 0) {
+    return own.st_dev == there.st_dev && own.st_ino == there.st_ino;
+  }
+  if (errno == ENOENT || errno == ENOTDIR) {
+    return false;
+  }
+  throw DataError(fmt::format("{}: cannot read: {}", path.string(), std::strerror(errno)));
 }
 
 void PathLock::release() {

@@ -24,7 +24,7 @@ class PathLock {
   /// Another one holds it.
   [[nodiscard]] bool taken() const { return taken_; }
 
-  /// Whether what was locked still has this name.
+  /// Whether what was locked still has this name. Throws DataError where that cannot be known.
   [[nodiscard]] bool is_of(const std::filesystem::path& path) const;
 
   void release();

@@ -7,6 +7,7 @@
 #include <fmt/format.h>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/folder_entries.hpp"
 #include "dynamic_icp/recording/formats/staged_names.hpp"
 
 namespace dynamic_icp::formats {
@@ -49,6 +50,25 @@ bool is_part(const fs::directory_entry& entry, const std::string& name, const st
   });
 }
 
+/// Looks into the folders that results have, and no others.
+std::optional<fs::path> foreign_below(const fs::path& folder, const fs::path& result,
+                                      const std::vector<std::string>& patterns) {
+  for (const fs::directory_entry& entry : entries_in(folder)) {
+    if (folder == result && is_staged_within(entry.path().filename().string())) {
+      continue;
+    }
+    if (!is_part(entry, entry.path().lexically_relative(result).generic_string(), patterns)) {
+      return entry.path();
+    }
+    if (entry.symlink_status().type() == fs::file_type::directory) {
+      if (const auto foreign = foreign_below(entry.path(), result, patterns)) {
+        return foreign;
+      }
+    }
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 bool matches(std::string_view name, std::string_view pattern) {
@@ -56,19 +76,11 @@ bool matches(std::string_view name, std::string_view pattern) {
 }
 
 std::optional<fs::path> foreign_entry(const fs::path& folder, const ResultKind& kind) {
-  const std::vector<std::string> patterns = kind.files(folder);
   try {
-    for (fs::recursive_directory_iterator entry(folder); entry != fs::recursive_directory_iterator(); ++entry) {
-      if (entry.depth() == 0 && is_staged_within(entry->path().filename().string())) {
-        entry.disable_recursion_pending();
-      } else if (!is_part(*entry, entry->path().lexically_relative(folder).generic_string(), patterns)) {
-        return entry->path();
-      }
-    }
+    return foreign_below(folder, folder, kind.files(folder));
   } catch (const fs::filesystem_error& error) {
     throw DataError(fmt::format("{}: cannot read: {}", error.path1().string(), error.code().message()));
   }
-  return std::nullopt;
 }
 
 }  // namespace dynamic_icp::formats

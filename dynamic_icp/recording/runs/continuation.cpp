@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "dynamic_icp/method/base/error.hpp"
+#include "dynamic_icp/recording/formats/folder_entries.hpp"
 #include "dynamic_icp/recording/formats/own_files.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 #include "dynamic_icp/recording/runs/scan_record.hpp"
@@ -29,7 +30,7 @@ constexpr std::array<std::string_view, 5> kWrittenAlong = {"frames.jsonl", "obje
 template <class Keep>
 void remove_all_but(const fs::path& folder, const Keep& keep) {
   std::vector<fs::path> others;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder)) {
+  for (const fs::directory_entry& entry : formats::entries_in(folder)) {
     if (std::find(keep.begin(), keep.end(), entry.path().filename().string()) == keep.end()) {
       others.push_back(entry.path());
     }

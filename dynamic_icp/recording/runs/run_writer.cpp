@@ -12,6 +12,7 @@
 #include "dynamic_icp/method/odometry/scan_stream.hpp"
 #include "dynamic_icp/recording/evaluation/statistics.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/folder_entries.hpp"
 #include "dynamic_icp/recording/formats/tum.hpp"
 #include "dynamic_icp/recording/runs/frame_json.hpp"
 #include "dynamic_icp/recording/runs/lost_scans.hpp"
@@ -163,7 +164,7 @@ void RunWriter::check_labels(std::size_t next) const {
     }
   }
   std::vector<std::filesystem::path> later;
-  for (const auto& entry : std::filesystem::directory_iterator(folder_ / "labels")) {
+  for (const auto& entry : formats::entries_in(folder_ / "labels")) {
     const auto number = parse_number<std::size_t>(entry.path().stem().string());
     if (!number || *number > next) {
       later.push_back(entry.path());

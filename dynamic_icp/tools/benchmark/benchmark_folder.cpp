@@ -10,6 +10,7 @@
 
 #include "dynamic_icp/method/base/error.hpp"
 #include "dynamic_icp/recording/formats/binary_file.hpp"
+#include "dynamic_icp/recording/formats/folder_entries.hpp"
 #include "dynamic_icp/recording/formats/whole_file.hpp"
 
 namespace dynamic_icp::benchmark {
@@ -99,8 +100,8 @@ std::string without_control_characters(std::string_view text) {
 }
 
 void remove_partial_files(const fs::path& folder) {
-  std::error_code fault;
-  for (const fs::directory_entry& entry : fs::directory_iterator(folder, fault)) {
+  for (const fs::directory_entry& entry : formats::entries_in(folder)) {
+    std::error_code fault;
     if (entry.path().filename().string().find(".partial-") != std::string::npos && entry.is_regular_file(fault)) {
       fs::remove(entry.path(), fault);
     }
