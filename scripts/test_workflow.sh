@@ -69,14 +69,12 @@ if [[ ${2:-} == quiet-machine ]]; then
     flow "$work/speed-$cores" --profile "$local_profile" --cores $cores > "$work/speed.log" 2>&1
     say "workers: $cores, $(echo "$(date +%s.%N) - $start" | bc) s"
   done
-  # What the machine itself allows: one run alone, and two that know nothing of each other.
-  alone() { "$program" run "$work/data/street-1" --threads 1 --quiet --output "$work/alone-$1" > /dev/null; }
+  # A processor is slower while the other one works, too. On equal processors: one worker, beside another benchmark of one worker.
   start=$(date +%s.%N)
-  alone 1
-  one=$(echo "$(date +%s.%N) - $start" | bc)
-  start=$(date +%s.%N)
-  alone 2 & alone 3 & wait
-  say "one run alone takes $one s, two at once $(echo "$(date +%s.%N) - $start" | bc) s"
+  flow "$work/speed-beside" --profile "$local_profile" --cores 1 --directory "$work/beside" > "$work/beside.log" 2>&1 &
+  flow "$work/speed-equal" --profile "$local_profile" --cores 1 > "$work/speed.log" 2>&1
+  say "workers: 1, while another benchmark uses the other processor, $(echo "$(date +%s.%N) - $start" | bc) s"
+  wait
 fi
 
 # --- Slurm, one node lost half-way -----------------------------------------------------------------------------------
