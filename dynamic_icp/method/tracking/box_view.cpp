@@ -49,6 +49,18 @@ constexpr double kBeltLine_m = 0.9;     // of cars: above it are windows, which 
 constexpr double kBoot_m = 0.4;         // ... and beyond them so much of boots in the mean
 constexpr double kCabinHeight_m = 2.0;  // ... and lorries below this one
 
+/// The body whose ends are asked for.
+struct Body {
+  const Matrix3d& axes;
+  const Vector3d& reference;
+  const Vector3d& W;
+  const Detection& detection;
+  Vector3d sensor;        ///< m, along the axes from the reference
+  double ground_m = 0.0;  ///< of the ground, up from the reference ...
+  double top_m = 0.0;     ///< ... of what is seen ...
+  double height_m = 0.0;  ///< ... and how high the body is above the ground in all likelihood
+};
+
 /// How far above and below an end, m, it is asked what comes next.
 struct LookBeside {
   double lower = 0.0;
@@ -58,7 +70,8 @@ struct LookBeside {
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there, below and above.
 /// `shows_face`: what is seen there is a face rather than the edge of a side.
 bool is_true_end(const EndView& end, const Vector3d& outward, const LookBeside& beside, bool shows_face,
-                 const Vector3d& W, const Detection& detection) {
+                 const Body& body) {
+  const Detection& detection = body.detection;
   const Vector3d to_end = end.middle - detection.sensor;
   const double range = to_end.norm();
   const Vector3d sight = to_end / range;
@@ -67,8 +80,8 @@ bool is_true_end(const EndView& end, const Vector3d& outward, const LookBeside& 
     return outward.dot(sight) < 0.0;  // the near end of what is seen end-on; the body hides the far one
   }
   // Points of the body that hardly move along the line of sight are missing among the moving ones.
-  const double here = sight.dot(W);
-  const double next = (to_end + kDimReach_m * outward).normalized().dot(W);
+  const double here = sight.dot(body.W);
+  const double next = (to_end + kDimReach_m * outward).normalized().dot(body.W);
   const bool fades = std::abs(next) < std::min(kFadingSpeed_mps, kFading * std::abs(here));
   const bool is_dim = std::min(std::abs(here), std::abs(next)) < kDimSpeed_mps || here * next < 0.0 || fades;
   if (detection.view == nullptr) {
@@ -212,8 +225,9 @@ AxisView view_along(std::span<const double> along, std::span<const double> acros
 /// that face is along the other axis.
 bool is_seen_past(const AxisView& view, double outward, std::span<const double> along, double sensor_along, double near,
                   std::span<const double> away, double sensor_away) {
+  const EndView& face_end = outward > 0.0 ? view.high : view.low;
   const double end = outward > 0.0 ? view.seen.high : -view.seen.low;
-  if (outward * sensor_along <= end) {
+  if (face_end.has_points_beyond || face_end.is_of_few || outward * sensor_along <= end) {
     return false;
   }
   std::size_t count = 0;
@@ -230,6 +244,40 @@ bool is_seen_past(const AxisView& view, double outward, std::span<const double> 
   return count >= kMinPast && side.length() > kSideAway_m;
 }
 
+/// Whether a body ends at `end`, which is how far it is seen along one of its axes; where its upper part does alone,
+/// `end.hidden` says how much farther it may go on below.
+bool is_end(EndView& end, const Vector3d& outward, const Body& body) {
+  if (end.has_points_beyond || end.is_of_few) {
+    return false;
+  }
+  const double facing = outward.dot((body.detection.sensor - end.middle).normalized());
+  const bool is_flat =
+      end.depth < kFlatDepth_m && end.width > kMinFlat_m && facing * end.width > kFlatWidth * end.depth;
+  const bool is_along = std::abs(outward.dot(body.axes.col(0))) > 0.5;
+  const bool is_car = body.height_m < kCarHeight_m;
+  if ((is_flat && facing > kFlatFacing) || (end.width > kFaceWidth_m && facing > kLooksAtSensor)) {
+    const bool is_window = !is_flat && is_car && is_along && end.lowest > body.ground_m + kBeltLine_m;
+    end.hidden = is_window ? kBoot_m : 0.0;  // over something nearer
+    return !is_window;
+  }
+  const double at = body.axes.col(2).dot(end.middle - body.reference);
+  const auto is_end_down_to = [&](double height_m) {
+    return is_true_end(end, outward, {at - height_m, kUpperPart * (body.top_m - at)}, end.width > kEndDepth_m, body);
+  };
+  if (!is_end_down_to(body.top_m)) {
+    return false;
+  }
+  const bool is_lorry = body.height_m > kVanHeight_m;
+  // Vans and lorries are boxes but for their fronts.
+  const bool is_box = !is_car && outward.dot(body.axes.col(0)) < 0.5;
+  // Over something nearer often the cabin of a car is seen, and neither its hood nor its boot.
+  if (is_box || is_end_down_to(body.ground_m + (is_lorry ? kCabinHeight_m : kHood_m))) {
+    return true;
+  }
+  end.hidden = is_lorry ? kCabin_m : is_along ? kVanHood_m : kSlope_m;
+  return false;
+}
+
 }  // namespace
 
 std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& reference, std::span<const Vector3d> points,
@@ -240,77 +288,45 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   const PlacesAlong along{part(0), part(1), part(2)};
   find_places_along(axes, reference, points, along);
   std::array<AxisView, 3> views;
-  std::array<bool, 2> faces_sensor{};
-  const Vector3d sensor = axes.transpose() * (detection.sensor - reference);
+  Body body{axes, reference, W, detection, axes.transpose() * (detection.sensor - reference)};
+  const Vector3d& sensor = body.sensor;
   views[2] = view_along(along[2], along[1], along[2], sensor.y(), points);
-  // Over something nearer often the cabin of a car is seen, and neither its hood nor its boot.
-  const double ground =
-      detection.ground.offset_m ? *detection.ground.offset_m - axes.col(2).dot(reference) : views[2].seen.low;
-  EndView& top = views[2].high;
   const Vector3d up = axes.col(2);
+  EndView& top = views[2].high;
   top.is_cut = is_cut_above(top.middle + top.inside * up, up, detection);
-  const double seen_m = views[2].seen.high - ground;
-  const double height = top_m ? *top_m - ground : top.is_cut ? height_beyond(seen_m).mean : seen_m;
-  const auto is_end = [&](EndView& end, const Vector3d& outward) {
-    if (end.has_points_beyond || end.is_of_few) {
-      return false;
-    }
-    const double facing = outward.dot((detection.sensor - end.middle).normalized());
-    const bool is_flat =
-        end.depth < kFlatDepth_m && end.width > kMinFlat_m && facing * end.width > kFlatWidth * end.depth;
-    const bool is_along = std::abs(outward.dot(axes.col(0))) > 0.5;
-    const bool is_car = height < kCarHeight_m;
-    if ((is_flat && facing > kFlatFacing) || (end.width > kFaceWidth_m && facing > kLooksAtSensor)) {
-      if (!is_flat && is_car && is_along && end.lowest > ground + kBeltLine_m) {
-        end.hidden = kBoot_m;  // a window, over something nearer
-        return false;
-      }
-      return true;
-    }
-    const double at = axes.col(2).dot(end.middle - reference);
-    const auto is_end_down_to = [&](double height_m) {
-      return is_true_end(end, outward, {at - height_m, kUpperPart * (views[2].seen.high - at)}, end.width > kEndDepth_m,
-                         W, detection);
-    };
-    if (!is_end_down_to(views[2].seen.high)) {
-      return false;
-    }
-    const bool is_lorry = height > kVanHeight_m;
-    // Vans and lorries are boxes but for their fronts.
-    const bool is_box = !is_car && outward.dot(axes.col(0)) < 0.5;
-    if (is_box || is_end_down_to(ground + (is_lorry ? kCabinHeight_m : kHood_m))) {
-      return true;
-    }
-    end.hidden = is_lorry ? kCabin_m : is_along ? kVanHood_m : kSlope_m;
-    return false;
-  };
+  body.ground_m = detection.ground.offset_m ? *detection.ground.offset_m - up.dot(reference) : views[2].seen.low;
+  body.top_m = views[2].seen.high;
+  const double seen_m = body.top_m - body.ground_m;
+  body.height_m = top_m ? *top_m - body.ground_m : top.is_cut ? height_beyond(seen_m).mean : seen_m;
+  // What is below bodies is hidden by them.
+  top.is_true = !top.is_cut && is_true_end(top, up, {}, true, body);
+
+  std::array<bool, 2> faces_sensor{};
   for (const int axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);
     AxisView& view = views[k] = view_along(along[k], along[1 - k], along[2], sensor[1 - axis], points);
     const double grazing = kGrazing * sensor.norm();
-    view.high.is_true = sensor[axis] > view.seen.high && is_end(view.high, axes.col(axis));
-    view.low.is_true = sensor[axis] < view.seen.low && is_end(view.low, -axes.col(axis));
+    view.high.is_true = sensor[axis] > view.seen.high && is_end(view.high, axes.col(axis), body);
+    view.low.is_true = sensor[axis] < view.seen.low && is_end(view.low, -axes.col(axis), body);
     faces_sensor[k] = (view.high.is_true && sensor[axis] > view.seen.high + grazing) ||
                       (view.low.is_true && sensor[axis] < view.seen.low - grazing);
   }
   for (const int axis : {0, 1}) {
     AxisView& view = views[static_cast<std::size_t>(axis)];
     if (faces_sensor[static_cast<std::size_t>(1 - axis)]) {
-      view.high.is_true = view.high.is_true || is_end(view.high, axes.col(axis));
-      view.low.is_true = view.low.is_true || is_end(view.low, -axes.col(axis));
+      view.high.is_true = view.high.is_true || is_end(view.high, axes.col(axis), body);
+      view.low.is_true = view.low.is_true || is_end(view.low, -axes.col(axis), body);
     }
   }
   if (const Interval& seen = views[0].seen; sensor.x() < seen.low || sensor.x() > seen.high) {
     const double near = sensor.x() < seen.low ? seen.low : seen.high;
-    for (EndView* end : {&views[1].low, &views[1].high}) {
-      const double outward = end == &views[1].high ? 1.0 : -1.0;
-      end->is_true =
-          end->is_true || (!end->has_points_beyond && !end->is_of_few &&
-                           is_seen_past(views[1], outward, along[1], sensor.y(), near, along[0], sensor.x()));
-    }
+    AxisView& across = views[1];
+    const auto is_passed = [&](double outward) {
+      return is_seen_past(across, outward, along[1], sensor.y(), near, along[0], sensor.x());
+    };
+    across.high.is_true = across.high.is_true || is_passed(1.0);
+    across.low.is_true = across.low.is_true || is_passed(-1.0);
   }
-  // What is below bodies is hidden by them.
-  top.is_true = !top.is_cut && is_true_end(top, up, {}, true, W, detection);
   return views;
 }
 
