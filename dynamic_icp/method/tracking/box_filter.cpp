@@ -115,17 +115,15 @@ bool BoxFilter::is_fast_for_sure() const {
   const double speed = body_.velocity().norm();
   const Vector3d ahead = body_.velocity().normalized();
   const double sigma = std::sqrt(ahead.dot(body_.velocity_covariance_at(Vector3d::Zero()) * ahead));
-  return !is_person_like(0.0, 0.0, speed - kSureSigmas * sigma);
+  return !is_walking_speed(speed - kSureSigmas * sigma);
 }
 
 /// Of what is hidden on all sides there may be any amount more.
 bool BoxFilter::is_as_large_as_person() const {
-  return !was_vehicle_ && (is_whole(0) || is_whole(1)) && is_person_like(std::max(span(0), span(1)), span(2), 0.0);
+  return !was_vehicle_ && (is_whole(0) || is_whole(1)) && is_person_sized(std::max(span(0), span(1)), span(2));
 }
 
-bool BoxFilter::may_be_person() const {
-  return is_as_large_as_person() && is_person_like(0.0, 0.0, body_.velocity().norm());
-}
+bool BoxFilter::may_be_person() const { return is_as_large_as_person() && is_walking_speed(body_.velocity().norm()); }
 
 void BoxFilter::correct_doppler(const Detection& detection, const TrackConfig& config) {
   const ClusterVelocity measured = motion_of(detection, body_.yaw_rate(), config.doppler_sigma_mps);

@@ -60,8 +60,10 @@ Belief height_beyond(double seen_m) {
   return {seen_m + 0.5 * more, more * more / 12.0};
 }
 
-bool is_person_like(double longest_side_m, double height_m, double speed_mps) {
-  return longest_side_m < kPersonSide_m && height_m < kPersonHeight_m && speed_mps < kPersonSpeed_mps;
+bool is_person_sized(double longest_side_m, double height_m) {
+  return longest_side_m < kPersonSide_m && height_m < kPersonHeight_m;
 }
+
+bool is_walking_speed(double speed_mps) { return speed_mps < kPersonSpeed_mps; }
 
 }  // namespace dynamic_icp::tracking

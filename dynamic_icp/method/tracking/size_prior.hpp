@@ -16,7 +16,7 @@ Belief at_least(const Belief& belief, double least);
 
 // Road users from bicycles to trailers, whatever they are called: curves through the mean sizes of the classes of
 // KITTI, nuScenes, ONCE, Lyft and Waymo, and of cars and vans as their makers state them. People do not lie near them,
-// nor do animals: see is_person_like.
+// nor do animals: see is_person_sized.
 
 /// The length of what is so wide and high: 2.4 m (width / m)^0.9 exp(0.35 ln^2(height / m)), by least squares of the
 /// logarithms. What is lower than 1 m counts as so high.
@@ -38,7 +38,9 @@ Belief typical_width_by_height(double height_m);
 /// anywhere from there up to the 4 m that roads allow.
 Belief height_beyond(double seen_m);
 
-/// Whether what is seen of a body is as small as a person and as slow: nothing suggests that there is more of it.
-bool is_person_like(double longest_side_m, double height_m, double speed_mps);
+/// Whether what is seen of a body is as small as a person, and whether it is as slow: if both, nothing suggests that
+/// there is more of it.
+bool is_person_sized(double longest_side_m, double height_m);
+bool is_walking_speed(double speed_mps);
 
 }  // namespace dynamic_icp::tracking

@@ -161,11 +161,12 @@ TEST(SizePrior, FarBelowTheBeliefTheBoundSaysNothing) {
 }
 
 TEST(SizePrior, OnlySmallAndSlowBodiesAreLikePeople) {
-  EXPECT_TRUE(is_person_like(0.8, 1.8, 1.5));
-  EXPECT_FALSE(is_person_like(0.8, 1.8, 7.0)) << "a part of something faster";
-  EXPECT_FALSE(is_person_like(0.8, 3.0, 1.5)) << "a strip of a lorry";
-  EXPECT_FALSE(is_person_like(1.8, 1.8, 1.5)) << "a bicycle";
-  EXPECT_FALSE(is_person_like(4.0, 1.5, 0.5)) << "a car in a jam";
+  EXPECT_TRUE(is_person_sized(0.8, 1.8));
+  EXPECT_FALSE(is_person_sized(0.8, 3.0)) << "a strip of a lorry";
+  EXPECT_FALSE(is_person_sized(1.8, 1.8)) << "a bicycle";
+  EXPECT_FALSE(is_person_sized(4.0, 1.5)) << "a car in a jam";
+  EXPECT_TRUE(is_walking_speed(1.5));
+  EXPECT_FALSE(is_walking_speed(7.0)) << "a part of something faster";
 }
 
 }  // namespace

@@ -74,7 +74,7 @@ void Track::begin(const Detection& detection, double stamp_s, const TrackConfig&
 std::optional<double> Track::heading_of_motion() const {
   const Eigen::Vector3d v = body().level().transpose() * body().velocity();
   const double speed = v.head<2>().norm();
-  if (is_person_like(0.0, 0.0, speed)) {
+  if (is_walking_speed(speed)) {
     return std::nullopt;
   }
   const Eigen::Vector3d across = body().level() * Eigen::Vector3d(-v.y(), v.x(), 0.0) / speed;
