@@ -64,17 +64,17 @@ say "killed (SIGKILL) with $before cells done; the second start ran $(grep -c '^
 compare_tables "$work/local" "two at a time on this machine, killed and started again"
 
 if [[ ${2:-} == quiet-machine ]]; then
-  for cores in 1 2; do
+  # A processor is slower while the other one works, too. On equal processors: one worker, beside another benchmark of one.
+  for round in 1 2 3; do
     start=$(date +%s.%N)
-    flow "$work/speed-$cores" --profile "$local_profile" --cores $cores > "$work/speed.log" 2>&1
-    say "workers: $cores, $(echo "$(date +%s.%N) - $start" | bc) s"
+    flow "$work/beside-$round" --profile "$local_profile" --cores 1 --directory "$work/beside" > "$work/beside.log" 2>&1 &
+    flow "$work/one-$round" --profile "$local_profile" --cores 1 > "$work/speed.log" 2>&1
+    one=$(echo "$(date +%s.%N) - $start" | bc)
+    wait
+    start=$(date +%s.%N)
+    flow "$work/two-$round" --profile "$local_profile" --cores 2 > "$work/speed.log" 2>&1
+    say "one worker beside another benchmark: $one s, two workers: $(echo "$(date +%s.%N) - $start" | bc) s"
   done
-  # A processor is slower while the other one works, too. On equal processors: one worker, beside another benchmark of one worker.
-  start=$(date +%s.%N)
-  flow "$work/speed-beside" --profile "$local_profile" --cores 1 --directory "$work/beside" > "$work/beside.log" 2>&1 &
-  flow "$work/speed-equal" --profile "$local_profile" --cores 1 > "$work/speed.log" 2>&1
-  say "workers: 1, while another benchmark uses the other processor, $(echo "$(date +%s.%N) - $start" | bc) s"
-  wait
 fi
 
 # --- Slurm, one node lost half-way -----------------------------------------------------------------------------------
