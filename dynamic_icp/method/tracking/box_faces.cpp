@@ -212,6 +212,16 @@ void BoxFilter::correct_middle(int axis, const Interval& seen) {
   log_likelihood_ += body_.correct_position(axis, reference, sigma * sigma);
 }
 
+void BoxFilter::include(const OrientedBox& part) {
+  for (const Face face : {Face::kFront, Face::kRear}) {
+    const Vector3d outward = side_of(face) * body_.axes().col(0);
+    const double half = 0.5 * (part.axes.transpose() * outward).cwiseAbs().dot(part.size);
+    if (has_heading_ && !is_known(face)) {
+      least_[index_of(face)] = std::max(least_[index_of(face)], outward.dot(part.centre - body_.position()) + half);
+    }
+  }
+}
+
 void BoxFilter::end_at(const Vector3d& along, double place_m) {
   const double cosine = along.dot(body_.axes().col(0));
   if (has_heading_ && std::abs(cosine) > std::numbers::sqrt2 / 2.0) {

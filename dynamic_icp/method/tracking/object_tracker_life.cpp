@@ -157,9 +157,17 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
     });
     if (same == kept.end()) {
       keep(entry);
-    } else if (entry.members.size() > same->members.size()) {
+      continue;
+    }
+    if (entry.members.size() > same->members.size()) {
       entry.take_name_of(*same);
       std::swap(*same, entry);
+    }
+    if (!entry.members.empty()) {
+      entry.track.predict(same->track.time_s(), config_.track);
+      same->track.include(entry.track.best().seen_box());
+      same->predicted_s.reset();
+      same->predict(input.stamp_s, sizes_, config_.track);
     }
   }
 }

@@ -212,5 +212,24 @@ TEST(ObjectTrackerView, PointsThatSeemToMoveAmongMoreThatStandAreNoObject) {
   }
 }
 
+TEST(ObjectTrackerView, WhatComesHeadOnIsAsLongAsTheEndOfItsSideSays) {
+  // A tractor with its trailer, of whose side the sensor sees single columns of points, far apart.
+  const Traffic traffic = [](double t) {
+    const double front = 34.0 - 5.0 * t;
+    const Eigen::Matrix3d axes = upright_axes(std::numbers::pi);
+    const Vector3d velocity(-5.0, 0.0, 0.0);
+    return std::vector<MovingBox>{{{{front + 1.2, 6.0, 0.3}, axes, {2.4, 2.5, 3.6}}, velocity, 0.0},
+                                  {{{front + 9.8, 6.0, 0.9}, axes, {13.6, 2.5, 3.2}}, velocity, 0.0}};
+  };
+  ObjectTracker tracker{TrackerConfig{}};
+  Objects objects;
+  for (int k = 0; k < 5; ++k) {
+    objects = confirmed(step(tracker, view_of(traffic, k * kScanPeriod_s, {})));
+    ASSERT_EQ(objects.size(), 1u) << "scan " << k;
+    EXPECT_EQ(objects[0].id, 1) << "scan " << k;
+  }
+  EXPECT_NEAR(objects[0].box.size.x(), 16.6, 1.5);
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

@@ -152,6 +152,12 @@ void Track::end_at(const Eigen::Vector3d& along, double place_m) {
   }
 }
 
+void Track::include(const OrientedBox& part) {
+  for (BoxFilter& hypothesis : hypotheses_) {
+    hypothesis.include(part);
+  }
+}
+
 void Track::correct(const Detection& detection, double stamp_s, const TrackConfig& config) {
   predict(stamp_s + detection.mean_time_s, config);
   for (BoxFilter& hypothesis : hypotheses_) {

@@ -50,6 +50,9 @@ class Track {
   /// Says that the body, whose heading is along the direction (unit, world), ends in it about at along . x = place_m.
   void end_at(const Eigen::Vector3d& along, double place_m);
 
+  /// Says that another box is a part of the body.
+  void include(const OrientedBox& part);
+
   /// Takes in another detection; the state is then that of its mean time.
   void correct(const Detection& detection, double stamp_s, const TrackConfig& config);
 

@@ -1,0 +1,65 @@
+// Copyright (c) 2026 The Dynamic-ICP developers
+// SPDX-License-Identifier: MIT
+#include <gtest/gtest.h>
+
+#include "dynamic_icp/method/tracking/box_filter.hpp"
+
+#include "testing/face_points.hpp"
+
+namespace dynamic_icp::tracking {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr double kRear_m = 30.0;
+
+/// The rear of a lorry that moves away from the sensor.
+Detection rear_of_lorry() {
+  Detection detection;
+  detection.points = testing::face_points({kRear_m, -1.2, -1.0}, {kRear_m, 1.2, 1.5});
+  for (const Vector3d& point : detection.points) {
+    detection.directions.push_back(point.normalized());
+    detection.radial.push_back(detection.directions.back().x() * 12.0);
+    detection.times.push_back(0.0);
+  }
+  return detection;
+}
+
+/// What is seen of something as wide and high between two places ahead of the sensor.
+OrientedBox part(double from_m, double to_m) {
+  return {{0.5 * (from_m + to_m), 0.0, 0.25}, Eigen::Matrix3d::Identity(), {to_m - from_m, 2.4, 2.5}};
+}
+
+double front_of(const OrientedBox& box) { return box.centre.x() + 0.5 * box.size.x(); }
+
+TEST(BoxFaces, ABodyReachesAsFarAsItsParts) {
+  const TrackConfig config;
+  BoxFilter filter(rear_of_lorry(), 0.0, {}, config);
+  ASSERT_LT(front_of(filter.estimate().box), 40.0) << "a lorry of the likely length";
+  filter.include(part(41.0, 44.0));
+  EXPECT_NEAR(front_of(filter.seen_box()), 44.0, 0.01);
+  EXPECT_GE(front_of(filter.estimate().box), 44.0 - 0.01);
+  filter.include(part(35.0, 38.0));
+  EXPECT_NEAR(front_of(filter.seen_box()), 44.0, 0.01) << "shorter parts say nothing";
+}
+
+TEST(BoxFaces, AnEndThatIsSeenIsNotMovedByParts) {
+  const TrackConfig config;
+  BoxFilter filter(rear_of_lorry(), 0.0, {}, config);
+  const OrientedBox before = filter.estimate().box;
+  filter.include(part(26.0, 29.0));
+  const OrientedBox after = filter.estimate().box;
+  EXPECT_NEAR(after.centre.x(), before.centre.x(), 1e-9);
+  EXPECT_NEAR(after.size.x(), before.size.x(), 1e-9);
+}
+
+TEST(BoxFaces, WithoutHeadingABodyHasNoEnds) {
+  const TrackConfig config;
+  BoxFilter filter(rear_of_lorry(), std::nullopt, {}, config);
+  const OrientedBox before = filter.seen_box();
+  filter.include(part(41.0, 44.0));
+  EXPECT_NEAR(filter.seen_box().size.x(), before.size.x(), 1e-9);
+}
+
+}  // namespace
+}  // namespace dynamic_icp::tracking
