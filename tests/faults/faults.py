@@ -99,17 +99,22 @@ def learn(work):
     work.clear()
 
 
+def count_calls(work, command, common):
+    """How many calls of the kind a run without a fault makes; of children of benchmark: the longest."""
+    report = Path(common["FAULT_REPORT"])
+    report.unlink(missing_ok=True)
+    work.run(command, common | {"FAULT_NUMBER": "0"})
+    work.clear()
+    return max(map(int, report.read_text().split()), default=0)
+
+
 def calls(work, command, findings, options):
     """One call of the C library fails: the n-th of its kind, and with a full disk all that follow."""
     report = work.folder / "report"
     common = {"LD_PRELOAD": str(options.library), "FAULT_REPORT": str(report)}
     for call, errors in ((call, FAULTS[call]) for call in options.calls.split(",")):
-        report.unlink(missing_ok=True)
-        # Of children of benchmark: the longest.
         common |= {"FAULT_CALL": call, "FAULT_UNDER": "" if call == "malloc" else str(work.folder)}
-        work.run(command, common | {"FAULT_NUMBER": "0"})
-        work.clear()
-        count = max(map(int, report.read_text().split()), default=0)
+        count = count_calls(work, command, common)
         step = max(1, count // options.places) if options.places else 1
         for error in errors:
             for number in range(1, count + 1, step):
@@ -214,11 +219,8 @@ def resume(work, command, findings, options):
 def resume_after_failing(work, command, findings, options, call, whole):
     """The n-th call and all that follow find no room: the run ends or does without, and goes on when there is room."""
     report = work.folder / "report"
-    report.unlink(missing_ok=True)
     common = {"LD_PRELOAD": str(options.library), "FAULT_REPORT": str(report), "FAULT_CALL": call, "FAULT_UNDER": str(work.folder)}
-    work.run(command, common | {"FAULT_NUMBER": "0"})
-    work.clear()
-    count = max(map(int, report.read_text().split()), default=0)
+    count = count_calls(work, command, common)
     for number in range(1, count + 1, max(1, count // options.places) if options.places else 1):
         outcome = work.run(command, common | {"FAULT_NUMBER": str(number), "FAULT_ERROR": str(errno.ENOSPC), "FAULT_LASTS": "1"})
         wrong = "" if outcome.status in (0, 1) else f"status {outcome.status}"
@@ -311,11 +313,8 @@ def vanish(work, command, findings, options):
     for what, folder in (("input", inputs), ("result", work.place if command.result else None)):
         if folder is None:
             continue
-        report.unlink(missing_ok=True)
         common = {"LD_PRELOAD": str(options.library), "FAULT_REPORT": str(report), "FAULT_CALL": "file", "FAULT_UNDER": str(folder)}
-        work.run(command, common | {"FAULT_NUMBER": "0"})
-        work.clear()
-        count = max(map(int, report.read_text().split()), default=0)
+        count = count_calls(work, command, common)
         for number in range(1, count + 1, max(1, count // options.places) if options.places else 1):
             outcome = work.run(command, common | {"FAULT_NUMBER": str(number), "FAULT_ERROR": str(errno.ESTALE), "FAULT_LASTS": "1"})
             wrong = "" if outcome.status == MOST_SCANS_LOST else judge(work, command, outcome, may_leave=what == "result")
