@@ -212,12 +212,22 @@ void BoxFilter::correct_middle(int axis, const Interval& seen) {
   log_likelihood_ += body_.correct_position(axis, reference, sigma * sigma);
 }
 
-void BoxFilter::include(const OrientedBox& part) {
+void BoxFilter::include(const OrientedBox& part, bool is_splinter) {
   for (const Face face : {Face::kFront, Face::kRear}) {
     const Vector3d outward = side_of(face) * body_.axes().col(0);
     const double half = 0.5 * (part.axes.transpose() * outward).cwiseAbs().dot(part.size);
-    if (has_heading_ && !is_known(face)) {
-      least_[index_of(face)] = std::max(least_[index_of(face)], outward.dot(part.centre - body_.position()) + half);
+    const double end = outward.dot(part.centre - body_.position()) + half;
+    double& least = least_[index_of(face)];
+    if (!has_heading_) {
+      continue;
+    }
+    if (!is_known(face)) {
+      least = std::max(least, end);
+    } else if (!is_splinter &&
+               end - body_.distance(face) > kInside_m + kFalseEndSigmas * std::sqrt(body_.variance(face))) {
+      body_.forget_face(face, kUnknownFace_m * kUnknownFace_m);  // it was no end
+      faces_[index_of(face)] = FaceView::kUnknown;
+      least = end;
     }
   }
 }

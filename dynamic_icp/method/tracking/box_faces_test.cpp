@@ -36,28 +36,37 @@ TEST(BoxFaces, ABodyReachesAsFarAsItsParts) {
   const TrackConfig config;
   BoxFilter filter(rear_of_lorry(), 0.0, {}, config);
   ASSERT_LT(front_of(filter.estimate().box), 40.0) << "a lorry of the likely length";
-  filter.include(part(41.0, 44.0));
+  filter.include(part(41.0, 44.0), false);
   EXPECT_NEAR(front_of(filter.seen_box()), 44.0, 0.01);
   EXPECT_GE(front_of(filter.estimate().box), 44.0 - 0.01);
-  filter.include(part(35.0, 38.0));
+  filter.include(part(35.0, 38.0), false);
   EXPECT_NEAR(front_of(filter.seen_box()), 44.0, 0.01) << "shorter parts say nothing";
 }
 
-TEST(BoxFaces, AnEndThatIsSeenIsNotMovedByParts) {
+TEST(BoxFaces, AnEndThatIsSeenIsNotMovedBySplinters) {
   const TrackConfig config;
   BoxFilter filter(rear_of_lorry(), 0.0, {}, config);
   const OrientedBox before = filter.estimate().box;
-  filter.include(part(26.0, 29.0));
+  filter.include(part(26.0, 28.0), true);
   const OrientedBox after = filter.estimate().box;
   EXPECT_NEAR(after.centre.x(), before.centre.x(), 1e-9);
   EXPECT_NEAR(after.size.x(), before.size.x(), 1e-9);
+}
+
+TEST(BoxFaces, BeyondAnEndThereIsNoLargePart) {
+  const TrackConfig config;
+  BoxFilter filter(rear_of_lorry(), 0.0, {}, config);
+  filter.include(part(26.0, 28.0), false);
+  const BoxEstimate after = filter.estimate();
+  EXPECT_LT(after.box.centre.x() - 0.5 * after.box.size.x(), 26.0 + 0.01) << "it comes into view";
+  EXPECT_EQ(after.faces[index_of(Face::kRear)], FaceView::kUnknown);
 }
 
 TEST(BoxFaces, WithoutHeadingABodyHasNoEnds) {
   const TrackConfig config;
   BoxFilter filter(rear_of_lorry(), std::nullopt, {}, config);
   const OrientedBox before = filter.seen_box();
-  filter.include(part(41.0, 44.0));
+  filter.include(part(41.0, 44.0), false);
   EXPECT_NEAR(filter.seen_box().size.x(), before.size.x(), 1e-9);
 }
 

@@ -81,8 +81,9 @@ class BoxFilter {
   /// Says that the body ends about at along . x = place_m in the direction `along` (unit, world), if it is along it.
   void end_at(const Eigen::Vector3d& along, double place_m);
 
-  /// Says that another box is a part of the body, which reaches so far at least to the front and to the rear.
-  void include(const OrientedBox& part);
+  /// Says that another box is a part of the body, which reaches so far at least to the front and to the rear. What is
+  /// no splinter says so, too, where an end was seen before.
+  void include(const OrientedBox& part, bool is_splinter);
 
   /// Something else speaks for the hypothesis, by this logarithm of a likelihood.
   void credit(double log_likelihood) { log_likelihood_ += log_likelihood; }

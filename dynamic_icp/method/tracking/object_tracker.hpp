@@ -99,6 +99,7 @@ class ObjectTracker {
   void divide_tracks(const TrackingInput& input);
   void divide(const TrackingInput& input, const Joint& joint, TrackRecord& body, TrackRecord& larger,
               TrackRecord& smaller);
+  [[nodiscard]] TrackRecord* same_object(const TrackRecord& entry, const TrackingInput& input);
   void delete_tracks(const TrackingInput& input);
 
   TrackerConfig config_;

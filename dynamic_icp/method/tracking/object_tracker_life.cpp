@@ -142,6 +142,22 @@ void ObjectTracker::divide(const TrackingInput& input, const Joint& joint, Track
   keep(smaller);
 }
 
+/// The living track of the object that another one shows; of several the one beside which that is.
+TrackRecord* ObjectTracker::same_object(const TrackRecord& entry, const TrackingInput& input) {
+  TrackRecord* same = nullptr;
+  for (TrackRecord& older : living()) {
+    if (older.was_divided_from(entry) ||
+        !are_same_object(older.seen_track(), entry.seen_track(), input.view, input.sensor.T_world_sensor, config_)) {
+      continue;
+    }
+    if (gap_between(older.predicted.best().seen_box(), entry.predicted.best().seen_box()).width <= 0.0) {
+      return &older;
+    }
+    same = same == nullptr ? &older : same;
+  }
+  return same;
+}
+
 /// Ends tracks of which nothing is to be expected any more, and makes one of those that share a place.
 void ObjectTracker::delete_tracks(const TrackingInput& input) {
   const std::span<TrackRecord> all = living();
@@ -150,12 +166,8 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
     if (entry.is_over(input.stamp_s, config_)) {
       continue;
     }
-    const std::span<TrackRecord> kept = living();
-    const auto same = std::find_if(kept.begin(), kept.end(), [&](const TrackRecord& older) {
-      return !older.was_divided_from(entry) &&
-             are_same_object(older.seen_track(), entry.seen_track(), input.view, input.sensor.T_world_sensor, config_);
-    });
-    if (same == kept.end()) {
+    TrackRecord* const same = same_object(entry, input);
+    if (same == nullptr) {
       keep(entry);
       continue;
     }
@@ -165,7 +177,7 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
     }
     if (!entry.members.empty()) {
       entry.track.predict(same->track.time_s(), config_.track);
-      same->track.include(entry.track.best().seen_box());
+      same->track.include(entry.track.best().seen_box(), is_splinter(entry.members.size(), same->members.size()));
       same->predicted_s.reset();
       same->predict(input.stamp_s, sizes_, config_.track);
     }

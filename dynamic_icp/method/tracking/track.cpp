@@ -152,9 +152,9 @@ void Track::end_at(const Eigen::Vector3d& along, double place_m) {
   }
 }
 
-void Track::include(const OrientedBox& part) {
+void Track::include(const OrientedBox& part, bool is_splinter) {
   for (BoxFilter& hypothesis : hypotheses_) {
-    hypothesis.include(part);
+    hypothesis.include(part, is_splinter);
   }
 }
 

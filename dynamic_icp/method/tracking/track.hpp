@@ -51,7 +51,7 @@ class Track {
   void end_at(const Eigen::Vector3d& along, double place_m);
 
   /// Says that another box is a part of the body.
-  void include(const OrientedBox& part);
+  void include(const OrientedBox& part, bool is_splinter);
 
   /// Takes in another detection; the state is then that of its mean time.
   void correct(const Detection& detection, double stamp_s, const TrackConfig& config);

@@ -16,6 +16,7 @@ constexpr double kSplinter = 0.1;          // a track with this share of the poi
 constexpr double kOtherTop_m = 1.0;        // between the highest parts of a body
 constexpr double kPartVelocity_mps = 0.5;  // standard deviation between the velocities of parts of a body
 constexpr double kPartSigmas = 3.0;
+constexpr double kKnownYaw_rad = 0.05;  // what is known worse says nothing of what lies behind
 
 /// Whether the tops of both were seen, at heights that no body has.
 bool have_other_tops(const BoxEstimate& a, const BoxEstimate& b) {
@@ -35,6 +36,10 @@ bool may_be_equal(const BoxEstimate& a, const BoxEstimate& b) {
 
 }  // namespace
 
+bool is_splinter(std::size_t points, std::size_t of_points) {
+  return static_cast<double>(points) < kSplinter * static_cast<double>(of_points);
+}
+
 bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& view,
                      const Eigen::Isometry3d& T_world_sensor, const TrackerConfig& config) {
   const bool a_is_smaller = a.points < b.points;
@@ -49,9 +54,9 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
   if (small.points == 0 || !may_be_equal(small.now, large.now)) {
     return false;
   }
-  const bool is_splinter = static_cast<double>(small.points) < kSplinter * static_cast<double>(large.points);
-  if (is_splinter && std::min(distance_outside(of_large, of_small.centre),
-                              distance_outside(large.now.box, of_small.centre)) <= config.growth_m) {
+  const bool may_be_splinter = is_splinter(small.points, large.points);
+  if (may_be_splinter && std::min(distance_outside(of_large, of_small.centre),
+                                  distance_outside(large.now.box, of_small.centre)) <= config.growth_m) {
     return true;
   }
   const Eigen::Vector3d together = size_with(of_large, of_small);
@@ -61,7 +66,10 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
   }
   const Gap gap = gap_between(of_large, of_small);
   const double range_m = (gap.middle - T_world_sensor.translation()).norm();
-  const double width_sigma_m = config.track.face_sigma_m + config.track.face_sigma_growth * range_m;
+  const double behind_m = std::abs(of_large.axes.col(0).dot(of_large.centre - of_small.centre));
+  const double yaw_sigma_rad = large.predicted.best().body().yaw_sigma();
+  const double width_sigma_m = config.track.face_sigma_m + config.track.face_sigma_growth * range_m +
+                               (yaw_sigma_rad < kKnownYaw_rad ? yaw_sigma_rad * behind_m : 0.0);
   if (!large.predicted.best().has_heading() || together.y() > config.track.largest_width_m + width_sigma_m) {
     return false;
   }
@@ -72,7 +80,7 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
   }
   // Sides of one body, seen apart; what is seen through a gap parts two.
   const double usual_m = config.grouping.link_distance_m + config.grouping.link_growth * range_m;
-  const double link_m = is_splinter ? std::max(usual_m, config.growth_m) : usual_m;
+  const double link_m = may_be_splinter ? std::max(usual_m, config.growth_m) : usual_m;
   return (distance_outside(large.now.box, of_small.centre) <= 0.0 || gap.width <= link_m) &&
          view.hides(T_world_sensor.inverse() * gap.middle, -kSeeThrough_m);
 }

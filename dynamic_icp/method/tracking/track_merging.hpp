@@ -19,6 +19,9 @@ struct SeenTrack {
   std::size_t points = 0;  ///< of the scan; none: it is hidden
 };
 
+/// Whether what has so many points of a scan may be a bit of what has so many.
+bool is_splinter(std::size_t points, std::size_t of_points);
+
 /// Whether two tracks are one body: one has its centre in what was seen of the other, or it is a splinter beside it or
 /// where more of it is likely, that moves as it does, or both are sides of one body with nothing to be seen between
 /// them in the scan that `view` shows.
