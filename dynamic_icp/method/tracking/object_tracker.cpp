@@ -290,6 +290,10 @@ void ObjectTracker::correct(const TrackingInput& input, const Expectation& expec
   if (const BoxFilter& best = entry.track.best(); best.has_heading()) {
     entry.joint =
         find_joint(entry.detection, entry.now.box.axes, best.body().yaw_rate(), config_.track.doppler_sigma_mps);
+    if (!entry.joint) {
+      entry.joint =
+          find_gap({input.scan, entry.members, input.sensor, entry.detection}, best.seen_box(), best.body().velocity());
+    }
   }
 }
 

@@ -120,6 +120,9 @@ void ObjectTracker::divide(const TrackingInput& input, const Joint& joint, Track
     return;
   }
   for (TrackRecord* part : {&larger, &smaller}) {
+    if (joint.is_gap) {
+      part->track.point_along(body.track.best().body().yaw());
+    }
     if (!joint.is_across) {
       const double outward = (part == &larger) == more_are_ahead ? -1.0 : 1.0;
       part->track.end_at(outward * joint.direction, outward * joint.place_m);

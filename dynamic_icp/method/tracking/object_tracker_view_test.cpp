@@ -212,23 +212,44 @@ TEST(ObjectTrackerView, PointsThatSeemToMoveAmongMoreThatStandAreNoObject) {
   }
 }
 
+/// A tractor with its trailer that comes head-on: cab and trailer.
+std::vector<MovingBox> tractor_with_trailer(double t) {
+  const double front = 34.0 - 5.0 * t;
+  const Eigen::Matrix3d axes = upright_axes(std::numbers::pi);
+  const Vector3d velocity(-5.0, 0.0, 0.0);
+  return {{{{front + 1.2, 6.0, 0.3}, axes, {2.4, 2.5, 3.6}}, velocity, 0.0},
+          {{{front + 9.8, 6.0, 0.9}, axes, {13.6, 2.5, 3.2}}, velocity, 0.0}};
+}
+
 TEST(ObjectTrackerView, WhatComesHeadOnIsAsLongAsTheEndOfItsSideSays) {
-  // A tractor with its trailer, of whose side the sensor sees single columns of points, far apart.
-  const Traffic traffic = [](double t) {
-    const double front = 34.0 - 5.0 * t;
-    const Eigen::Matrix3d axes = upright_axes(std::numbers::pi);
-    const Vector3d velocity(-5.0, 0.0, 0.0);
-    return std::vector<MovingBox>{{{{front + 1.2, 6.0, 0.3}, axes, {2.4, 2.5, 3.6}}, velocity, 0.0},
-                                  {{{front + 9.8, 6.0, 0.9}, axes, {13.6, 2.5, 3.2}}, velocity, 0.0}};
-  };
+  // Of the side the sensor sees single columns of points, far apart.
   ObjectTracker tracker{TrackerConfig{}};
   Objects objects;
   for (int k = 0; k < 5; ++k) {
-    objects = confirmed(step(tracker, view_of(traffic, k * kScanPeriod_s, {})));
+    objects = confirmed(step(tracker, view_of(tractor_with_trailer, k * kScanPeriod_s, {})));
     ASSERT_EQ(objects.size(), 1u) << "scan " << k;
     EXPECT_EQ(objects[0].id, 1) << "scan " << k;
   }
   EXPECT_NEAR(objects[0].box.size.x(), 16.6, 1.5);
+}
+
+TEST(ObjectTrackerView, WhatIsLongerThanOneBodyIsTwoOnceTheGapIsSeen) {
+  ObjectTracker tracker{TrackerConfig{}};
+  for (int k = 0; k < 50; ++k) {
+    const double t = k * kScanPeriod_s;
+    const Objects objects = confirmed(step(tracker, view_of(tractor_with_trailer, t, {})));
+    if (k < 40) {
+      continue;  // from 14 m on columns of points are closer than the gap of 0.6 m is wide
+    }
+    ASSERT_EQ(objects.size(), 2u) << "scan " << k;
+    const MovingBox trailer = tractor_with_trailer(t)[1];
+    EXPECT_LT((objects[1].box.centre - trailer.box.centre).head<2>().norm(), 0.5) << "scan " << k;
+    EXPECT_NEAR(objects[1].box.size.x(), 13.6, 0.7) << "scan " << k;
+    EXPECT_EQ(objects[1].divided_from, objects[0].id);
+    for (const TrackedObject& object : objects) {
+      EXPECT_LT((object.velocity_sensor - trailer.velocity).norm(), 0.5) << "scan " << k;
+    }
+  }
 }
 
 }  // namespace

@@ -146,6 +146,16 @@ void Track::suppose(MotionModel model) {
   }
 }
 
+void Track::point_along(double yaw_rad) {
+  const auto points_elsewhere = [&](const BoxFilter& one) {
+    return !one.has_heading() || !is_along(one.body().yaw(), yaw_rad, 2.0 * std::numbers::pi);
+  };
+  if (!std::ranges::all_of(hypotheses_, points_elsewhere)) {
+    std::erase_if(hypotheses_, points_elsewhere);
+    choose_best();
+  }
+}
+
 void Track::end_at(const Eigen::Vector3d& along, double place_m) {
   for (BoxFilter& hypothesis : hypotheses_) {
     hypothesis.end_at(along, place_m);
@@ -213,16 +223,20 @@ void Track::evaluate(const Detection& detection, const TrackConfig& config) {
     return;
   }
   ask_traffic(detection, config);
-  const auto better = [](const BoxFilter& a, const BoxFilter& b) { return a.log_posterior() < b.log_posterior(); };
-  const BoxFilter best = *std::max_element(hypotheses_.begin(), hypotheses_.end(), better);
+  choose_best();
+  const BoxFilter best = hypotheses_[best_];
   if (detections_ >= kDecisionDetections) {
     hypotheses_ = {best};
   }
   std::erase_if(hypotheses_, [&](const BoxFilter& hypothesis) {
     return hypothesis.log_posterior() - best.log_posterior() < kLogHopeless;
   });
-  best_ =
-      static_cast<std::size_t>(std::max_element(hypotheses_.begin(), hypotheses_.end(), better) - hypotheses_.begin());
+  choose_best();
+}
+
+void Track::choose_best() {
+  const auto likeliest = std::ranges::max_element(hypotheses_, {}, &BoxFilter::log_posterior);
+  best_ = static_cast<std::size_t>(likeliest - hypotheses_.begin());
 }
 
 BoxEstimate Track::estimate(const VehicleSizes& sizes) const {

@@ -47,6 +47,9 @@ class Track {
   /// Lets the body follow one of the models of motion from now on.
   void suppose(MotionModel model);
 
+  /// Says that the body points in this direction, level axes, if any hypothesis has it so.
+  void point_along(double yaw_rad);
+
   /// Says that the body, whose heading is along the direction (unit, world), ends in it about at along . x = place_m.
   void end_at(const Eigen::Vector3d& along, double place_m);
 
@@ -82,6 +85,7 @@ class Track {
   [[nodiscard]] bool moves_sideways() const;
   void ask_traffic(const Detection& detection, const TrackConfig& config);
   void evaluate(const Detection& detection, const TrackConfig& config);
+  void choose_best();
 
   std::vector<BoxFilter> hypotheses_;
   std::size_t best_ = 0;
