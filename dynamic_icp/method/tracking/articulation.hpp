@@ -40,7 +40,7 @@ struct GapView {
   const Detection& detection;  ///< of some of them
 };
 
-/// Where the side of what is longer than roads allow one body has a gap, as between a cab and its trailer: no points
+/// Where the side of what is longer than roads allow a lorry has a gap, as between a cab and its trailer: no points
 /// above the axles, where there would be 12 and more, nothing nearer before it, and to both sides of it points that lie
 /// at most half as far apart as it is wide. `seen`: the part of the box that was seen, world, at the mean time of the
 /// detection; `velocity`: m/s, world.

@@ -18,7 +18,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::size_t kMaxPoints = 2048;  // are looked at
-constexpr double kLongest_m = 14.5;       // roads allow lorries 12 m, semitrailers 13.6 m, longer buses without gaps
+constexpr double kLongest_m = 12.8;       // roads allow lorries 12 m; longer trailers and buses have no gap
 constexpr double kAxleHeight_m = 1.3;     // below it wheels and drawbars reach into a gap
 constexpr double kMinGap_m = 0.4;         // behind a cab
 constexpr double kBeside = 2.0;           // so many times as far to both sides of a gap ...
@@ -37,7 +37,7 @@ struct PlacedPoint {
 /// The points of one side of a gap.
 struct BesideGap {
   std::size_t count = 0;
-  double widest_m = 0.0;  ///< between any two that follow each other, and to the end of what is looked at
+  double widest_m = 0.0;  ///< between any two that follow each other, and on to where one looks no farther
 };
 
 /// Those from `from` on that are at most `reach_m` away from it.
@@ -52,7 +52,9 @@ BesideGap look_beside(Iterator from, Iterator end, double reach_m) {
     ++beside.count;
     last_m = at_m;
   }
-  beside.widest_m = std::max(beside.widest_m, reach_m - last_m);
+  if (from != end) {  // else the body ends
+    beside.widest_m = std::max(beside.widest_m, reach_m - last_m);
+  }
   return beside;
 }
 

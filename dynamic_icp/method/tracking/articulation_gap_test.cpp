@@ -83,6 +83,13 @@ TEST(ArticulationGap, LiesBetweenCabAndTrailer) {
   }
 }
 
+TEST(ArticulationGap, IsSeenThoughLittleFollowsIt) {
+  for (std::uint64_t seed = 1; seed <= 20; ++seed) {
+    EXPECT_TRUE(gap_of({.length_m = 13.5, .gap_at_m = 10.8, .gap_m = 1.6, .seed = seed}))
+        << "the first two metres of a trailer that comes into view, seed " << seed;
+  }
+}
+
 TEST(ArticulationGap, GoesDownToTheAxlesNoFarther) {
   EXPECT_TRUE(gap_of({.lowest_m = kRoad_m + 1.2})) << "a drawbar, or the frame of the tractor";
   EXPECT_FALSE(gap_of({.lowest_m = kRoad_m + 2.5})) << "a window";

@@ -17,7 +17,8 @@ using Eigen::Vector3d;
 
 constexpr double kLoose_m =
     1.5;  // standard deviation of the middle of what is seen of a body, if as much: others slide before it
-constexpr double kFrame_m = 3.6;         // of a tractor, below the trailer
+constexpr double kFrame_m = 3.6;         // of a tractor, below the trailer ...
+constexpr double kLongestCab_m = 4.0;    // ... behind its cab
 constexpr double kJoint_m = 0.4;         // standard deviation of where parts of a body meet
 constexpr double kCorner_m = 0.5;        // radius between the sides of vehicles and their fronts and rears
 constexpr double kInside_m = 1.0;        // an end so far within what was seen before is none
@@ -239,7 +240,7 @@ void BoxFilter::end_at(const Vector3d& along, double place_m) {
     const Face face = cosine > 0.0 ? Face::kFront : Face::kRear;
     body_.correct_face(face, end, kJoint_m * kJoint_m);
     faces_[index_of(face)] = FaceView::kHidden;
-    hidden_[index_of(face)] = face == Face::kRear ? kFrame_m : 0.0;
+    hidden_[index_of(face)] = face == Face::kRear && span(0) < kLongestCab_m ? kFrame_m : 0.0;
     is_part_ = true;
   }
 }

@@ -1,5 +1,7 @@
 // Copyright (c) 2026 The Dynamic-ICP developers
 // SPDX-License-Identifier: MIT
+#include <numbers>
+
 #include <gtest/gtest.h>
 
 #include "dynamic_icp/method/tracking/box_filter.hpp"
@@ -13,17 +15,20 @@ using Eigen::Vector3d;
 
 constexpr double kRear_m = 30.0;
 
-/// The rear of a lorry that moves away from the sensor.
-Detection rear_of_lorry() {
+/// The rear of a lorry that moves away from the sensor, or its front if it comes.
+Detection end_of_lorry(double speed_mps) {
   Detection detection;
   detection.points = testing::face_points({kRear_m, -1.2, -1.0}, {kRear_m, 1.2, 1.5});
   for (const Vector3d& point : detection.points) {
     detection.directions.push_back(point.normalized());
-    detection.radial.push_back(detection.directions.back().x() * 12.0);
+    detection.radial.push_back(detection.directions.back().x() * speed_mps);
     detection.times.push_back(0.0);
   }
   return detection;
 }
+
+Detection rear_of_lorry() { return end_of_lorry(12.0); }
+Detection front_of_lorry() { return end_of_lorry(-12.0); }
 
 /// What is seen of something as wide and high between two places ahead of the sensor.
 OrientedBox part(double from_m, double to_m) {
@@ -60,6 +65,18 @@ TEST(BoxFaces, BeyondAnEndThereIsNoLargePart) {
   const BoxEstimate after = filter.estimate();
   EXPECT_LT(after.box.centre.x() - 0.5 * after.box.size.x(), 26.0 + 0.01) << "it comes into view";
   EXPECT_EQ(after.faces[index_of(Face::kRear)], FaceView::kUnknown);
+}
+
+TEST(BoxFaces, OnlyBehindCabsAFrameGoesOnBelowTheTrailer) {
+  const TrackConfig config;
+  for (const double length_m : {2.4, 9.0}) {
+    BoxFilter filter(rear_of_lorry(), 0.0, {}, config);
+    filter.end_at(Vector3d::UnitX(), kRear_m + length_m);
+    EXPECT_NEAR(filter.estimate().box.size.x(), length_m, 0.5) << "it ends ahead";
+    BoxFilter backwards(front_of_lorry(), std::numbers::pi, {}, config);
+    backwards.end_at(Vector3d::UnitX(), kRear_m + length_m);
+    EXPECT_NEAR(backwards.estimate().box.size.x(), length_m + (length_m < 4.0 ? 3.6 : 0.0), 0.5);
+  }
 }
 
 TEST(BoxFaces, WithoutHeadingABodyHasNoEnds) {
