@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstddef>
 #include <iterator>
-#include <limits>
 #include <span>
 
 #include "dynamic_icp/method/base/parallel.hpp"
