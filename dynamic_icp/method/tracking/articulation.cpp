@@ -110,7 +110,7 @@ std::optional<Joint> joint_along(const Detection& detection, const Vector3d& alo
       kByDirection_mps *
       ((*foremost - detection.sensor).normalized() - (*rearmost - detection.sensor).normalized()).norm();
   const double least_gain = points * by_direction_mps * by_direction_mps;
-  Joint joint{along, 0.0, false, false, kEvidence};
+  Joint joint{.direction = along, .evidence = kEvidence};
   for (std::size_t k = 0; k < steps; ++k) {
     behind += sums[k];
     ahead -= sums[k];

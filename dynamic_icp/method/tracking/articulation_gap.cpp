@@ -108,7 +108,7 @@ std::optional<Joint> find_gap(const GapView& view, const OrientedBox& seen, cons
     const Vector3d middle = 0.5 * (placed[k - 1].point + placed[k].point);
     if (is_gap && !may_lack_points(middle, velocity, view.detection)) {
       least = share;
-      joint = Joint{along, along.dot(middle), false, true, 0.0};
+      joint = Joint{.direction = along, .place_m = along.dot(middle), .is_gap = true};
     }
   }
   return joint;
