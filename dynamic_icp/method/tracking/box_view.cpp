@@ -18,8 +18,13 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kGrazing = 0.03;  // faces seen at a smaller angle show nothing
-constexpr double kEndOn = 0.25;    // part of an axis across the line of sight, below which it is end-on
+constexpr double kGrazing = 0.03;         // faces seen at a smaller angle show nothing
+constexpr double kEndOn = 0.25;           // part of an axis across the line of sight, below which it is end-on
+constexpr double kEndOnRear = 0.05;       // ... and to the rear of what has flat sides
+constexpr double kBehindEnd_m = 1.0;      // from so far behind such an end, and points are nearer before it ...
+constexpr double kNothingBeyond_m = 6.0;  // ... to so far nothing is seen of the side
+constexpr double kMinLorry_m = 5.0;       // what is shorter is no lorry
+constexpr double kOverGround_m = 1.0;     // what is lower may be the ground
 constexpr double kDimSpeed_mps = 0.5;
 constexpr double kFadingSpeed_mps = 1.0;  // below it, too, where the radial velocity falls ...
 constexpr double kFading = 0.9;           // ... to this share of it
@@ -55,10 +60,12 @@ struct Body {
   const Vector3d& reference;
   const Vector3d& W;
   const Detection& detection;
-  Vector3d sensor;        ///< m, along the axes from the reference
-  double ground_m = 0.0;  ///< of the ground, up from the reference ...
-  double top_m = 0.0;     ///< ... of what is seen ...
-  double height_m = 0.0;  ///< ... and how high the body is above the ground in all likelihood
+  Vector3d sensor;                     ///< m, along the axes from the reference
+  std::span<const double> along = {};  ///< m, ahead of the reference: of its points
+  double length_m = 0.0;               ///< of what is seen
+  double ground_m = 0.0;               ///< of the ground, up from the reference ...
+  double top_m = 0.0;                  ///< ... of what is seen ...
+  double height_m = 0.0;               ///< ... and how high the body is above the ground in all likelihood
 };
 
 /// How far above and below an end, m, it is asked what comes next.
@@ -66,6 +73,29 @@ struct LookBeside {
   double lower = 0.0;
   double higher = 0.0;
 };
+
+/// Whether a direction is that to the rear of a lorry or a trailer: boxes but for their fronts.
+bool is_rear_of_lorry(const Vector3d& outward, const Body& body) {
+  return body.height_m > kVanHeight_m && body.length_m > kMinLorry_m && outward.dot(body.axes.col(0)) < -0.5;
+}
+
+/// Whether there may be more of a side behind its end: points are too far apart there, or more of them are seen, of
+/// which few need not be a part of what moves yet.
+bool may_go_on_behind(const EndView& end, const Vector3d& outward, const Body& body) {
+  const double end_m = body.axes.col(0).dot(end.middle - body.reference) - end.inside;
+  const auto before = std::ranges::count_if(
+      body.along, [&](double at) { return at > end_m + kEndDepth_m && at < end_m + kBehindEnd_m; });
+  if (static_cast<double>(before) < kMinEndPoints) {
+    return true;
+  }
+  const Detection& detection = body.detection;
+  const Vector3d up = body.axes.col(2);
+  const double lowest = body.ground_m + kOverGround_m;
+  const Vector3d at_end = end.middle + (lowest - up.dot(end.middle - body.reference)) * up;
+  return detection.view->sees_along(detection.T_sensor_world * (at_end + (end.reach + kBehindEnd_m) * outward),
+                                    detection.T_sensor_world * (at_end + kNothingBeyond_m * outward),
+                                    body.top_m - lowest);
+}
 
 /// Whether a body ends at `end`, as seen from the sensor: nothing hides what would come next, there, below and above.
 /// `shows_face`: what is seen there is a face rather than the edge of a side.
@@ -76,7 +106,10 @@ bool is_true_end(const EndView& end, const Vector3d& outward, const LookBeside& 
   const double range = to_end.norm();
   const Vector3d sight = to_end / range;
   const Vector3d sideways = outward - outward.dot(sight) * sight;
-  if (sideways.norm() < kEndOn && (shows_face || outward.dot(sight) > 0.0)) {
+  const double cell = range * RangeImage::cell_width();
+  const bool is_rear = is_rear_of_lorry(outward, body);
+  const double end_on = is_rear ? kEndOnRear : kEndOn;
+  if (sideways.norm() < end_on && (shows_face || outward.dot(sight) > 0.0)) {
     return outward.dot(sight) < 0.0;  // the near end of what is seen end-on; the body hides the far one
   }
   // Points of the body that hardly move along the line of sight are missing among the moving ones.
@@ -87,7 +120,9 @@ bool is_true_end(const EndView& end, const Vector3d& outward, const LookBeside& 
   if (detection.view == nullptr) {
     return !is_dim;
   }
-  const double cell = range * RangeImage::cell_width();
+  if (is_rear && sideways.norm() < kEndOn && may_go_on_behind(end, outward, body)) {
+    return false;
+  }
   for (const double step : {cell, std::max(kLookBeyond_m, 3.0 * cell)}) {
     const Vector3d beyond = detection.T_sensor_world * (end.middle + (end.reach + step) * sideways.normalized());
     if (detection.view->is_above_all(beyond)) {
@@ -289,6 +324,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   find_places_along(axes, reference, points, along);
   std::array<AxisView, 3> views;
   Body body{axes, reference, W, detection, axes.transpose() * (detection.sensor - reference)};
+  body.along = along[0];
   const Vector3d& sensor = body.sensor;
   views[2] = view_along(along[2], along[1], along[2], sensor.y(), points);
   const Vector3d up = axes.col(2);
@@ -305,6 +341,7 @@ std::array<AxisView, 3> views_along(const Matrix3d& axes, const Vector3d& refere
   for (const int axis : {0, 1}) {
     const auto k = static_cast<std::size_t>(axis);
     AxisView& view = views[k] = view_along(along[k], along[1 - k], along[2], sensor[1 - axis], points);
+    body.length_m = views[0].seen.length();
     const double grazing = kGrazing * sensor.norm();
     view.high.is_true = sensor[axis] > view.seen.high && is_end(view.high, axes.col(axis), body);
     view.low.is_true = sensor[axis] < view.seen.low && is_end(view.low, -axes.col(axis), body);

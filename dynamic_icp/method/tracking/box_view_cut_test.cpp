@@ -129,5 +129,40 @@ TEST(BoxView, TheRearEndsWhereTheSideIsSeenPastIt) {
   EXPECT_TRUE(ends_left(side));
 }
 
+TEST(BoxView, TheRearOfALorryThatComesIsSeenAtASmallAngle) {
+  // The far end of its side, seen at 6 degrees: front and side, and behind them a wall far off.
+  const double front_m = 20.0;
+  const auto lorry = [&](double rear_m, double height_m) {
+    std::vector<Vector3d> points = face_points({front_m, 3.0, -1.0}, {front_m, 5.4, height_m - 1.5});
+    for (double x = front_m; x <= rear_m; x += 0.3) {
+      for (double z = -1.0; z <= height_m - 1.5; z += 0.3) {
+        points.emplace_back(x, 3.0, z);
+      }
+    }
+    return points;
+  };
+  const auto ends_at_rear = [&](const std::vector<Vector3d>& body, const std::vector<Vector3d>& others) {
+    RawScan raw;
+    for (double y = -20.0; y <= 40.0; y += 0.4) {
+      for (double z = -2.0; z <= 20.0; z += 0.5) {
+        raw.points.emplace_back(90.0, y, z);
+      }
+    }
+    raw.points.insert(raw.points.end(), body.begin(), body.end());
+    raw.points.insert(raw.points.end(), others.begin(), others.end());
+    const RangeImage image = image_of(std::move(raw));
+    Detection detection;
+    detection.view = &image;
+    detection.ground.offset_m = -1.5;
+    return views_along(upright_axes(std::numbers::pi), body.front(), body, {-8.0, 0.0, 0.0}, detection)[0].low.is_true;
+  };
+  EXPECT_TRUE(ends_at_rear(lorry(28.0, 3.5), {}));
+  EXPECT_FALSE(ends_at_rear(lorry(28.0, 1.5), {})) << "cars have boots";
+  EXPECT_FALSE(ends_at_rear(lorry(23.0, 3.5), {})) << "no lorry is so short";
+  // More of its side, of which the points are no part of what moves.
+  EXPECT_FALSE(ends_at_rear(lorry(28.0, 3.5), {{31.0, 3.0, 0.5}, {31.5, 3.0, 1.0}}));
+  EXPECT_TRUE(ends_at_rear(lorry(28.0, 3.5), {{31.0, 3.0, -1.4}, {38.0, 3.0, 0.5}})) << "the ground, and the next one";
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

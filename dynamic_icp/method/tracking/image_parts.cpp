@@ -69,7 +69,7 @@ void ImageParts::reset(const ScanPatches& patches) {
   }
 }
 
-const std::vector<std::uint32_t>& ImageParts::unseen_in(const ImagePart& part) {
+const std::vector<std::uint32_t>& ImageParts::find_in(const ImagePart& part, std::uint8_t is_seen) {
   simd::run([&]() DYNAMIC_ICP_KERNEL {
     const std::size_t n = is_seen_.size();
     const auto from = static_cast<std::int16_t>(part.first_column);
@@ -83,10 +83,11 @@ const std::vector<std::uint32_t>& ImageParts::unseen_in(const ImagePart& part) {
     const std::int16_t* const highest = highest_row_.data();
     const std::uint8_t* const seen = is_seen_.data();
     std::uint8_t* const found = is_found_.data();
+    const std::uint8_t wanted = is_seen;
     for (std::size_t i = 0; i < n; ++i) {
       const bool in_columns = ((first[i] <= to) & (last[i] >= from)) | (last[i] >= from_again);
       const bool in_rows = (lowest[i] <= top) & (highest[i] >= bottom);
-      found[i] = (in_columns & in_rows & (seen[i] == 0)) ? 1 : 0;
+      found[i] = (in_columns & in_rows & (seen[i] == wanted)) ? 1 : 0;
     }
   });
   found_.clear();

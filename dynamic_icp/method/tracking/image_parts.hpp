@@ -2,10 +2,12 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
+#include "dynamic_icp/method/tracking/image_cells.hpp"
 #include "dynamic_icp/method/tracking/patches.hpp"
 
 namespace dynamic_icp::tracking {
@@ -16,6 +18,17 @@ struct ImagePart {
   int last_column = 0;
   int lowest_row = 0;
   int highest_row = 0;
+
+  /// Of no cells.
+  static ImagePart none() { return {kImageColumns, -1, kImageRows, -1}; }
+
+  /// Makes room for a cell. What lies on both sides of where the image begins makes the part go all around.
+  void include(int column, int row) {
+    first_column = std::min(first_column, column);
+    last_column = std::max(last_column, column);
+    lowest_row = std::min(lowest_row, row);
+    highest_row = std::max(highest_row, row);
+  }
 };
 
 /// In which part of the image the points of each patch of a scan may be, by the bounds of the patches alone; and which
@@ -25,8 +38,10 @@ class ImageParts {
   /// Of all patches, none of which was looked at, in the memory of another scan.
   void reset(const ScanPatches& patches);
 
-  /// The patches that may have points in a part and were not looked at, ascending: until the next call.
-  const std::vector<std::uint32_t>& unseen_in(const ImagePart& part);
+  /// The patches that may have points in a part and were not looked at, ascending: until the next call of either.
+  const std::vector<std::uint32_t>& unseen_in(const ImagePart& part) { return find_in(part, 0); }
+  /// The same of those that were looked at.
+  const std::vector<std::uint32_t>& seen_in(const ImagePart& part) { return find_in(part, 1); }
 
   [[nodiscard]] bool is_seen(std::size_t patch) const { return is_seen_[patch] != 0; }
   void set_seen(std::size_t patch) { is_seen_[patch] = 1; }
@@ -35,6 +50,8 @@ class ImageParts {
   [[nodiscard]] std::size_t size() const { return is_seen_.size(); }
 
  private:
+  const std::vector<std::uint32_t>& find_in(const ImagePart& part, std::uint8_t is_seen);
+
   // Of each patch; the last column is beyond the image where the part goes on at its other side.
   std::vector<std::int16_t> first_column_, last_column_;
   std::vector<std::int16_t> lowest_row_, highest_row_;

@@ -99,6 +99,8 @@ TEST(ImageParts, EveryPatchWithPointsInAPartIsFoundUntilItIsSeen) {
   const std::vector<std::uint32_t>& left = parts.unseen_in(all);
   EXPECT_EQ(left.size(), kPatches - 2);
   EXPECT_FALSE(std::ranges::binary_search(left, 7u));
+  EXPECT_TRUE(std::ranges::binary_search(parts.seen_in(all), 7u));
+  EXPECT_FALSE(std::ranges::binary_search(parts.seen_in(all), 8u));
   EXPECT_TRUE(parts.is_seen(7));
   EXPECT_FALSE(parts.is_seen(8));
   parts.reset(patches);

@@ -148,6 +148,11 @@ void LazyImage::draw_until(const ImagePart& part, const IsEnough& is_enough) {
   }
 }
 
+void LazyImage::draw_part(const ImagePart& part) {
+  const std::scoped_lock lock(mutex_);
+  draw_until(part, [] { return false; });
+}
+
 void LazyImage::fill(std::size_t tile) {
   const auto at = static_cast<int>(tile);
   const int column = at / kTilesAbove * kTileColumns;

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <atomic>
 #include <cstddef>
@@ -54,13 +55,17 @@ class LazyImage {
   [[nodiscard]] std::uint32_t place(std::uint32_t row) const { return places_[row]; }  ///< of a cell
   [[nodiscard]] float squared(std::uint32_t row) const { return squared_[row]; }       ///< of the range, m^2
 
-  /// Calls visit(place) for all points that are drawn.
+  /// Draws all points that are in a part.
+  void draw_part(const ImagePart& part);
+
+  /// Calls visit(row) for all rows of the scan whose points are in a part and drawn, and others near it.
   template <typename Visit>
-  void visit_drawn(const Visit& visit) {
+  void visit_drawn(const ImagePart& part, const Visit& visit) {
     const std::scoped_lock lock(mutex_);
-    for (std::size_t row = 0; row < rows_; ++row) {
-      if (parts_.is_seen(row / PatchBlock::kRows)) {
-        visit(places_[row]);
+    for (const std::uint32_t patch : parts_.seen_in(part)) {
+      const std::size_t begin = patch * PatchBlock::kRows;
+      for (std::size_t row = begin; row < std::min(rows_, begin + PatchBlock::kRows); ++row) {
+        visit(static_cast<std::uint32_t>(row));
       }
     }
   }

@@ -108,9 +108,9 @@ TEST(LazyImage, DrawsNoMoreThanIsAsked) {
   patches.bound(scan, Workers(1));
   LazyImage image;
   image.begin(scan, patches, kImageVelocity);
-  const auto drawn = [&] {
+  const auto drawn = [&](const ImagePart& part = {0, kImageColumns - 1, 0, kImageRows - 1}) {
     std::size_t points = 0;
-    image.visit_drawn([&](std::uint32_t) { ++points; });
+    image.visit_drawn(part, [&](std::uint32_t) { ++points; });
     return points;
   };
   EXPECT_EQ(drawn(), 0u);
@@ -123,8 +123,26 @@ TEST(LazyImage, DrawsNoMoreThanIsAsked) {
   EXPECT_EQ(image.place(2), place_in_image(image_cell(scan.points()[2]).column, image_cell(scan.points()[2]).row));
   EXPECT_NEAR(image.squared(2), scan.points()[2].squaredNorm(), 1e-5 * scan.points()[2].squaredNorm());
   EXPECT_LT(drawn(), scan.size() / 4);
+  const ImagePart part{cell.column, cell.column + 5, cell.row, cell.row + 5};
+  image.draw_part(part);
+  EXPECT_LT(drawn(), scan.size() / 4);
+  std::size_t in_part = 0;
+  image.visit_drawn(part, [&](std::uint32_t row) {
+    const ImageCell at = image_cell(scan.points()[row]);
+    in_part += at.column >= part.first_column && at.column <= part.last_column && at.row >= part.lowest_row &&
+                       at.row <= part.highest_row
+                   ? 1
+                   : 0;
+  });
+  EXPECT_EQ(in_part, static_cast<std::size_t>(std::ranges::count_if(scan.points(), [&](const Eigen::Vector3d& point) {
+              const ImageCell at = image_cell(point);
+              return at.column >= part.first_column && at.column <= part.last_column && at.row >= part.lowest_row &&
+                     at.row <= part.highest_row;
+            })));
+  EXPECT_GT(in_part, 0u);
   image.draw_all();
   EXPECT_EQ(drawn(), scan.size());
+  EXPECT_LT(drawn(part), scan.size() / 4) << "no more is visited than is asked";
 }
 
 TEST(LazyImage, OfNoPointsNothingIsSeen) {

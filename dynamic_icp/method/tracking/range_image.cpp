@@ -3,6 +3,7 @@
 #include "dynamic_icp/method/tracking/range_image.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bitset>
 #include <cmath>
 #include <iterator>
@@ -14,11 +15,13 @@
 namespace dynamic_icp::tracking {
 namespace {
 
-constexpr double kBehind_m = 1.0;        // what is so much nearer is another thing
-constexpr float kSameSurface_m = 0.5F;   // between points of one surface that are next to each other
-constexpr double kSurelyLess = 0.999;    // for rounding
-constexpr double kMinBehindShare = 0.5;  // of the rows of a mirror image lie behind the mirror
-constexpr double kFewBeside = 0.2;       // mirrors show less than this share of what is seen of themselves
+constexpr std::size_t kPlacesAlong = 25;  // of a way that are looked at ...
+constexpr double kOnWay_m = 0.3;          // ... and how far from them things are on it
+constexpr double kBehind_m = 1.0;         // what is so much nearer is another thing
+constexpr float kSameSurface_m = 0.5F;    // between points of one surface that are next to each other
+constexpr double kSurelyLess = 0.999;     // for rounding
+constexpr double kMinBehindShare = 0.5;   // of the rows of a mirror image lie behind the mirror
+constexpr double kFewBeside = 0.2;        // mirrors show less than this share of what is seen of themselves
 
 }  // namespace
 
@@ -72,11 +75,13 @@ bool RangeImage::are_beside(std::uint32_t a, std::uint32_t b) const {
 /// Beside all that is seen in the directions of these rows, of which all points are drawn.
 bool RangeImage::are_few(std::span<const std::uint32_t> rows) const {
   std::bitset<std::size_t{kImageColumns} * kImageRows> is_touched;
+  ImagePart part = ImagePart::none();
   for (const std::uint32_t row : rows) {
     is_touched[image_->place(row)] = true;
+    part.include(static_cast<int>(image_->place(row) / kImageRows), static_cast<int>(image_->place(row) % kImageRows));
   }
   std::size_t all = 0;
-  image_->visit_drawn([&](std::uint32_t place) { all += is_touched[place] ? 1 : 0; });
+  image_->visit_drawn(part, [&](std::uint32_t row) { all += is_touched[image_->place(row)] ? 1 : 0; });
   return static_cast<double>(rows.size()) < kFewBeside * static_cast<double>(all);
 }
 
@@ -96,6 +101,38 @@ void RangeImage::remove_mirrored(std::vector<std::uint32_t>& rows, std::vector<s
     return std::ranges::any_of(rows, [&](std::uint32_t other) { return are_beside(row, other) && !is_behind(other); });
   });
   std::erase_if(rows, [&](std::uint32_t row) { return std::ranges::binary_search(behind, row); });
+}
+
+bool RangeImage::sees_along(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double higher_m) const {
+  if (!image_) {
+    return false;
+  }
+  struct Place {
+    int column, lowest_row, highest_row;
+    double range_m;
+  };
+  std::array<Place, kPlacesAlong> places;
+  ImagePart part = ImagePart::none();
+  for (std::size_t i = 0; i < kPlacesAlong; ++i) {
+    const Eigen::Vector3d at = from + static_cast<double>(i) / (kPlacesAlong - 1) * (to - from);
+    const ImageCell low = image_cell(at);
+    const ImageCell high = image_cell(at + higher_m * Eigen::Vector3d::UnitZ());
+    places[i] = {low.column, low.row, high.row, at.norm()};
+    part.include(low.column, low.row);
+    part.include(high.column, high.row);
+  }
+  image_->draw_part(part);
+  bool is_seen = false;
+  image_->visit_drawn(part, [&](std::uint32_t row) {
+    const auto column = static_cast<int>(image_->place(row) / kImageRows);
+    const auto image_row = static_cast<int>(image_->place(row) % kImageRows);
+    const double range_m = std::sqrt(static_cast<double>(image_->squared(row)));
+    is_seen = is_seen || std::ranges::any_of(places, [&](const Place& place) {
+                return column == place.column && image_row >= place.lowest_row && image_row <= place.highest_row &&
+                       std::abs(range_m - place.range_m) < kOnWay_m;
+              });
+  });
+  return is_seen;
 }
 
 bool RangeImage::is_above_all(const Eigen::Vector3d& point) const {

@@ -42,6 +42,9 @@ class RangeImage {
   /// low, as beyond the edge of the field of view. A negative clearance: also by what is so much farther away.
   [[nodiscard]] bool hides(const Eigen::Vector3d& point, double clearance_m) const;
 
+  /// Whether anything is seen on the way from one place to another (m, sensor frame), or up to `higher_m` above it.
+  [[nodiscard]] bool sees_along(const Eigen::Vector3d& from, const Eigen::Vector3d& to, double higher_m) const;
+
   /// Whether nothing in the whole scan is seen as high as `point` (m, sensor frame): it may be above the field of view.
   [[nodiscard]] bool is_above_all(const Eigen::Vector3d& point) const;
 

@@ -103,6 +103,24 @@ TEST(RangeImage, TheGroundBeforeAThingDoesNotHideIt) {
   }
 }
 
+TEST(RangeImage, SeesWhatLiesOnAWay) {
+  // A wall along a road, at an angle of a few degrees, with nothing on the last part.
+  RawScan raw;
+  for (double x = 20.0; x <= 26.0; x += 0.5) {
+    for (double z = -1.0; z <= 2.0; z += 0.5) {
+      raw.points.emplace_back(x, 3.0, z);
+    }
+  }
+  raw.doppler.assign(raw.points.size(), 0.0);
+  const RangeImage image(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+  EXPECT_TRUE(image.sees_along({22.0, 3.0, 0.0}, {28.0, 3.0, 0.0}, 1.0));
+  EXPECT_TRUE(image.sees_along({22.0, 3.0, -3.0}, {28.0, 3.0, -3.0}, 2.5)) << "its lower part";
+  EXPECT_FALSE(image.sees_along({26.5, 3.0, 0.0}, {32.0, 3.0, 0.0}, 1.0)) << "behind it";
+  EXPECT_FALSE(image.sees_along({22.0, 4.5, 0.0}, {28.0, 4.5, 0.0}, 1.0)) << "beside it";
+  EXPECT_FALSE(image.sees_along({22.0, 3.0, 3.5}, {28.0, 3.0, 3.5}, 1.0)) << "over it";
+  EXPECT_FALSE(RangeImage().sees_along({22.0, 3.0, 0.0}, {28.0, 3.0, 0.0}, 1.0)) << "where nothing is seen";
+}
+
 TEST(RangeImage, KnowsHowHighItSees) {
   RawScan raw;
   add_wall(raw, -60.0, 60.0, 50.0);  // up to 5 degrees, 4.4 m there
