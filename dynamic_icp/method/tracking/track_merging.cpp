@@ -34,6 +34,20 @@ bool may_be_equal(const BoxEstimate& a, const BoxEstimate& b) {
   return apart.dot(covariance.inverse() * apart) < kPartSigmas * kPartSigmas;
 }
 
+/// How wide both are together, m: as the boxes say, or, if that is less, what was seen at last.
+double width_together(const SeenTrack& a, const SeenTrack& b, const OrientedBox& of_a, const OrientedBox& of_b) {
+  const double of_boxes = size_with(of_a, of_b).y();
+  if (a.where.empty() || b.where.empty()) {
+    return of_boxes;
+  }
+  const auto across = [&](std::span<const Eigen::Vector3d> points) {
+    return span_along(points, of_a.centre, of_a.axes.col(1), kViewTrim);
+  };
+  const Interval first = across(a.where);
+  const Interval second = across(b.where);
+  return std::min(of_boxes, std::max(first.high, second.high) - std::min(first.low, second.low));
+}
+
 }  // namespace
 
 bool is_splinter(std::size_t points, std::size_t of_points) {
@@ -70,7 +84,8 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
   const double yaw_sigma_rad = large.predicted.best().body().yaw_sigma();
   const double width_sigma_m = config.track.face_sigma_m + config.track.face_sigma_growth * range_m +
                                (yaw_sigma_rad < kKnownYaw_rad ? yaw_sigma_rad * behind_m : 0.0);
-  if (!large.predicted.best().has_heading() || together.y() > config.track.largest_width_m + width_sigma_m) {
+  if (!large.predicted.best().has_heading() ||
+      width_together(large, small, of_large, of_small) > config.track.largest_width_m + width_sigma_m) {
     return false;
   }
   // No two bodies are in one place.

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <span>
 
 #include <Eigen/Geometry>
 
@@ -14,9 +15,10 @@ namespace dynamic_icp::tracking {
 
 /// A track with what one scan shows of it.
 struct SeenTrack {
-  const Track& predicted;  ///< at the stamp
-  const BoxEstimate& now;  ///< of it
-  std::size_t points = 0;  ///< of the scan; none: it is hidden
+  const Track& predicted;                       ///< at the stamp
+  const BoxEstimate& now;                       ///< of it
+  std::size_t points = 0;                       ///< of the scan; none: it is hidden
+  std::span<const Eigen::Vector3d> where = {};  ///< m, world: some of them, if the box may have drifted away from them
 };
 
 /// Whether what has so many points of a scan may be a bit of what has so many.

@@ -99,6 +99,42 @@ TEST(TrackMerging, NoTwoBodiesAreInOnePlace) {
   EXPECT_FALSE(are_one()) << "faster";
 }
 
+TEST(TrackMerging, WhatWasSeenAtLastSaysHowWideTwoAreTogether) {
+  // Two strips of the rear of a lorry; the box of one of them has drifted away sideways.
+  const auto strip = [](double from_y, double to_y) {
+    Detection detection;
+    for (std::uint64_t i = 0; i < 200; ++i) {
+      const RandomSource one = RandomSource(8).fork(i);
+      detection.points.emplace_back(30.0, one.uniform(0, from_y, to_y), one.uniform(1, -1.0, 2.0));
+      detection.directions.push_back(detection.points.back().normalized());
+      detection.radial.push_back(8.0 * detection.directions.back().x());
+      detection.times.push_back(0.0);
+    }
+    return detection;
+  };
+  const Detection left = strip(4.6, 5.8);
+  const Detection drifted = strip(3.0, 4.5);
+  const Track a(left, 0.0, {});
+  const Track b(drifted, 0.0, {});
+  const BoxEstimate of_a = a.estimate();
+  const BoxEstimate of_b = b.estimate();
+  const auto are_one = [&](const Detection& right) {
+    RawScan raw;
+    for (double y = 2.0; y <= 7.0; y += 0.05) {
+      for (double z = -1.0; z <= 2.0; z += 0.1) {
+        raw.points.emplace_back(30.0, y, z);
+        raw.doppler.push_back(0.0);
+      }
+    }
+    const RangeImage view(Scan::from_raw(raw), Vector3d::Zero(), Workers(1));
+    return are_same_object({a, of_a, 200, left.points}, {b, of_b, 180, right.points}, view,
+                           Eigen::Isometry3d::Identity(), {});
+  };
+  EXPECT_TRUE(are_one(strip(3.4, 4.5))) << "2.4 m";
+  EXPECT_FALSE(are_one(drifted)) << "2.8 m";
+  EXPECT_FALSE(are_one(Detection{})) << "as wide as the boxes";
+}
+
 TEST(TrackMerging, BodiesThatWouldBeLongerThanAnyOrHaveOtherTopsAreTwo) {
   // One behind the other in a lane, with the same speed, and something nearer hides the gap.
   EXPECT_FALSE(are_same(side_of_body(0, 4, 6), 300, side_of_body(4.5, 8.0, 6), 250, 4.0)) << "of a height of 1.5 m";

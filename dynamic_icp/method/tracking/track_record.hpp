@@ -84,7 +84,10 @@ struct TrackRecord {
     return divided_from == another.id || another.divided_from == id;
   }
 
-  [[nodiscard]] SeenTrack seen_track() const { return {predicted, now, members.size()}; }
+  [[nodiscard]] SeenTrack seen_track() const {
+    const bool may_have_drifted = missed == 0 && age > 1;
+    return {predicted, now, members.size(), may_have_drifted ? detection.points : std::span<const Eigen::Vector3d>()};
+  }
 
   /// What is known between two scans.
   void state(StateArchive& archive);
