@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 #include "dynamic_icp/method/tracking/memory.hpp"
 
@@ -15,6 +16,7 @@ void assign(const TrackingInput& input, std::span<const Expectation> expectation
   std::vector<std::int32_t>& owner = result.owner;
   refill(owner, input.moving.cells.size(), kNobody);
   refill(result.best_ratio, owner.size(), 1.0);
+  refill(result.outside, owner.size(), std::numeric_limits<double>::infinity());
   for (std::size_t k = 0; k < expectations.size(); ++k) {
     const Expectation& expected = expectations[k];
     const double reach =
@@ -26,11 +28,12 @@ void assign(const TrackingInput& input, std::span<const Expectation> expectation
       if ((point - cell.time_s * expected.velocity - expected.box.centre).squaredNorm() > reach * reach) {
         continue;
       }
-      const double ratio = std::max(expected.distance_ratio(point, cell.time_s),
-                                    expected.gate_ratio(input.cell_directions[i], cell.radial_mps));
+      const double distance_ratio = expected.distance_ratio(point, cell.time_s);
+      const double ratio = std::max(distance_ratio, expected.gate_ratio(input.cell_directions[i], cell.radial_mps));
       if (ratio < result.best_ratio[i] && expected.width_with(point, cell.time_s) < expected.max_width_m) {
         result.best_ratio[i] = ratio;
         owner[i] = static_cast<std::int32_t>(k);
+        result.outside[i] = distance_ratio < kUnseenRatio ? 0.0 : expected.outside(point, cell.time_s);
       }
     }
   }
@@ -67,11 +70,8 @@ void associate(const TrackingInput& input, std::span<const Expectation> expectat
   assign(input, expectations, result);
   link_owners(input.groups, result);
   for (std::size_t i = 0; i < result.owner.size(); ++i) {
-    if (result.owner[i] != kNobody) {
-      continue;
-    }
     const MovingCell& cell = input.moving.cells[i];
-    double nearest = growth_m;
+    double nearest = std::min(growth_m, result.outside[i]);
     for (std::int32_t link = result.first_link[input.groups[i]]; link != kNobody;
          link = result.links[static_cast<std::size_t>(link)].next) {
       const std::int32_t k = result.links[static_cast<std::size_t>(link)].owner;

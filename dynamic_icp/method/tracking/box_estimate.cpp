@@ -45,7 +45,13 @@ SeenExtent BoxFilter::extent(int axis) const {
     return is_known(face) && (is_one || faces_[index_of(face)] != FaceView::kUnknown);
   };
   const auto likely_reach = [&](Face face) { return reach(face) + (is_end(face) ? hidden_[index_of(face)] : 0.0); };
-  return {likely_reach(high), likely_reach(low), is_end(high), is_end(low), axis == 2 && top_is_cut_ && !is_end(high)};
+  SeenExtent seen{likely_reach(high), likely_reach(low), is_end(high), is_end(low),
+                  axis == 2 && top_is_cut_ && !is_end(high)};
+  if (axis == 0) {
+    seen.room_high = std::max(0.0, free_[0] - reach(high));
+    seen.room_low = std::max(0.0, free_[1] - reach(low));
+  }
+  return seen;
 }
 
 BoxEstimate BoxFilter::estimate(const VehicleSizes& sizes) const {

@@ -233,6 +233,10 @@ void BoxFilter::include(const OrientedBox& part, bool is_splinter) {
   }
 }
 
+void BoxFilter::set_room(const Room& room) {
+  free_ = {reach(Face::kFront) + room.ahead, reach(Face::kRear) + room.behind};
+}
+
 void BoxFilter::end_at(const Vector3d& along, double place_m) {
   const double cosine = along.dot(body_.axes().col(0));
   if (has_heading_ && std::abs(cosine) > std::numbers::sqrt2 / 2.0) {

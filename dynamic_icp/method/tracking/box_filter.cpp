@@ -163,6 +163,7 @@ void BoxFilter::correct_heading(std::span<const Vector3d> points, const Detectio
   body_.correct_yaw_rate(0.0, turn_rps * turn_rps);
   if (body_.axes().col(0).dot(body_.velocity()) < -kBackwards_mps) {
     body_.turn_around();
+    std::swap(free_[0], free_[1]);
     for (const int axis : {0, 1}) {
       std::swap(least_[index_of(high_face(axis))], least_[index_of(low_face(axis))]);
       std::swap(faces_[index_of(high_face(axis))], faces_[index_of(low_face(axis))]);
@@ -201,8 +202,8 @@ BoxFilter BoxFilter::blank() {
 }
 
 void BoxFilter::state(StateArchive& archive) {
-  archive(body_, models_, has_heading_, was_vehicle_, is_part_, top_is_cut_, least_, faces_, hidden_, log_likelihood_,
-          size_log_likelihood_, log_prior_, spread_mps_, signal_mps_);
+  archive(body_, models_, has_heading_, was_vehicle_, is_part_, top_is_cut_, least_, faces_, hidden_, free_,
+          log_likelihood_, size_log_likelihood_, log_prior_, spread_mps_, signal_mps_);
   for (std::optional<Interval>& seen : last_seen_) {
     bool is_known = seen.has_value();
     archive(is_known);

@@ -85,6 +85,9 @@ class BoxFilter {
   /// no splinter says so, too, where an end was seen before.
   void include(const OrientedBox& part, bool is_splinter);
 
+  /// Says how much farther it may reach than it was seen to.
+  void set_room(const Room& room);
+
   /// Something else speaks for the hypothesis, by this logarithm of a likelihood.
   void credit(double log_likelihood) { log_likelihood_ += log_likelihood; }
 
@@ -151,10 +154,11 @@ class BoxFilter {
   std::array<double, kFaces.size()> least_{};    ///< m from the reference: points were seen so far out
   std::array<FaceView, kFaces.size()> faces_{};  ///< by Face
   std::array<double, kFaces.size()> hidden_{};   ///< m: so much farther than its upper part a body is likely to reach
-  std::array<std::optional<Interval>, 2> last_seen_{};  ///< m from the reference, along and to the left: at last
-  double log_likelihood_ = 0.0;                         ///< of the motion
-  double size_log_likelihood_ = 0.0;                    ///< of the sizes
-  double log_prior_ = 0.0;                              ///< of heading and speed
+  std::array<double, 2> free_{kUnlimited_m, kUnlimited_m};  ///< m from the reference, ahead and behind: up to others
+  std::array<std::optional<Interval>, 2> last_seen_{};      ///< m from the reference, along and to the left: at last
+  double log_likelihood_ = 0.0;                             ///< of the motion
+  double size_log_likelihood_ = 0.0;                        ///< of the sizes
+  double log_prior_ = 0.0;                                  ///< of heading and speed
   double spread_mps_ = 0.0;
   double signal_mps_ = 0.0;
 };

@@ -18,7 +18,6 @@ constexpr double kMaxGate_mps = 3.0;
 constexpr double kWidthSlack_m = 0.1;
 constexpr double kGroundClearance_m = 0.3;  // points lower in a box may be the road ...
 constexpr double kGroundShare = 0.25;       // ... but at most so much of its height is left out
-constexpr double kUnseenRatio = 0.9;        // of points where the body is likely but was not seen yet
 
 }  // namespace
 

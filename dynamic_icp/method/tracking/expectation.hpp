@@ -21,6 +21,9 @@
 
 namespace dynamic_icp::tracking {
 
+/// The least `distance_ratio` of points where a body is likely but was not seen yet.
+inline constexpr double kUnseenRatio = 0.9;
+
 /// What a track expects of its points in one scan; everything in world axes.
 struct Expectation {
   OrientedBox box;               ///< what was seen of it, at the stamp

@@ -14,6 +14,12 @@ constexpr double kHiddenHeight_m = 0.5;  // standard deviation of a height of wh
 constexpr double kLowestVehicle_m = 1.5;
 constexpr double kNoBox = 0.05;  // bodies end by this share of their size nearer or farther than boxes do
 
+/// The size where there is no room for what is likely: anything that there is room for.
+Belief within_room(const Belief& size, const SeenExtent& seen) {
+  const double room = (seen.ends_high ? 0.0 : seen.room_high) + (seen.ends_low ? 0.0 : seen.room_low);
+  return size.mean <= seen.length() + room ? size : Belief{seen.length() + 0.5 * room, room * room / 12.0};
+}
+
 LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
   LikelyExtent extent;
   extent.size = size.mean;
@@ -32,7 +38,8 @@ LikelyExtent placed(const SeenExtent& seen, const Belief& size) {
     extent.variance = 0.25 * size.variance + shape;
   } else {
     const double hidden = std::max(0.0, size.mean - seen.length());
-    extent.middle = 0.5 * (seen.high - seen.low);
+    const double beyond_high = std::max(hidden - seen.room_low, std::min(seen.room_high, 0.5 * hidden));
+    extent.middle = 0.5 * (seen.high - seen.low - hidden) + beyond_high;
     extent.variance = hidden * hidden / 12.0 + 0.25 * size.variance;
   }
   return extent;
@@ -79,7 +86,7 @@ std::array<LikelyExtent, 3> likely_extents(const std::array<SeenExtent, 3>& seen
   const auto seen_size = [](const SeenExtent& extent) { return SeenSize{extent.length(), extent.is_whole()}; };
   const auto [long_as, wide_as, high_as] =
       sizes.complete({seen_size(along), seen_size(across), seen_size(up)}, {length, width, height});
-  return {placed(along, long_as), placed(across, wide_as), placed(up, high_as)};
+  return {placed(along, within_room(long_as, along)), placed(across, wide_as), placed(up, high_as)};
 }
 
 }  // namespace dynamic_icp::tracking

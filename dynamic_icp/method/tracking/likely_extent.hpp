@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 
+#include "dynamic_icp/method/tracking/room.hpp"
 #include "dynamic_icp/method/tracking/vehicle_sizes.hpp"
 
 namespace dynamic_icp::tracking {
@@ -16,6 +17,9 @@ struct SeenExtent {
   bool ends_high = false;  ///< the body ends there; else it reaches at least so far
   bool ends_low = false;
   bool is_cut_high = false;  ///< by the edge of the field of view
+  // m: the body does not reach farther than that beyond an end that was not seen, as something else is there
+  double room_high = kUnlimited_m;
+  double room_low = kUnlimited_m;
 
   [[nodiscard]] double length() const { return std::max(0.0, high + low); }
   [[nodiscard]] bool is_whole() const { return ends_high && ends_low; }

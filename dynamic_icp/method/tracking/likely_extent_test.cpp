@@ -41,6 +41,31 @@ TEST(LikelyExtents, WhatIsHiddenLiesBeyondTheEndThatIsNotSeen) {
       << "evenly spread over what is missing, and the length itself";
 }
 
+TEST(LikelyExtents, WhatIsHiddenIsAnywhereInTheRoomThereIs) {
+  const double typical = typical_length(2.0, 2.5).mean;
+  SeenExtent end{0.0, 3.0, false, true};
+  const auto likely = [&] { return likely_extents({end, kWidth, kHeight}, true, false)[0]; };
+  end.room_high = typical;
+  EXPECT_NEAR(likely().size, typical, 1e-9) << "there is enough";
+  end.room_high = 1.0;
+  EXPECT_NEAR(likely().size, 3.5, 1e-9);
+  EXPECT_NEAR(likely().middle, -3.0 + 0.5 * 3.5, 1e-9);
+  end.room_high = 0.0;
+  EXPECT_NEAR(likely().size, 3.0, 1e-9);
+  end.room_high = kUnlimited_m;
+  end.room_low = 0.0;
+  EXPECT_NEAR(likely().size, typical, 1e-9) << "that end was seen";
+  // Where neither end was seen, what there is no room for on one side is on the other.
+  end = {0.5, 0.5, false, false};
+  end.room_high = 0.2;
+  EXPECT_NEAR(likely().size, typical, 1e-9);
+  EXPECT_NEAR(likely().middle, 0.7 - 0.5 * typical, 1e-9);
+  end.room_low = 0.4;
+  EXPECT_NEAR(likely().size, 1.3, 1e-9);
+  EXPECT_LE(likely().middle + 0.5 * likely().size, 0.7 + 1e-9);
+  EXPECT_GE(likely().middle - 0.5 * likely().size, -0.9 - 1e-9);
+}
+
 TEST(LikelyExtents, AHeightThatIsNotKnownMakesTheLengthUncertain) {
   const SeenExtent rear{0.0, 0.2, false, true};
   const SeenExtent cut{1.0, 1.5, false, true};

@@ -86,6 +86,7 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
   divide_tracks(input);
   initiate_tracks(input, workers);
   delete_tracks(input);
+  make_way();
   for (const TrackRecord& entry : living()) {
     entry.note_size(sizes_);
   }

@@ -100,6 +100,7 @@ class ObjectTracker {
   void divide(const TrackingInput& input, const Joint& joint, TrackRecord& body, TrackRecord& larger,
               TrackRecord& smaller);
   [[nodiscard]] TrackRecord* same_object(const TrackRecord& entry, const TrackingInput& input);
+  void make_way();
   void delete_tracks(const TrackingInput& input);
 
   TrackerConfig config_;

@@ -187,4 +187,24 @@ void ObjectTracker::delete_tracks(const TrackingInput& input) {
   }
 }
 
+/// Lets no track reach beyond what was seen of it into one of which more is seen now.
+void ObjectTracker::make_way() {
+  for (TrackRecord& entry : living()) {
+    if (!entry.predicted.is_sure_of_heading()) {
+      continue;
+    }
+    Room room;
+    const OrientedBox seen = entry.predicted.best().seen_box();
+    for (const TrackRecord& other : living()) {
+      if (other.confirmed && other.members.size() > entry.members.size()) {
+        const Room beside = room_beside(seen, entry.now.box, other.predicted.best().seen_box());
+        room = {std::min(room.ahead, beside.ahead), std::min(room.behind, beside.behind)};
+      }
+    }
+    entry.track.set_room(room);
+    entry.predicted.set_room(room);
+    entry.now = entry.predicted.estimate(sizes_);
+  }
+}
+
 }  // namespace dynamic_icp::tracking

@@ -252,5 +252,31 @@ TEST(ObjectTrackerView, WhatIsLongerThanOneBodyIsTwoOnceTheGapIsSeen) {
   }
 }
 
+TEST(ObjectTrackerView, ALorryAndItsTrailerShareNeitherPointsNorPlace) {
+  // Both come towards the sensor beside its way. The rear of the lorry and all of the trailer are seen at small angles.
+  const Traffic traffic = [](double t) {
+    const double front = 18.0 - 5.0 * t;
+    const Eigen::Matrix3d axes = upright_axes(std::numbers::pi);
+    const Vector3d velocity(-5.0, 0.0, 0.0);
+    return std::vector<MovingBox>{{{{front + 5.0, 8.0, 0.3}, axes, {10.0, 2.5, 3.6}}, velocity, 0.0},
+                                  {{{front + 15.6, 8.0, 0.3}, axes, {7.4, 2.5, 3.6}}, velocity, 0.0}};
+  };
+  ObjectTracker tracker{TrackerConfig{}};
+  for (int k = 0; k < 25; ++k) {
+    const double t = k * kScanPeriod_s;
+    const Objects objects = confirmed(step(tracker, view_of(traffic, t, {})));
+    if (k < 10) {
+      continue;
+    }
+    ASSERT_EQ(objects.size(), 2u) << "scan " << k;
+    const std::vector<MovingBox> truth = traffic(t);
+    for (const MovingBox& body : truth) {
+      const OrientedBox& box = nearest(objects, body.box.centre).box;
+      EXPECT_LT((box.centre - body.box.centre).head<2>().norm(), 0.5) << "scan " << k;
+      EXPECT_NEAR(box.size.x(), body.box.size.x(), 1.0) << "scan " << k;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking

@@ -162,6 +162,8 @@ void Track::end_at(const Eigen::Vector3d& along, double place_m) {
   }
 }
 
+void Track::set_room(const Room& room) { hypotheses_[best_].set_room(is_sure_of_heading() ? room : Room{}); }
+
 void Track::include(const OrientedBox& part, bool is_splinter) {
   for (BoxFilter& hypothesis : hypotheses_) {
     hypothesis.include(part, is_splinter);

@@ -56,6 +56,9 @@ class Track {
   /// Says that another box is a part of the body.
   void include(const OrientedBox& part, bool is_splinter);
 
+  /// Says how much farther the body may reach than it was seen to, if its heading is sure.
+  void set_room(const Room& room);
+
   /// Takes in another detection; the state is then that of its mean time.
   void correct(const Detection& detection, double stamp_s, const TrackConfig& config);
 
