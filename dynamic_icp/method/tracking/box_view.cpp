@@ -20,7 +20,7 @@ using Eigen::Vector3d;
 
 constexpr double kGrazing = 0.03;         // faces seen at a smaller angle show nothing
 constexpr double kEndOn = 0.25;           // part of an axis across the line of sight, below which it is end-on
-constexpr double kEndOnRear = 0.05;       // ... and to the rear of what has flat sides
+constexpr double kEndOnRear = 0.02;       // ... and to the rear of what has flat sides
 constexpr double kBehindEnd_m = 1.0;      // from so far behind such an end, and points are nearer before it ...
 constexpr double kNothingBeyond_m = 6.0;  // ... to so far nothing is seen of the side
 constexpr double kMinLorry_m = 5.0;       // what is shorter is no lorry
