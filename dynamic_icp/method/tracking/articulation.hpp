@@ -20,8 +20,9 @@ struct Joint {
   Eigen::Vector3d direction = Eigen::Vector3d::UnitX();  ///< unit, world: along the body, or across it
   double place_m = 0.0;                                  ///< points of one of them have direction . x > place_m
   bool is_across = false;
-  bool is_gap = false;    ///< seen while both move alike
-  double evidence = 0.0;  ///< F; of a gap 0
+  bool is_gap = false;         ///< seen while both move alike
+  bool is_of_another = false;  ///< of a gap: there is one only if what lies on one side belongs to another track
+  double evidence = 0.0;       ///< F; of a gap 0
 };
 
 /// Where what is long consists of two bodies, as a lorry and its trailer do, or what is wide. Nothing where one rigid
@@ -42,8 +43,9 @@ struct GapView {
 
 /// Where the side of what is longer than roads allow a lorry has a gap, as between a cab and its trailer: no points
 /// above the axles, where there would be 12 and more, nothing nearer before it, and to both sides of it points that lie
-/// at most half as far apart as it is wide. `seen`: the part of the box that was seen, world, at the mean time of the
-/// detection; `velocity`: m/s, world.
+/// at most half as far apart as it is wide. What is shorter has gaps, too, but none of 1.2 m unless it is of two
+/// bodies: `is_of_another`. `seen`: the part of the box that was seen, world, at the mean time of the detection;
+/// `velocity`: m/s, world.
 std::optional<Joint> find_gap(const GapView& view, const OrientedBox& seen, const Eigen::Vector3d& velocity);
 
 }  // namespace dynamic_icp::tracking

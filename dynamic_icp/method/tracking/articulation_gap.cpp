@@ -19,7 +19,8 @@ using Eigen::Vector3d;
 constexpr std::size_t kMaxPoints = 2048;  // are looked at
 constexpr double kLongest_m = 12.8;       // roads allow lorries 12 m; longer trailers and buses have no gap
 constexpr double kAxleHeight_m = 1.3;     // below it wheels and drawbars reach into a gap
-constexpr double kMinGap_m = 0.4;         // behind a cab
+constexpr double kMinGap_m = 0.4;         // behind a cab ...
+constexpr double kWideGap_m = 1.2;        // ... and between bodies
 constexpr double kBeside = 2.0;           // so many times as far to both sides of a gap ...
 constexpr double kCloser = 2.0;           // ... points lie so many times as close together ...
 constexpr std::size_t kMinBeside = 8;     // ... and so many on either side ...
@@ -86,9 +87,11 @@ bool may_lack_points(const Vector3d& place, const Vector3d& velocity, const Dete
 }  // namespace
 
 std::optional<Joint> find_gap(const GapView& view, const OrientedBox& seen, const Vector3d& velocity) {
-  if (seen.size.x() < kLongest_m || !view.detection.ground.offset_m) {
+  if (!view.detection.ground.offset_m) {
     return std::nullopt;
   }
+  const bool may_be_one = seen.size.x() < kLongest_m;
+  const double narrowest_m = may_be_one ? kWideGap_m : kMinGap_m;
   const Vector3d along = seen.axes.col(0);
   std::array<PlacedPoint, kMaxPoints> memory;
   const std::span<const PlacedPoint> placed = place_above_axles(view, along, velocity, memory);
@@ -96,7 +99,7 @@ std::optional<Joint> find_gap(const GapView& view, const OrientedBox& seen, cons
   double least = 1.0 / kCloser;
   for (std::size_t k = 1; k < placed.size(); ++k) {
     const double width_m = placed[k].along_m - placed[k - 1].along_m;
-    if (width_m < kMinGap_m) {
+    if (width_m < narrowest_m) {
       continue;
     }
     const auto ahead = placed.begin() + static_cast<std::ptrdiff_t>(k);
@@ -108,7 +111,7 @@ std::optional<Joint> find_gap(const GapView& view, const OrientedBox& seen, cons
     const Vector3d middle = 0.5 * (placed[k - 1].point + placed[k].point);
     if (is_gap && !may_lack_points(middle, velocity, view.detection)) {
       least = share;
-      joint = Joint{.direction = along, .place_m = along.dot(middle), .is_gap = true};
+      joint = Joint{.direction = along, .place_m = along.dot(middle), .is_gap = true, .is_of_another = may_be_one};
     }
   }
   return joint;
