@@ -25,7 +25,10 @@ constexpr double kInside_m = 1.0;        // an end so far within what was seen b
 constexpr double kFalseEnd_m = 0.1;      // what is seen so far beyond a face ...
 constexpr double kFalseEndSigmas = 3.0;  // ... and its noise shows that the body did not end there
 constexpr double kGrowth = 0.3;          // of a bound, towards what is seen beyond it: noise must not move it
-constexpr double kStump = 0.25;          // of the typical length or width
+constexpr double kStump = 0.25;          // of the typical length or width ...
+constexpr double kLorryStump = 0.75;     // ... but the widths of what is long and high differ little
+constexpr double kLorryLength_m = 5.0;
+constexpr double kLorryHeight_m = 2.8;
 constexpr double kVehicleWidth_m = 1.4;  // what is less wide may be short
 constexpr double kFacing = 0.3;          // cosine of the line of sight to a face that looks at the sensor
 constexpr double kGroundSigma_m = 0.05;
@@ -179,7 +182,7 @@ void BoxFilter::limit_length(double sigma_m) {
 
 /// What is a small part of the body that its other sides speak of did not end where it seemed to, away from the sensor.
 void BoxFilter::forget_stumps(const Detection& detection) {
-  if (!has_heading_ || is_part_ || is_as_large_as_person()) {
+  if (!has_heading_ || is_as_large_as_person()) {
     return;
   }
   const double height = span(2);
@@ -193,11 +196,13 @@ void BoxFilter::forget_stumps(const Detection& detection) {
       }
     }
   };
-  if (is_whole(1) && span(1) < kStump * typical_width_by_height(height).mean) {
+  const bool is_lorry = height > kLorryHeight_m && span(0) > kLorryLength_m;
+  const double narrow = is_lorry ? kLorryStump : kStump;
+  if (is_whole(1) && span(1) < narrow * typical_width_by_height(height).mean) {
     forget(1);
   }
   const double width = likely_width();
-  if (is_whole(0) && width > kVehicleWidth_m && span(0) < kStump * typical_length(width, height).mean) {
+  if (!is_part_ && is_whole(0) && width > kVehicleWidth_m && span(0) < kStump * typical_length(width, height).mean) {
     forget(0);
   }
 }

@@ -79,6 +79,36 @@ TEST(BoxFaces, OnlyBehindCabsAFrameGoesOnBelowTheTrailer) {
   }
 }
 
+TEST(BoxFaces, WhatIsLongAndHighIsNoStrip) {
+  // Beside the cab before it a part of the front of a trailer is seen, and its side: of a body that was divided, too.
+  const TrackConfig config;
+  const auto body_of = [&](double width_m, double height_m, bool is_part) {
+    Detection detection;
+    detection.points = testing::face_points({kRear_m, 3.0, -1.5}, {kRear_m, 3.0 + width_m, height_m - 1.5});
+    for (const Vector3d& point : testing::face_points({kRear_m, 3.0, -1.5}, {kRear_m + 10.0, 3.0, height_m - 1.5})) {
+      detection.points.push_back(point);
+    }
+    for (const Vector3d& point : detection.points) {
+      detection.directions.push_back(point.normalized());
+      detection.radial.push_back(detection.directions.back().x() * -8.0);
+      detection.times.push_back(0.0);
+    }
+    BoxFilter filter(detection, std::numbers::pi, {}, config);
+    if (is_part) {
+      filter.end_at(-Vector3d::UnitX(), -kRear_m);
+      filter.correct(detection, config);
+    }
+    return filter.estimate().box;
+  };
+  for (const bool is_part : {false, true}) {
+    const OrientedBox trailer = body_of(1.4, 4.0, is_part);
+    EXPECT_NEAR(trailer.size.y(), 2.5, 0.3) << "part " << is_part;
+    EXPECT_NEAR(trailer.centre.y() - 0.5 * trailer.size.y(), 3.0, 0.2) << "part " << is_part;
+    EXPECT_NEAR(body_of(2.4, 4.0, is_part).size.y(), 2.4, 0.1) << "as wide as was seen, part " << is_part;
+    EXPECT_NEAR(body_of(1.4, 2.0, is_part).size.y(), 1.4, 0.1) << "cars differ more, part " << is_part;
+  }
+}
+
 TEST(BoxFaces, WithoutHeadingABodyHasNoEnds) {
   const TrackConfig config;
   BoxFilter filter(rear_of_lorry(), std::nullopt, {}, config);
