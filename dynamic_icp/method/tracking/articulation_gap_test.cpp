@@ -104,7 +104,7 @@ TEST(ArticulationGap, AWideOneMayPartABodyFromWhatIsOfAnother) {
     const std::optional<Joint> joint = gap_of({.length_m = 10.0, .gap_at_m = 1.8, .gap_m = 1.9, .seed = seed});
     ASSERT_TRUE(joint) << "the rear of a lorry before its trailer, seed " << seed;
     EXPECT_TRUE(joint->is_of_another);
-    EXPECT_NEAR(-joint->place_m, kLorryFront_m + 1.8, 0.3) << "seed " << seed;
+    EXPECT_NEAR(-joint->place_m, kLorryFront_m + 1.8, 0.2) << "seed " << seed;
     EXPECT_FALSE(gap_of({.gap_at_m = 7.0, .gap_m = 1.9, .seed = seed})->is_of_another) << "of two for sure";
   }
 }

@@ -27,8 +27,6 @@ constexpr double kFalseEndSigmas = 3.0;  // ... and its noise shows that the bod
 constexpr double kGrowth = 0.3;          // of a bound, towards what is seen beyond it: noise must not move it
 constexpr double kStump = 0.25;          // of the typical length or width ...
 constexpr double kLorryStump = 0.75;     // ... but the widths of what is long and high differ little
-constexpr double kLorryLength_m = 5.0;
-constexpr double kLorryHeight_m = 2.8;
 constexpr double kVehicleWidth_m = 1.4;  // what is less wide may be short
 constexpr double kFacing = 0.3;          // cosine of the line of sight to a face that looks at the sensor
 constexpr double kGroundSigma_m = 0.05;
@@ -196,8 +194,7 @@ void BoxFilter::forget_stumps(const Detection& detection) {
       }
     }
   };
-  const bool is_lorry = height > kLorryHeight_m && span(0) > kLorryLength_m;
-  const double narrow = is_lorry ? kLorryStump : kStump;
+  const double narrow = is_lorry_sized(span(0), height) ? kLorryStump : kStump;
   if (is_whole(1) && span(1) < narrow * typical_width_by_height(height).mean) {
     forget(1);
   }

@@ -23,7 +23,6 @@ constexpr double kEndOn = 0.25;           // part of an axis across the line of 
 constexpr double kEndOnRear = 0.02;       // ... and to the rear of what has flat sides
 constexpr double kBehindEnd_m = 1.0;      // from so far behind such an end, and points are nearer before it ...
 constexpr double kNothingBeyond_m = 6.0;  // ... to so far nothing is seen of the side
-constexpr double kMinLorry_m = 5.0;       // what is shorter is no lorry
 constexpr double kOverGround_m = 1.0;     // what is lower may be the ground
 constexpr double kDimSpeed_mps = 0.5;
 constexpr double kFadingSpeed_mps = 1.0;  // below it, too, where the radial velocity falls ...
@@ -76,7 +75,7 @@ struct LookBeside {
 
 /// Whether a direction is that to the rear of a lorry or a trailer: boxes but for their fronts.
 bool is_rear_of_lorry(const Vector3d& outward, const Body& body) {
-  return body.height_m > kVanHeight_m && body.length_m > kMinLorry_m && outward.dot(body.axes.col(0)) < -0.5;
+  return is_lorry_sized(body.length_m, body.height_m) && outward.dot(body.axes.col(0)) < -0.5;
 }
 
 /// Whether there may be more of a side behind its end: points are too far apart there, or more of them are seen, of
@@ -106,7 +105,6 @@ bool is_true_end(const EndView& end, const Vector3d& outward, const LookBeside& 
   const double range = to_end.norm();
   const Vector3d sight = to_end / range;
   const Vector3d sideways = outward - outward.dot(sight) * sight;
-  const double cell = range * RangeImage::cell_width();
   const bool is_rear = is_rear_of_lorry(outward, body);
   const double end_on = is_rear ? kEndOnRear : kEndOn;
   if (sideways.norm() < end_on && (shows_face || outward.dot(sight) > 0.0)) {
@@ -123,6 +121,7 @@ bool is_true_end(const EndView& end, const Vector3d& outward, const LookBeside& 
   if (is_rear && sideways.norm() < kEndOn && may_go_on_behind(end, outward, body)) {
     return false;
   }
+  const double cell = range * RangeImage::cell_width();
   for (const double step : {cell, std::max(kLookBeyond_m, 3.0 * cell)}) {
     const Vector3d beyond = detection.T_sensor_world * (end.middle + (end.reach + step) * sideways.normalized());
     if (detection.view->is_above_all(beyond)) {

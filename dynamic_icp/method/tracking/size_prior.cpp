@@ -16,6 +16,8 @@ constexpr double kHeightSquare = 0.35;  // times the square of the logarithm of 
 constexpr double kMinSide_m = 0.3;
 constexpr double kLongest = 1.75;  // of the typical length: none was found longer
 constexpr double kHighestVehicle_m = 4.0;
+constexpr double kLorryLength_m = 5.0;
+constexpr double kLorryHeight_m = 2.8;
 constexpr double kPersonSide_m = 1.2;
 constexpr double kPersonHeight_m = 2.3;
 constexpr double kPersonSpeed_mps = 2.5;
@@ -59,6 +61,8 @@ Belief height_beyond(double seen_m) {
   const double more = std::max(0.0, kHighestVehicle_m - seen_m);
   return {seen_m + 0.5 * more, more * more / 12.0};
 }
+
+bool is_lorry_sized(double length_m, double height_m) { return length_m > kLorryLength_m && height_m > kLorryHeight_m; }
 
 bool is_person_sized(double longest_side_m, double height_m) {
   return longest_side_m < kPersonSide_m && height_m < kPersonHeight_m;

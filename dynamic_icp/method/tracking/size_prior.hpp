@@ -38,6 +38,10 @@ Belief typical_width_by_height(double height_m);
 /// anywhere from there up to the 4 m that roads allow.
 Belief height_beyond(double seen_m);
 
+/// Whether what is seen of a body is longer than 5 m and higher than vans are: a lorry, a bus or a trailer, which have
+/// flat sides and differ little in width.
+bool is_lorry_sized(double length_m, double height_m);
+
 /// Whether what is seen of a body is as small as a person, and whether it is as slow: if both, nothing suggests that
 /// there is more of it.
 bool is_person_sized(double longest_side_m, double height_m);

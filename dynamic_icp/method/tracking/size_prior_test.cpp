@@ -169,5 +169,11 @@ TEST(SizePrior, OnlySmallAndSlowBodiesAreLikePeople) {
   EXPECT_FALSE(is_walking_speed(7.0)) << "a part of something faster";
 }
 
+TEST(SizePrior, LorriesAreLongAndHigh) {
+  EXPECT_TRUE(is_lorry_sized(7.4, 3.6)) << "a trailer";
+  EXPECT_FALSE(is_lorry_sized(5.6, 2.4)) << "a van";
+  EXPECT_FALSE(is_lorry_sized(2.4, 3.6)) << "a cab alone";
+}
+
 }  // namespace
 }  // namespace dynamic_icp::tracking
