@@ -37,9 +37,10 @@ void decide_by_truth(const std::vector<RigLook>& rig_looks, Judgement& judgement
   if (!has_truth || !of_leader.is_known || !of_other.is_known) {
     return;  // as many agree
   }
-  const auto [nearer, farther] = std::minmax(of_leader.angle_rad(), of_other.angle_rad());
-  judgement.is_decided = nearer < kClearly * farther;
-  if (judgement.is_decided && of_other.angle_rad() < of_leader.angle_rad()) {
+  const double leader_rad = of_leader.angle_rad();
+  const double other_rad = of_other.angle_rad();
+  judgement.is_decided = std::min(leader_rad, other_rad) < kClearly * std::max(leader_rad, other_rad);
+  if (judgement.is_decided && other_rad < leader_rad) {
     judgement.wrong = {judgement.leader};
     judgement.leader = 1 - judgement.leader;
   }
