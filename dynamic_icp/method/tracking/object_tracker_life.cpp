@@ -132,18 +132,18 @@ void ObjectTracker::divide(const TrackingInput& input, const Joint& joint, Track
     part->take_name_of(body);
   }
   std::swap(body, larger);
-  if (joint.is_of_another) {
-    if (const TrackRecord* const same = same_object(smaller, input); same == nullptr || same == &body) {
-      std::swap(body, larger);
-    }
-    return;
-  }
   const std::span<TrackRecord> all = living();
   const bool is_known = std::any_of(all.begin(), all.end(), [&](const TrackRecord& other) {
     return other.was_divided_from(body) && distance_outside(other.now.box, smaller.now.box.centre) <= config_.growth_m;
   });
   if (is_known) {
     return;  // it was divided before and had taken what belongs to the other part
+  }
+  if (joint.is_of_another) {
+    if (const TrackRecord* const same = same_object(smaller, input); same == nullptr || same == &body) {
+      std::swap(body, larger);
+    }
+    return;
   }
   smaller.id = next_id_++;
   smaller.divided_from = body.id;
