@@ -24,6 +24,11 @@ constexpr double kTiltOfModel = 0.3;     // a patch is off a plane in three plac
 constexpr double kNoPointing = 1e-14;    // rad^2
 constexpr double kNoInformation = 1e-6;  // 1/rad^2 and 1/m^2
 
+/// Of the normal of a patch, rad^2 and 1/m^2 of its tangential matrix.
+double normal_variance(const mapping::Plane& plane, double model_variance) {
+  return plane.variance / plane.points + kTiltOfModel * model_variance;
+}
+
 }  // namespace
 
 PlaneTerms::PlaneTerms(const Scan& points, const mapping::PlaneMap& map, double stamp_s, double slice_s,
@@ -181,8 +186,7 @@ void PlaneTerms::sum(Slice& slice) const {
     }
     slice.sums.add(row);
     const mapping::Plane& plane = row.patch->plane;
-    const Eigen::Matrix3d noise =
-        (row.w * (plane.variance / plane.points + kTiltOfModel * model_variance_)) * plane.tangential;
+    const Eigen::Matrix3d noise = (row.w * normal_variance(plane, model_variance_)) * plane.tangential;
     const Eigen::Matrix3d turned = skew(row.lever) * noise;  // m = [X x n; n]
     slice.noise.topLeftCorner<3, 3>() += turned * skew(row.lever).transpose();
     slice.noise.topRightCorner<3, 3>() += turned;
@@ -201,26 +205,44 @@ Eigen::Matrix<double, 12, 12> PlaneTerms::by_displacements(const PlaneSums& sums
   return result;
 }
 
+/// Of those whose normals err: so many that err alike would average as they do.
+double PlaneTerms::independent_patches() const {
+  std::vector<double> noise(members_.size());
+  for (const Row& row : rows_) {
+    if (row.patch != nullptr) {
+      noise[row.patch->id] +=
+          row.w * normal_variance(row.patch->plane, model_variance_) * row.patch->plane.tangential.trace();
+    }
+  }
+  double sum = 0.0;
+  double squares = 0.0;
+  for (const double one : noise) {
+    sum += one;
+    squares += one * one;
+  }
+  return squares > 0.0 ? sum * sum / squares : 0.0;
+}
+
 /// Normals err, and of a motion along which no surface lies across, as along a tunnel or around it, the sum of w m m^T
 /// is their noise alone. The map, which moves with us, confirms any speed of it, or none. The principal motions are
 /// those that have most and least of that noise in their information; of one that has too much the map has a
 /// displacement of its own in each scan, and its last sweep another one.
 void PlaneTerms::hold_motions(double max_noise_share) {
-  Matrix6d information = kNoInformation * Matrix6d::Identity();
   Matrix6d noise = Matrix6d::Zero();
+  MotionInformation scan{kNoInformation * Matrix6d::Identity(), {}};
   for (const Slice& slice : slices_) {
-    information += slice.sums.S();
+    scan.all += slice.sums.S();
     noise += slice.noise;
   }
   noise.bottomLeftCorner<3, 3>() = noise.topRightCorner<3, 3>().transpose();
   Matrix6d to_map = Matrix6d::Zero();
   to_map.topLeftCorner<3, 3>() = R_map_reference_;
   to_map.bottomRightCorner<3, 3>() = R_map_reference_;
-  const Eigen::LLT<Matrix6d> root(information);
-  const Matrix6d whiten = root.matrixL().solve(Matrix6d(to_map.transpose()));
-  const estimation::SymmetricEigen shares = estimation::symmetric_eigen(whiten * noise * whiten.transpose());
-  motions_ = root.matrixU().solve(shares.vectors);
-  held_ = (1.0 - shares.values.array() / max_noise_share).max(kMinHeld).min(1.0 - 1e-9);
+  scan.noise = to_map.transpose() * noise * to_map;
+  const ContinuedMotions found = continue_motions(scan, past_motions_, independent_patches(), max_noise_share);
+  motions_ = found.principal.motions;
+  shown_motions_ = found.sums;
+  held_ = (1.0 - found.principal.noise_shares.array() / max_noise_share).max(kMinHeld).min(1.0 - 1e-9);
   const Vector6d known = held_.array() / (1.0 - held_.array());
   common_information_.setZero();
   common_information_.diagonal().head<12>() << known, known;

@@ -16,6 +16,7 @@
 #include "dynamic_icp/method/mapping/plane_map.hpp"
 #include "dynamic_icp/method/window/doppler_terms.hpp"
 #include "dynamic_icp/method/window/plane_sums.hpp"
+#include "dynamic_icp/method/window/principal_motions.hpp"
 #include "dynamic_icp/method/window/spline_trajectory.hpp"
 
 namespace dynamic_icp::window {
@@ -64,6 +65,12 @@ class PlaneTerms {
 
   /// From the next `associate` on.
   void set_last_sweep(LastSweep sweep) { last_ = std::move(sweep); }
+
+  /// What past scans showed of the motions, about the reference, its axes; from the next `associate` on.
+  void set_past_motions(const MotionInformation& past) { past_motions_ = past; }
+
+  /// With those of this scan, at the last `associate`.
+  [[nodiscard]] const MotionInformation& shown_motions() const { return shown_motions_; }
 
   /// The middle of each slice, s.
   [[nodiscard]] std::vector<double> slice_times() const;
@@ -136,6 +143,7 @@ class PlaneTerms {
   static void add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g);
   void add_last_sweep(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
   [[nodiscard]] double recent_share(const mapping::Plane& plane) const;
+  [[nodiscard]] double independent_patches() const;
   void hold_motions(double max_noise_share);
 
   const Scan& scan_;
@@ -155,6 +163,8 @@ class PlaneTerms {
   Eigen::Vector2d pointing_variance_ = Eigen::Vector2d::Zero();
   double model_variance_ = 0.0;  ///< m^2, of a patch from a plane
   CommonMatrix common_information_ = CommonMatrix::Identity();
+  MotionInformation past_motions_;
+  MotionInformation shown_motions_;
   Vector6d held_ = Vector6d::Ones();
 };
 

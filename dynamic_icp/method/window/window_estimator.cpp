@@ -87,6 +87,7 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
   scan_error_ = {};
   map_error_.setZero();
   map_age_ = 0.0;
+  shown_motions_ = {};
   scans_ = 1;
   const std::size_t coefficients = trajectory_.coefficients().size();
   if (quadratic_) {
@@ -184,6 +185,7 @@ WindowMotion WindowEstimator::update(const WindowScan& scan, const Scan& first_p
     motion.diverged = true;
     return motion;
   }
+  shown_motions_ = planes->shown_motions();
   learn_roughness(motion.planes);
   motion_between(last_s, motion);
   find_twist();
@@ -303,6 +305,7 @@ void WindowEstimator::compare_with_planes(const Scan& points, bool adapt, const 
                                           PlaneTerms& planes) const {
   planes.set_stamp(stamp_s());
   planes.set_last_sweep(last_sweep());
+  planes.set_past_motions(shown_motions_);
   planes.associate(trajectory_, map_error_,
                    {config_.min_sigma_m, model_sigma_m_, config_.repeated_patches, kPlaneKernel,
                     config_.max_noise_share, pointing_variance(points)},

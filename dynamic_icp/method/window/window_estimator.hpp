@@ -249,8 +249,9 @@ class WindowEstimator {
   LearnedVariance scan_error_variance_;  ///< (m/s)^2, of what all Doppler values of a scan have in common
   double cell_variance_ = 1e-4;          ///< (m/s)^2
   double model_sigma_m_ = 0.003;
-  double map_age_ = 0.0;        ///< scans, by which the mean sweep of the map is older than the last one
-  double last_middle_s_ = 0.0;  ///< of the last sweep, while the next is added
+  double map_age_ = 0.0;             ///< scans, by which the mean sweep of the map is older than the last one
+  MotionInformation shown_motions_;  ///< by planes, so far; about the reference, its axes
+  double last_middle_s_ = 0.0;       ///< of the last sweep, while the next is added
   double stamp_s_ = 0.0;
   double begin_s_ = 0.0;
   double end_s_ = 0.0;

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <Eigen/Cholesky>
+
 #include "dynamic_icp/method/base/scan_limits.hpp"
 #include "dynamic_icp/method/base/state_archive.hpp"
 #include "dynamic_icp/method/window/learned_field.hpp"
@@ -23,7 +25,7 @@ void WindowEstimator::state(StateArchive& archive) {
   archive(trajectory_, theta_, map_error_, coefficients_0_, vibration_0_, theta_0_, map_error_0_, stamp_errors_,
           stamp_errors_0_, cells_, field_covariance_root_, motion_prior_, pointing_variance_, stamp_variance_,
           last_stamp_.value, last_stamp_.variance, this_stamp_.value, this_stamp_.variance, period_, period_variance_,
-          scan_error_variance_, cell_variance_, model_sigma_m_, map_age_);
+          scan_error_variance_, cell_variance_, model_sigma_m_, map_age_, shown_motions_.all, shown_motions_.noise);
   archive(twist_.angular, twist_.linear, twist_.covariance, stamp_s_, begin_s_, end_s_, first_.stamp_s, first_.begin_s,
           first_.end_s, scans_, scans_ever_, is_calibrated_);
   check_read(archive);
@@ -40,6 +42,8 @@ void WindowEstimator::check_read(const StateArchive& archive) const {
                   "a time of a scan");
   archive.require(map_error_.size() == Layout::kMapError && cell_variance_ >= 0.0 && map_age_ >= 0.0,
                   "the error of the map");
+  archive.require(shown_motions_.all.ldlt().isPositive() && shown_motions_.noise.ldlt().isPositive(),
+                  "what planes show of motions");
   archive.require(field_.has_value() || (scans_ever_ == 0 && !is_calibrated_), "the error field");
   if (!field_) {
     return;
