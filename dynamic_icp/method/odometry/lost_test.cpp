@@ -179,5 +179,80 @@ TEST(WindowOdometryLost, RefusesConfigurationsOutOfRange) {
   EXPECT_THROW(make_odometry(config, {}, 1), UsageError);
 }
 
+/// Lorries creep on both sides. Their Doppler is that of what stands, up to a scan.
+class CreepingLorries {
+ public:
+  explicit CreepingLorries(int noticed) : noticed_(noticed) {
+    drive_.world.cars = {{{1.0, 2.0, 0.3}, {26.0, 4.5, 4.0}, velocity_},
+                         {{6.0, -5.0, 0.3}, {16.0, -2.5, 4.0}, velocity_}};
+  }
+
+  [[nodiscard]] const Drive& drive() const { return drive_; }
+
+  [[nodiscard]] RawScan scan(int k) const {
+    auto [raw, car] = scan_at(drive_.world, drive_.path, drive_.sensor, k * drive_.period_s);
+    for (std::size_t i = 0; i < car.size() && k < noticed_; ++i) {
+      raw.doppler[i] -= car[i] >= 0 ? raw.points[i].normalized().dot(velocity_) : 0.0;
+    }
+    return raw;
+  }
+
+ private:
+  Vector3d velocity_{1.5, 0.0, 0.0};  // along the path
+  Drive drive_{street(), circle(3.0, 0.0), {}};
+  int noticed_;
+};
+
+double known_of_sensor(const Odometry& odometry) {
+  const window::SensorCalibration calibration = odometry.calibration().value();
+  double trace = 0.0;
+  for (std::size_t k = 0; k < calibration.information.size(); ++k) {
+    trace += calibration.information[k][k];
+  }
+  return trace;
+}
+
+TEST(WindowOdometryLost, BeginsAnewWhenWhatItTookForStaticInTheFirstScansMoves) {
+  constexpr int kNoticed = 4;
+  const CreepingLorries lorries(kNoticed);
+  const auto odometry = make_odometry(WindowOdometryConfig{}, {}, 1);
+  double known_before = 0.0;
+  for (int k = 0; k < 20; ++k) {
+    const Frame frame = odometry->process(lorries.scan(k));
+    EXPECT_EQ(frame.status == FrameStatus::kLost, k == kNoticed) << k;
+    const double known = known_of_sensor(*odometry);
+    if (k == kNoticed) {
+      EXPECT_LT(known, known_before) << "what was learned of the sensor is forgotten";
+    } else if (k > kNoticed + 2) {
+      EXPECT_LT(error_of(lorries.drive(), frame, k - 1, k).move_m, 0.01) << k;
+    }
+    known_before = known;
+  }
+}
+
+TEST(WindowOdometryLost, GoesOnWhenWhatStoodForLongMoves) {
+  constexpr int kNoticed = 15;
+  const CreepingLorries lorries(kNoticed);
+  const auto odometry = make_odometry(WindowOdometryConfig{}, {}, 1);
+  for (int k = 0; k <= kNoticed; ++k) {
+    EXPECT_NE(odometry->process(lorries.scan(k)).status, FrameStatus::kLost) << k;
+  }
+}
+
+TEST(WindowOdometryLost, GoesOnWithAKnownSensorWhenWhatStoodMoves) {
+  constexpr int kNoticed = 4;
+  const CreepingLorries lorries(kNoticed);
+  const auto before = make_odometry(WindowOdometryConfig{}, {}, 1);
+  for (int k = 0; k < 3; ++k) {
+    before->process(lorries.scan(k));
+  }
+  SensorContext context;
+  context.calibration = before->calibration();
+  const auto odometry = make_odometry(WindowOdometryConfig{}, context, 1);
+  for (int k = 0; k <= kNoticed; ++k) {
+    EXPECT_NE(odometry->process(lorries.scan(k)).status, FrameStatus::kLost) << k;
+  }
+}
+
 }  // namespace
 }  // namespace dynamic_icp::odometry

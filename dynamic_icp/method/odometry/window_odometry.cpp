@@ -103,6 +103,8 @@ Frame WindowOdometry::process(const ScanView& raw) {
   } else if (found == FrameStatus::kTimeGap) {
     predict_only(stamp_s, found, frame);
     begin(now, frame.T_world_sensor, start_omega());
+  } else if (was_misled()) {
+    begin_again(now, frame);
   } else {
     update(now, frame);
   }
@@ -220,6 +222,16 @@ std::optional<Eigen::Isometry3d> WindowOdometry::search_second(const window::Win
   return found.T_map_sensor;
 }
 
+/// The map, the objects and what is known of the sensor begin anew with the scan at hand.
+void WindowOdometry::begin_again(const window::WindowScan& now, Frame& frame) {
+  set_lost(estimator_.trajectory().at_end(), now.stamp_s - estimator_.stamp_s(), frame);
+  estimator_ = window::WindowEstimator(config_.window);
+  estimator_.sort(memory_.whole, workers_);
+  estimator_.field_errors(memory_.whole, workers_, memory_.errors);
+  begin(now, frame.T_world_sensor, start_omega());
+  tracker_.forget();
+}
+
 void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
   std::optional<Eigen::Isometry3d> start;
   if (estimator_.scans() == 1 && config_.search_start) {
@@ -235,9 +247,7 @@ void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
   };
   const window::WindowMotion motion = estimator_.update(now, first_points_, map_, start, is_believed, workers_);
   if (motion.diverged || !is_believed(motion)) {
-    const Eigen::Isometry3d predicted = motion::motion_of(last.omega, ego_.velocity_sensor, -dt_s);
-    set_motion(frame, FrameStatus::kLost, T_world_sensor_, predicted);
-    frame.alignment.covariance = Matrix6d(Vector6d::Constant(dt_s * dt_s).asDiagonal());
+    set_lost(last, dt_s, frame);
     begin(now, frame.T_world_sensor, {last.omega, config_.window.start_omega_rad_s});
     return;
   }
@@ -245,6 +255,13 @@ void WindowOdometry::update(const window::WindowScan& now, Frame& frame) {
   first_points_ = {};
   describe(motion, dt_s, frame);
   renew_bent_map(now, is_second, frame);
+}
+
+/// The motion that is expected, `dt_s` after the last scan.
+void WindowOdometry::set_lost(const window::TrajectoryPoint& last, double dt_s, Frame& frame) const {
+  const Eigen::Isometry3d predicted = motion::motion_of(last.omega, ego_.velocity_sensor, -dt_s);
+  set_motion(frame, FrameStatus::kLost, T_world_sensor_, predicted);
+  frame.alignment.covariance = Matrix6d(Vector6d::Constant(dt_s * dt_s).asDiagonal());
 }
 
 /// Whether the Doppler of what stands bears out the velocity of the estimator, whose error field takes up any

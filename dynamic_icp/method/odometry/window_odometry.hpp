@@ -73,7 +73,10 @@ class WindowOdometry final : public Odometry {
   [[nodiscard]] ego_motion::EgoPrior ego_prior() const;
   [[nodiscard]] ego_motion::EgoVelocity velocity_before() const;
   void begin(const window::WindowScan& now, const Eigen::Isometry3d& T_map_sensor, const window::StartOmega& omega);
+  [[nodiscard]] bool was_misled() const;
+  void begin_again(const window::WindowScan& now, Frame& frame);
   void update(const window::WindowScan& now, Frame& frame);
+  void set_lost(const window::TrajectoryPoint& last, double dt_s, Frame& frame) const;
   [[nodiscard]] window::StartOmega start_omega() const;
   [[nodiscard]] std::optional<Eigen::Isometry3d> search_second(const window::WindowScan& now) const;
   [[nodiscard]] bool is_borne_out(const window::WindowScan& now) const;

@@ -3,6 +3,9 @@
 
 // Preset `default`: what stands and what moves, by the Doppler.
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numeric>
 
 #include "dynamic_icp/method/ego_motion/consensus_regression.hpp"
@@ -20,6 +23,12 @@ namespace {
 
 constexpr double kAccelerationSigma_mps2 = 3.0;
 constexpr double kNoBias_mps = 1e-3;
+
+// Of a sensor that is known from so few scans much that passes for static may move: of the points that lie so near a
+// plane of the map this share, in which no traffic lies that was known to move.
+constexpr int kFewScans = 10;
+constexpr double kOnPlane_m = 0.2;
+constexpr double kMisled = 0.25;
 
 }  // namespace
 
@@ -127,6 +136,25 @@ void WindowOdometry::separate_static_points() {
     ego_motion::take_out_lever_arms(memory_.whole, *lever_arm_omega_, workers_, -1.0);
   }
   static_points_ = whole.select(static_rows(memory_.thinned, memory_.is_moving));
+}
+
+/// Whether much of the map moves. As long as the errors of the Doppler are not known, traffic that creeps beside the
+/// sensor may pass for static, and what is learned of the motion and the sensor then is wrong.
+bool WindowOdometry::was_misled() const {
+  if (!estimator_.is_new(kFewScans)) {
+    return false;
+  }
+  const Eigen::Isometry3d T_map_sensor = predicted_motion(ego_.velocity_sensor).T_world_sensor;
+  std::size_t standing = 0;
+  std::size_t moving = 0;
+  for (const std::uint32_t row : memory_.thinned) {
+    const Eigen::Vector3d point = T_map_sensor * memory_.whole.points()[row];
+    const mapping::Patch* const patch = map_.find(map_.finest_cell(point));
+    if (patch != nullptr && std::abs(patch->plane.distance(point)) < kOnPlane_m) {
+      ++(memory_.is_moving[row] != 0 ? moving : standing);
+    }
+  }
+  return static_cast<double>(moving) > kMisled * static_cast<double>(moving + standing);
 }
 
 /// The velocity as it is known now, and what moves against it.

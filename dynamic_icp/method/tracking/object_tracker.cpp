@@ -97,6 +97,12 @@ std::span<const TrackedObject> ObjectTracker::update(const Scan& scan, std::span
   return std::span(objects_).first(living_);
 }
 
+void ObjectTracker::forget() {
+  living_ = 0;
+  ground_ = {};
+  sizes_ = {};
+}
+
 /// Of the points of a deskewed scan.
 const ScanPatches& ObjectTracker::patches_of(const Scan& scan, const ScanPatches* measured, const Workers& workers) {
   if (measured != nullptr && !scan.has_times()) {

@@ -51,6 +51,9 @@ class ObjectTracker {
   void flag_expected(const Scan& scan, const ScanPatches& patches, std::span<const double> radial,
                      const SensorMotion& sensor, const Workers& workers, std::vector<std::uint8_t>& is_moving);
 
+  /// Forgets objects and ground, after scans in which what passed for static was not. No number comes again.
+  void forget();
+
   /// Clears `is_moving` of the rows that are too near to their sensor to be objects, in a scan that is not deskewed.
   /// `patches`: of this scan.
   void clear_carrier(const Scan& scan, const ScanPatches& patches, std::vector<std::uint8_t>& is_moving) const;
