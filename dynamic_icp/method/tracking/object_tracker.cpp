@@ -24,6 +24,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kMinHeight_m = 0.25;  // of what is no ground
+constexpr double kShown = 0.95;        // probability with which a heading is one of the traffic
 constexpr int kMany = 1 << 30;         // no drive has so many objects
 
 /// Whether all of it lies flat on the ground, which seems to move where the velocity of the sensor is wrong.
@@ -192,7 +193,7 @@ void ObjectTracker::gather_traffic(const SensorMotion& sensor) {
   };
   add(sensor.T_world_sensor.translation(), sensor.velocity_world, sensor.velocity_world);
   for (const TrackRecord& entry : living()) {
-    if (entry.confirmed && entry.predicted.is_sure_of_heading()) {
+    if (entry.confirmed && entry.predicted.shows_heading(kShown)) {
       add(entry.now.box.centre, entry.now.velocity, entry.now.box.axes.col(0));
     }
   }

@@ -27,8 +27,11 @@ View with_wrong_velocity(View view, const Vector3d& error) {
   return view;
 }
 
+/// In the first scan, whatever is not known of their headings.
 std::vector<TrackedObject> confirmed_with(const View& view, double ego_sigma_mps) {
-  ObjectTracker tracker{TrackerConfig{}};
+  TrackerConfig config;
+  config.confirm_anyway_scans = 1;
+  ObjectTracker tracker{config};
   const auto objects =
       tracker.update(view.scan, view.radial, view.is_moving, SensorMotion{}, ground_from(Eigen::Isometry3d::Identity()),
                      Workers(1), ego_sigma_mps * ego_sigma_mps * Matrix3d::Identity());

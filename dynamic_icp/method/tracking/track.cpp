@@ -204,6 +204,14 @@ bool Track::has_heading() const {
   return std::any_of(hypotheses_.begin(), hypotheses_.end(), [](const BoxFilter& one) { return one.has_heading(); });
 }
 
+double Track::probability() const {
+  double weights = 0.0;
+  for (const BoxFilter& hypothesis : hypotheses_) {
+    weights += std::exp(hypothesis.log_posterior() - best().log_posterior());
+  }
+  return 1.0 / weights;
+}
+
 /// What the traffic around, as it is known now, says of the hypotheses.
 void Track::ask_traffic(const Detection& detection, const TrackConfig& config) {
   if (detection.traffic == nullptr) {

@@ -65,6 +65,14 @@ class Track {
   /// Whether the sides of the body tell its heading, and nothing else explains it.
   [[nodiscard]] bool is_sure_of_heading() const { return has_sides_ && hypotheses_.size() == 1; }
 
+  /// Of the best hypothesis, among those that are left.
+  [[nodiscard]] double probability() const;
+
+  /// Whether its sides show the heading, with this probability at least.
+  [[nodiscard]] bool shows_heading(double least_probability) const {
+    return has_sides_ && best().has_heading() && probability() >= least_probability;
+  }
+
   [[nodiscard]] double time_s() const { return time_s_; }
   [[nodiscard]] const BoxFilter& best() const { return hypotheses_[best_]; }
   [[nodiscard]] const BodyFilter& body() const { return best().body(); }

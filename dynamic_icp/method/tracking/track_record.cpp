@@ -16,6 +16,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kBeyondEgo = 3.0;        // standard deviations of the velocity of the sensor
+constexpr double kDecided = 0.75;         // probability: else it is as likely to point, move and lie elsewhere
 constexpr int kSureScans = 5;             // sizes are known after so many
 constexpr std::size_t kUsualRows = 4096;  // of a track; more cost an allocation now and then
 constexpr double kNegligible = 0.02;      // a model of motion less likely than that
@@ -48,7 +49,8 @@ bool TrackRecord::is_credible(const EgoError& ego, const TrackerConfig& config) 
     return false;
   }
   const double variance = now.velocity_covariance.topLeftCorner<2, 2>().trace();
-  return variance < config.confirm_sigma_mps * config.confirm_sigma_mps || seen >= config.confirm_anyway_scans;
+  const bool is_known = variance < config.confirm_sigma_mps * config.confirm_sigma_mps;
+  return (is_known && predicted.probability() > kDecided) || seen >= config.confirm_anyway_scans;
 }
 
 void TrackRecord::note_motion(double stamp_s, const TrackerConfig& config) {
@@ -66,7 +68,7 @@ bool TrackRecord::is_over(double stamp_s, const TrackerConfig& config) const {
   if (!has_moved && now.velocity.norm() < config.min_speed_mps) {
     return true;
   }
-  const double variance = now.centre_covariance.topLeftCorner<2, 2>().trace();
+  const double variance = predicted.body().covariance().diagonal().head<2>().sum();  // not of what is hidden of it
   const bool is_vague = variance > config.coast_sigma_m * config.coast_sigma_m;
   return (missed > 0 && (is_vague || stamp_s - track.time_s() > config.coast_s)) || stamp_s - moved_s > config.stand_s;
 }

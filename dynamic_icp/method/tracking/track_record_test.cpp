@@ -55,18 +55,44 @@ TEST(TrackRecord, WhatMovedBeforeMayStandForAWhile) {
 }
 
 TEST(TrackRecord, HiddenOnesLiveAsLongAsTheirPlaceIsKnown) {
-  const TrackerConfig config;
+  TrackerConfig config;
+  config.coast_s = config.stand_s = 100.0;
   TrackRecord record = record_of(8.0);
   record.confirmed = record.has_moved = true;
   record.moved_s = 10.0;
   record.missed = 1;
-  record.now.centre_covariance.setZero();
-  EXPECT_FALSE(record.is_over(10.0 + 0.5 * std::min(config.coast_s, config.stand_s), config));
-  const double vague_m = 1.1 * config.coast_sigma_m;
-  record.now.centre_covariance(0, 0) = vague_m * vague_m;
-  EXPECT_TRUE(record.is_over(10.1, config));
+  record.now.centre_covariance = 100.0 * Eigen::Matrix3d::Identity();
+  EXPECT_FALSE(record.is_over(10.1, config)) << "only its length is not known";
+  record.predict(14.0, {}, {});
+  ASSERT_GT(record.predicted.body().covariance().diagonal().head<2>().sum(), 4.0 * config.coast_sigma_m);
+  EXPECT_TRUE(record.is_over(14.0, config));
   record.missed = 0;
-  EXPECT_FALSE(record.is_over(10.1, config)) << "it is seen";
+  EXPECT_FALSE(record.is_over(14.0, config)) << "it is seen";
+}
+
+/// The corner of a body of which as much is seen of one side as of the other.
+TEST(TrackRecord, OneThatMayAsWellPointElsewhereIsNotCredibleAtOnce) {
+  Detection detection;
+  const Vector3d velocity(0.0, -3.0, 0.0);
+  for (int i = 0; i < 60; ++i) {
+    const double along = 1.5 * (i / 2) / 29.0;
+    const Vector3d point =
+        Vector3d(40.0, 40.0, 0.05 * (i % 20)) + (i % 2 == 0 ? along * Vector3d::UnitX() : along * Vector3d::UnitY());
+    detection.points.push_back(point);
+    detection.directions.push_back(point.normalized());
+    detection.radial.push_back(velocity.dot(point.normalized()));
+    detection.times.push_back(0.0);
+  }
+  const TrackerConfig config;
+  TrackRecord record;
+  record.track.begin(detection, 10.0, {});
+  record.predict(10.0, {}, {});
+  record.now.velocity_covariance.setZero();
+  record.seen = 1;
+  EXPECT_LT(record.predicted.probability(), 0.6);
+  EXPECT_FALSE(record.is_credible({}, config));
+  record.seen = config.confirm_anyway_scans;
+  EXPECT_TRUE(record.is_credible({}, config));
 }
 
 TEST(TrackRecord, WhatTheSensorsOwnErrorExplainsIsNotCredible) {
