@@ -24,9 +24,9 @@ namespace {
 constexpr double kAccelerationSigma_mps2 = 3.0;
 constexpr double kNoBias_mps = 1e-3;
 
-// Of a sensor that is known from so few scans much that passes for static may move: of the points that lie so near a
-// plane of the map this share, in which no traffic lies that was known to move.
-constexpr int kFewScans = 10;
+// So long after the beginning much that passes for static may move: of the points that lie so near a plane of the map
+// this share, in which no traffic lies that was known to move.
+constexpr double kBeginning_s = 1.0;
 constexpr double kOnPlane_m = 0.2;
 constexpr double kMisled = 0.25;
 
@@ -141,7 +141,7 @@ void WindowOdometry::separate_static_points() {
 /// Whether much of the map moves. As long as the errors of the Doppler are not known, traffic that creeps beside the
 /// sensor may pass for static, and what is learned of the motion and the sensor then is wrong.
 bool WindowOdometry::was_misled() const {
-  if (!estimator_.is_new(kFewScans)) {
+  if (estimator_.is_calibrated() || stream_.elapsed_s() > kBeginning_s) {
     return false;
   }
   const Eigen::Isometry3d T_map_sensor = predicted_motion(ego_.velocity_sensor).T_world_sensor;

@@ -91,8 +91,8 @@ class WindowEstimator {
   /// What was learned of the sensor; nothing before the first scan and where nothing is learned.
   [[nodiscard]] std::optional<SensorCalibration> calibration() const;
 
-  /// Whether what is known of the sensor comes from so many scans at most.
-  [[nodiscard]] bool is_new(int scans) const { return scans_ever_ <= scans && !is_calibrated_; }
+  /// Whether a calibration was given.
+  [[nodiscard]] bool is_calibrated() const { return is_calibrated_; }
 
   /// The first scan in a map; nothing of the past is kept but the error field. Velocities in sensor axes at the stamp.
   /// Throws UsageError when the calibration is that of another sensor.
