@@ -18,6 +18,12 @@ namespace {
 constexpr double kLongestSweep_s = 4.0 * kMaxPointTime_s;
 constexpr int kManyScans = 1 << 30;
 
+/// Whether a matrix may be a sum of x x^T, but for what rounding does to a singular one.
+bool is_sum_of_squares(const Matrix6d& sum) {
+  constexpr double kRounding = 1e-9;
+  return Matrix6d(sum + kRounding * sum.trace() * Matrix6d::Identity()).ldlt().isPositive();
+}
+
 }  // namespace
 
 void WindowEstimator::state(StateArchive& archive) {
@@ -42,7 +48,7 @@ void WindowEstimator::check_read(const StateArchive& archive) const {
                   "a time of a scan");
   archive.require(map_error_.size() == Layout::kMapError && cell_variance_ >= 0.0 && map_age_ >= 0.0,
                   "the error of the map");
-  archive.require(shown_motions_.all.ldlt().isPositive() && shown_motions_.noise.ldlt().isPositive(),
+  archive.require(is_sum_of_squares(shown_motions_.all) && is_sum_of_squares(shown_motions_.noise),
                   "what planes show of motions");
   archive.require(field_.has_value() || (scans_ever_ == 0 && !is_calibrated_), "the error field");
   if (!field_) {
