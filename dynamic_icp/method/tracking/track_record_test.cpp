@@ -2,8 +2,6 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/tracking/track_record.hpp"
 
-#include <algorithm>
-
 #include <gtest/gtest.h>
 
 namespace dynamic_icp::tracking {
@@ -64,7 +62,8 @@ TEST(TrackRecord, HiddenOnesLiveAsLongAsTheirPlaceIsKnown) {
   record.now.centre_covariance = 100.0 * Eigen::Matrix3d::Identity();
   EXPECT_FALSE(record.is_over(10.1, config)) << "only its length is not known";
   record.predict(14.0, {}, {});
-  ASSERT_GT(record.predicted.body().covariance().diagonal().head<2>().sum(), 4.0 * config.coast_sigma_m);
+  ASSERT_GT(record.predicted.body().covariance().diagonal().head<2>().sum(),
+            2.0 * config.coast_sigma_m * config.coast_sigma_m);
   EXPECT_TRUE(record.is_over(14.0, config));
   record.missed = 0;
   EXPECT_FALSE(record.is_over(14.0, config)) << "it is seen";

@@ -2,6 +2,7 @@
 // SPDX-License-Identifier: MIT
 #include "dynamic_icp/method/window/principal_motions.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <random>
 
