@@ -133,6 +133,18 @@ TEST_F(RealSensorTest, AnErrorAsThatOfHerculesMovesNoCarThatStands) {
   EXPECT_LT((positions.back() - positions.front()).norm(), 0.025) << "0.7 m by the Doppler";
 }
 
+// Traffic hides all that would show the motion across, and the Doppler errs by 0.5 m/s across the view that is left.
+TEST_F(RealSensorTest, MovingBodiesTellAnErrorFromAMotionInAJam) {
+  const std::string drive = (folder_ / "drive").string();
+  const Outcome made =
+      run_program("simulate traffic-jam --seed 607 --frames 40 --sensor aeries-ii-real --quiet --output " + drive);
+  ASSERT_EQ(made.status, 0) << made.text;
+  const auto rte_m = [&](const std::string& run) {
+    return run_and_summarise(drive + run).at("rte_rmse_m").get<double>();
+  };
+  EXPECT_LT(rte_m(""), 0.6 * rte_m(" --ablation no-dpp"));
+}
+
 TEST_F(RealSensorTest, FindsStampsThatJitter) {
   EXPECT_LT(simulate_and_run("highway", "--set lidar.timing.stamp_jitter_s=0.001").rte_mm, 18.0);
 }

@@ -366,6 +366,7 @@ void WindowOdometry::track_objects(const window::WindowScan& now, Frame& frame) 
     objects = tracker_.update(memory_.whole, memory_.radial, memory_.may_be_object,
                               tracking::motion_at(frame.T_world_sensor, sweep.omega, sweep.velocity), support_,
                               workers_, ego_.covariance, &memory_.patches);
+    estimator_.learn_from(measured_bodies(objects, sweep, frame.T_world_sensor), workers_);
   }
   describe_tracks(frame, memory_.whole, memory_.is_moving, memory_.thinned, objects, workers_);
 }

@@ -85,6 +85,9 @@ class WindowOdometry final : public Odometry {
   void predict_only(double stamp_s, FrameStatus status, Frame& frame) const;
   void judge_points(const window::WindowScan& now);
   void track_objects(const window::WindowScan& now, Frame& frame);
+  [[nodiscard]] std::vector<window::SeenBody> measured_bodies(std::span<const tracking::TrackedObject> objects,
+                                                              const motion::SweepMotion& sweep,
+                                                              const Eigen::Isometry3d& T_world_sensor) const;
   [[nodiscard]] motion::SweepMotion sweep_of(const window::WindowScan& now) const;
   [[nodiscard]] Config configuration() const override { return config_; }
   void state(StateArchive& archive) override;

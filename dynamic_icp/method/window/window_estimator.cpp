@@ -88,6 +88,7 @@ void WindowEstimator::begin(const WindowScan& scan, const Eigen::Isometry3d& T_m
   map_error_.setZero();
   map_age_ = 0.0;
   shown_motions_ = {};
+  bodies_.forget();
   scans_ = 1;
   const std::size_t coefficients = trajectory_.coefficients().size();
   if (quadratic_) {

@@ -15,6 +15,7 @@
 #include "dynamic_icp/method/base/se3.hpp"
 #include "dynamic_icp/method/mapping/plane_map.hpp"
 #include "dynamic_icp/method/motion/twist.hpp"
+#include "dynamic_icp/method/window/body_terms.hpp"
 #include "dynamic_icp/method/window/doppler_cells.hpp"
 #include "dynamic_icp/method/window/doppler_error_field.hpp"
 #include "dynamic_icp/method/window/doppler_terms.hpp"
@@ -125,6 +126,15 @@ class WindowEstimator {
 
   /// The Doppler of each point of the scan at hand, had it no error, m/s.
   void static_doppler(const Scan& scan, const Workers& workers, std::vector<double>& predicted) const;
+
+  /// Whether traffic hides so much of what stands that bodies that move are to tell of the Doppler.
+  [[nodiscard]] bool asks_bodies() const;
+
+  /// The columns of the error of one point of the scan at hand.
+  [[nodiscard]] FieldColumns columns_of(const Scan& scan, std::size_t row) const;
+
+  /// After a scan has joined the past: what its bodies say of the error of its Doppler. They are remembered.
+  void learn_from(std::vector<SeenBody> bodies, const Workers& workers);
 
   [[nodiscard]] const std::optional<DopplerErrorField>& field() const { return field_; }
   [[nodiscard]] const Eigen::VectorXd& theta() const { return theta_; }
@@ -239,6 +249,7 @@ class WindowEstimator {
   DopplerTerms::ScanError scan_error_;
   RestFactor rest_factor_;  ///< of [map error; stamp errors; coefficients; vibration]
   motion::Twist twist_;
+  BodyTerms bodies_;
   Eigen::MatrixXd field_covariance_root_;
   MotionPrior motion_prior_;
   LearnedVariance pointing_variance_;  ///< rad^2, of azimuth and elevation of a whole scan

@@ -66,6 +66,11 @@ void WindowQuadratic::set_field(const Eigen::MatrixXd& Q, const Eigen::VectorXd&
   g_.head(layout_.field) = g;
 }
 
+void WindowQuadratic::add_field(const Eigen::MatrixXd& H, const Eigen::VectorXd& g) {
+  Q_.topLeftCorner(layout_.field, layout_.field) += H.selfadjointView<Eigen::Lower>().toDenseMatrix();
+  g_.head(layout_.field) += g;
+}
+
 void WindowQuadratic::append_coefficients(std::size_t count) {
   const Eigen::Index begin = layout_.coefficient(0);
   const Eigen::Index before = 6 * layout_.coefficients;

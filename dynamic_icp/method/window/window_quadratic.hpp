@@ -30,6 +30,9 @@ class WindowQuadratic {
   [[nodiscard]] const Eigen::MatrixXd& Q() const { return Q_; }
   [[nodiscard]] const Eigen::VectorXd& g() const { return g_; }
 
+  /// Adds what else is known of theta: of H the lower triangle.
+  void add_field(const Eigen::MatrixXd& H, const Eigen::VectorXd& g);
+
   /// Replaces the quadratic, of which the lower triangle is given; the layout stays.
   void set(Eigen::MatrixXd Q, Eigen::VectorXd g);
 

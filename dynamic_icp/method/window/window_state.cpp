@@ -34,6 +34,7 @@ void WindowEstimator::state(StateArchive& archive) {
           scan_error_variance_, cell_variance_, model_sigma_m_, map_age_, shown_motions_.all, shown_motions_.noise);
   archive(twist_.angular, twist_.linear, twist_.covariance, stamp_s_, begin_s_, end_s_, first_.stamp_s, first_.begin_s,
           first_.end_s, scans_, scans_ever_, is_calibrated_);
+  bodies_.state(archive, field_ ? field_->size() : 0);
   check_read(archive);
 }
 

@@ -145,6 +145,13 @@ std::optional<double> WindowEstimator::point_noise() const {
   return variance.empty() ? std::nullopt : std::optional(std::sqrt(median(variance)));
 }
 
+FieldColumns WindowEstimator::columns_of(const Scan& scan, std::size_t row) const {
+  DopplerCell cell = point_of(scan, row);
+  cell.range_m = cells_.range_m(row);
+  cell.intensity = scan.channels().intensity.empty() ? 0.0 : static_cast<double>(scan.channels().intensity[row]);
+  return field_->columns(cell);
+}
+
 void WindowEstimator::field_errors(const Scan& scan, const Workers& workers, FieldErrors& errors) const {
   errors.learned.assign(scan.size(), 0.0);
   errors.credible.assign(scan.size(), 0.0);
