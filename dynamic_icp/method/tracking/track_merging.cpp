@@ -13,6 +13,7 @@ namespace {
 
 constexpr double kSeeThrough_m = 1.0;      // beyond a gap
 constexpr double kSplinter = 0.1;          // a track with this share of the points of another may be a part of it
+constexpr double kBefore_m = 1.0;          // beyond a face that is seen
 constexpr double kOtherTop_m = 1.0;        // between the highest parts of a body
 constexpr double kPartVelocity_mps = 0.5;  // standard deviation between the velocities of parts of a body
 constexpr double kPartSigmas = 3.0;
@@ -32,6 +33,21 @@ bool may_be_equal(const BoxEstimate& a, const BoxEstimate& b) {
   const Eigen::Matrix3d covariance = a.velocity_covariance + b.velocity_covariance +
                                      kPartVelocity_mps * kPartVelocity_mps * Eigen::Matrix3d::Identity();
   return apart.dot(covariance.inverse() * apart) < kPartSigmas * kPartSigmas;
+}
+
+/// Whether the other one reaches far beyond a face of a body that looks at the sensor and is seen: none of it lies
+/// there.
+bool reaches_before(const OrientedBox& other, const BoxEstimate& body, const Eigen::Vector3d& sensor) {
+  return std::ranges::any_of(kFaces, [&](Face face) {
+    const int axis = axis_of(face);
+    const Eigen::Vector3d outward = side_of(face) * body.box.axes.col(axis);
+    const Eigen::Vector3d at = body.box.centre + 0.5 * body.box.size[axis] * outward;
+    if (axis == 2 || body.faces[index_of(face)] != FaceView::kSeen || outward.dot(sensor - at) < 0.0) {
+      return false;
+    }
+    const double reach = 0.5 * (other.axes.transpose() * outward).cwiseAbs().dot(other.size);
+    return outward.dot(other.centre - at) + reach > kBefore_m;
+  });
 }
 
 /// How wide both are together, m: as the boxes say, or, if that is less, what was seen at last.
@@ -78,8 +94,12 @@ bool are_same_object(const SeenTrack& a, const SeenTrack& b, const RangeImage& v
   if (have_other_tops(small.now, large.now) || together.x() > longest_length(likely_width, together.z())) {
     return false;
   }
+  const Eigen::Vector3d sensor = T_world_sensor.translation();
+  if (reaches_before(of_small, large.now, sensor) && reaches_before(of_large, small.now, sensor)) {
+    return false;
+  }
   const Gap gap = gap_between(of_large, of_small);
-  const double range_m = (gap.middle - T_world_sensor.translation()).norm();
+  const double range_m = (gap.middle - sensor).norm();
   const double behind_m = std::abs(of_large.axes.col(0).dot(of_large.centre - of_small.centre));
   const double yaw_sigma_rad = large.predicted.best().body().yaw_sigma();
   const double width_sigma_m = config.track.face_sigma_m + config.track.face_sigma_growth * range_m +

@@ -24,6 +24,19 @@ Track side_of_body(double from, double to, double speed_mps, double top_m = 0.5)
   return {detection, 0.0, {}};
 }
 
+/// The rear, which looks at the sensor, of a box that drives along x, from `right` to `left` of the x axis.
+Track rear_of_body(double x, double right, double left, double speed_mps) {
+  Detection detection;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const RandomSource one = RandomSource(7).fork(i);
+    detection.points.emplace_back(x, one.uniform(0, right, left), one.uniform(1, -1.0, 0.5));
+    detection.directions.push_back(detection.points.back().normalized());
+    detection.radial.push_back(speed_mps * detection.directions.back().x());
+    detection.times.push_back(0.0);
+  }
+  return {detection, 0.0, {}};
+}
+
 /// What is seen to the left: a wall at this distance.
 RangeImage wall_at(double distance_m) {
   RawScan raw;
@@ -140,6 +153,13 @@ TEST(TrackMerging, BodiesThatWouldBeLongerThanAnyOrHaveOtherTopsAreTwo) {
   EXPECT_FALSE(are_same(side_of_body(0, 4, 6), 300, side_of_body(4.5, 8.0, 6), 250, 4.0)) << "of a height of 1.5 m";
   EXPECT_FALSE(are_same(side_of_body(0, 4, 6, 2.0), 300, side_of_body(4.5, 8.0, 6, 0.5), 250, 4.0))
       << "a lorry and a car";
+}
+
+TEST(TrackMerging, NothingOfABodyLiesBeforeItsFaces) {
+  const Track side = side_of_body(12, 18, 6);
+  EXPECT_FALSE(are_same(side, 300, rear_of_body(14, 6.2, 7.5, 6), 300, 4.0))
+      << "a rear before a side that begins before it";
+  EXPECT_TRUE(are_same(side, 300, rear_of_body(12, 6.2, 7.9, 6), 300, 4.0)) << "a corner";
 }
 
 TEST(TrackMerging, FarPartsThatWouldBeAsWideAsABodyButForErrorsAreOne) {

@@ -32,7 +32,7 @@ ConfigFields fields(TrackerConfig& config) {
       {"confirm_sigma_mps", &config.confirm_sigma_mps, 0.0, 1000.0, "m/s",
        "a track is confirmed when the standard deviation of its horizontal velocity is below this"},
       {"confirm_anyway_scans", &config.confirm_anyway_scans, 1, 1000, "",
-       "or when it has been seen in so many scans, however well its velocity is known"},
+       "or when it has been seen in so many scans, however well its velocity and its heading are known"},
       {"coast_s", &config.coast_s, 0.0, 1000.0, "s", "time for which a track is kept without detections"},
       {"coast_sigma_m", &config.coast_sigma_m, 0.0, 1000.0, "m",
        "largest standard deviation of the position of such a track"},

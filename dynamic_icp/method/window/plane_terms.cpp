@@ -206,17 +206,17 @@ Eigen::Matrix<double, 12, 12> PlaneTerms::by_displacements(const PlaneSums& sums
 }
 
 /// Of those whose normals err: so many that err alike would average as they do.
-double PlaneTerms::independent_patches() const {
-  std::vector<double> noise(members_.size());
+double PlaneTerms::independent_patches() {
+  normal_noise_.assign(members_.size(), 0.0);
   for (const Row& row : rows_) {
     if (row.patch != nullptr) {
-      noise[row.patch->id] +=
+      normal_noise_[row.patch->id] +=
           row.w * normal_variance(row.patch->plane, model_variance_) * row.patch->plane.tangential.trace();
     }
   }
   double sum = 0.0;
   double squares = 0.0;
-  for (const double one : noise) {
+  for (const double one : normal_noise_) {
     sum += one;
     squares += one * one;
   }

@@ -143,7 +143,7 @@ class PlaneTerms {
   static void add_slice(const Slice& slice, const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g);
   void add_last_sweep(const Layout& layout, Eigen::MatrixXd& H, Eigen::VectorXd& g) const;
   [[nodiscard]] double recent_share(const mapping::Plane& plane) const;
-  [[nodiscard]] double independent_patches() const;
+  [[nodiscard]] double independent_patches();
   void hold_motions(double max_noise_share);
 
   const Scan& scan_;
@@ -157,6 +157,7 @@ class PlaneTerms {
   std::vector<std::uint64_t> found_in_;  ///< finest cell of each row
   std::vector<std::uint32_t> members_;   ///< points per patch
   std::vector<double> precision_;        ///< 1/m^2, of what is common to the points of a patch: their sum
+  std::vector<double> normal_noise_;     ///< of each patch, what the noise of its normal adds
   std::vector<double> squares_;          ///< e^2 over the variance of each row on a patch
   Eigen::Matrix3d R_map_reference_ = Eigen::Matrix3d::Identity();
   Matrix6d motions_ = Matrix6d::Identity();  ///< the principal ones, columns [phi; p], reference frame
