@@ -20,7 +20,7 @@ struct FieldInformation {
   Eigen::VectorXd g;
 };
 
-/// Where traffic hides most of what stands, the Doppler does not tell its own error from a motion of the sensor. A body
+/// Where traffic hides the static scene, the Doppler does not distinguish its error from a motion of the sensor. A body
 /// that moves is a scene of its own: how it moved is seen by its surfaces and by its Doppler, however the sensor moved,
 /// and what these differ by is the error of the Doppler,
 ///   s = u . (V + v + (Omega + w) x l) + Phi (theta + d),   [w; v] as its surfaces have it (BodyMotion).

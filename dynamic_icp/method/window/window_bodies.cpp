@@ -7,11 +7,11 @@
 #include "dynamic_icp/method/estimation/normal_equations.hpp"
 #include "dynamic_icp/method/window/window_estimator.hpp"
 
-// What moving bodies tell of the error of the Doppler.
+// The error of the Doppler by moving bodies.
 namespace dynamic_icp::window {
 namespace {
 
-// Of the azimuths of a sensor. Where less is hidden, what stands tells more, and bodies, which take time, are not
+// Of the azimuths of a sensor. Where less is hidden, the static scene shows more, and bodies, which take time, are not
 // asked.
 constexpr double kMuchHidden = 0.3;
 
